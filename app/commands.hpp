@@ -1,0 +1,31 @@
+#pragma once
+
+#include "app/console.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace snare::app {
+
+/// The verbs. Each reads its input, computes, writes its files into options.out, and returns the exit status.
+/// Wrong input is thrown as numerics::InputError before anything is written.
+
+/// Force-displacement curves of the declared model: curves.csv.
+[[nodiscard]] ExitStatus run_push(const std::filesystem::path& experiment, const CommonOptions& options,
+                                  Console& console);
+
+/// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json, report.html.
+/// `experiment` empty: the shipped file of the published tests.
+[[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
+                                       Console& console);
+
+/// Every validation row: validation.json, report.html.
+[[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
+
+/// The shipped data, beside the sources or where they were installed.
+[[nodiscard]] std::filesystem::path data_directory();
+
+/// `key=value` texts of --set. Throws InputError for one without '='.
+[[nodiscard]] std::string version();
+
+}  // namespace snare::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "identification/prediction.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// A further column of curves.csv: one vector a series, aligned with the series' displacements; cells beyond the
+/// end of a vector stay empty.
+struct CurveColumn {
+  std::string name;
+  std::vector<std::vector<double>> values;
+};
+
+/// Writes curves.csv: a row a point of every prediction, in the order in which the points were reached.
+/// Columns: docs/curves_csv.md.
+void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,
+                  const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more = {});
+
+}  // namespace snare::app

@@ -1,0 +1,77 @@
+#include "app/commands.hpp"
+#include "app/curves_csv.hpp"
+#include "numerics/toml_tree.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <iostream>
+
+namespace snare::app {
+
+namespace {
+
+nlohmann::json summary(const identification::Series& series, const identification::Prediction& prediction) {
+  nlohmann::json events = nlohmann::json::array();
+  for (const coupling::PushEvent& e : prediction.curve.curve.events) {
+    events.push_back({{"event", coupling::to_string(e.kind)}, {"travel_mm", 1e3 * e.travel}});
+  }
+  double largest = 0.0;
+  for (const double force : prediction.force) largest = std::max(largest, std::abs(force));
+  return {{"series", series.name},
+          {"points", prediction.force.size()},
+          {"largest_force_N", largest},
+          {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
+          {"events", events},
+          {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()
+                                                             : nlohmann::json(prediction.curve.curve.report.message)}};
+}
+
+}  // namespace
+
+ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  std::vector<numerics::Override> overrides;
+  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const identification::Experiment experiment = identification::read_experiment(file, overrides);
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+
+  std::vector<identification::PredictionOptions> prediction_options(experiment.series.size());
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    prediction_options[k].progress = [&console, &series = experiment.series[k]](double travel) {
+      console.progress(fmt::format("{}: {:.3f} of {:.3f} mm", series.name, 1e3 * travel,
+                                   1e3 * identification::measured_displacement(series).back()));
+      return !interrupted();
+    };
+  }
+  const std::vector<identification::Prediction> predictions =
+      identification::predict_all(experiment.series, experiment.solver, {}, prediction_options);
+  console.end_progress();
+
+  const std::filesystem::path csv = options.out / "curves.csv";
+  write_curves(csv, experiment.series, predictions);
+  nlohmann::json result{{"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
+  ExitStatus status = ExitStatus::done;
+  for (std::size_t k = 0; k < predictions.size(); ++k) {
+    result["series"].push_back(summary(experiment.series[k], predictions[k]));
+    const numerics::SolveReport& report = predictions[k].curve.curve.report;
+    if (!report.usable()) {
+      console.complain(fmt::format("series {}: {} ({} of {} points kept)", experiment.series[k].name, report.message,
+                                   predictions[k].force.size(),
+                                   identification::measured_displacement(experiment.series[k]).size()));
+      status = ExitStatus::solver_stopped;
+    }
+  }
+  if (options.json) {
+    std::cout << result.dump(1) << '\n';
+  } else {
+    for (const nlohmann::json& series : result["series"]) {
+      console.say(fmt::format("{}: {} points, largest force {:.4g} N", series["series"].get<std::string>(),
+                              series["points"].get<std::size_t>(), series["largest_force_N"].get<double>()));
+    }
+    console.say(fmt::format("wrote {}", csv.string()));
+  }
+  return status;
+}
+
+}  // namespace snare::app

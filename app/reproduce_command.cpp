@@ -1,0 +1,291 @@
+#include "app/commands.hpp"
+#include "app/curves_csv.hpp"
+#include "app/reproduce_report.hpp"
+#include "identification/calibration.hpp"
+#include "numerics/files.hpp"
+#include "numerics/toml_tree.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+namespace snare::app {
+
+namespace {
+
+using identification::Experiment;
+using identification::Prediction;
+using identification::Series;
+using nlohmann::json;
+
+/// A model of the wire beside the published curves.
+struct Model {
+  std::string name;
+  std::string label;
+  std::string description;
+  std::vector<identification::FreeParameter> parameters;
+  int free = 0;
+  std::vector<Prediction> predictions;
+  std::vector<double> radius_mm;  // of the pusher, one a series
+};
+
+std::vector<double> in_mm(const std::vector<double>& values) {
+  std::vector<double> result(values);
+  for (double& v : result) v *= 1e3;
+  return result;
+}
+
+/// dF/dd [N/mm] of a curve by central differences (one-sided at its ends).
+std::vector<double> tangent_stiffness(const std::vector<double>& displacement, const std::vector<double>& force) {
+  const std::size_t n = std::min(displacement.size(), force.size());
+  std::vector<double> result;
+  for (std::size_t i = 0; i < n && n > 1; ++i) {
+    const std::size_t a = i == 0 ? 0 : i - 1;
+    const std::size_t b = std::min(i + 1, n - 1);
+    result.push_back(1e-3 * (force[b] - force[a]) / (displacement[b] - displacement[a]));
+  }
+  return result;
+}
+
+json shape_json(const coupling::PushShape& shape, double offset, double radius_mm) {
+  return {{"displacement_mm", 1e3 * (shape.travel + offset)},
+          {"x_mm", in_mm(shape.x)},
+          {"y_mm", in_mm(shape.y)},
+          {"arc_mm", in_mm(shape.arc)},
+          {"tension_N", shape.tension},
+          {"moment_Nm", shape.moment},
+          {"pusher_x_mm", 1e3 * shape.pusher_centre.x()},
+          {"pusher_y_mm", 1e3 * shape.pusher_centre.y()},
+          {"pusher_radius_mm", radius_mm}};
+}
+
+json series_model_json(const Series& series, const Prediction& prediction, double radius_mm) {
+  const std::vector<double>& displacement = identification::measured_displacement(series);
+  const identification::Misfit misfit = identification::misfit(identification::measured_force(series), prediction.force);
+  json shapes = json::array();
+  for (const coupling::PushShape& shape : prediction.curve.curve.shapes) {
+    shapes.push_back(shape_json(shape, prediction.reading.displacement_offset, radius_mm));
+  }
+  double largest = 0.0;
+  for (const double f : prediction.force) largest = std::max(largest, f);
+  json result{{"force_N", prediction.force},
+              {"stiffness_N_mm", tangent_stiffness(displacement, prediction.force)},
+              {"rmse_N", misfit.rmse},
+              {"nrmse", misfit.nrmse},
+              {"max_N", largest},
+              {"shapes", shapes}};
+  if (!prediction.curve.curve.report.usable()) result["stopped"] = prediction.curve.curve.report.message;
+  return result;
+}
+
+json series_json(const Series& series, const std::vector<Model>& models, std::size_t index) {
+  const std::vector<double>& displacement = identification::measured_displacement(series);
+  json result{{"name", series.name},
+              {"contact_position_mm", 1e3 * series.test.contact_position},
+              {"range_mm", 1e3 * *std::max_element(displacement.begin(), displacement.end())},
+              {"displacement_mm", in_mm(displacement)},
+              {"published_N", identification::measured_force(series)}};
+  if (series.law) {
+    const identification::QuadraticLaw& law = *series.law;
+    result["published"] = {{"A_N_m2", law.a}, {"B_N_m", law.b}, {"C_N", law.c}, {"R2", law.r_squared},
+                           {"sigma_N", law.scatter()}};
+    std::vector<double> stiffness;
+    for (const double d : displacement) stiffness.push_back(1e-3 * (2.0 * law.a * d + law.b));
+    result["published_stiffness_N_mm"] = stiffness;
+  } else {
+    result["published_stiffness_N_mm"] =
+        tangent_stiffness(displacement, identification::measured_force(series));
+    if (series.force_sigma) result["published"] = {{"sigma_N", *series.force_sigma}};
+  }
+  for (const Model& model : models) {
+    result["models"][model.name] = series_model_json(series, model.predictions[index], model.radius_mm[index]);
+  }
+  return result;
+}
+
+json model_json(const Experiment& experiment, const Model& model) {
+  std::vector<double> measured;
+  std::vector<double> predicted;
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    const std::vector<double> force = identification::measured_force(experiment.series[k]);
+    const std::vector<double>& computed = model.predictions[k].force;
+    const std::size_t n = std::min(force.size(), computed.size());
+    measured.insert(measured.end(), force.begin(), force.begin() + static_cast<std::ptrdiff_t>(n));
+    predicted.insert(predicted.end(), computed.begin(), computed.begin() + static_cast<std::ptrdiff_t>(n));
+  }
+  const identification::Misfit misfit = identification::misfit(measured, predicted);
+  json parameters = json::object();
+  for (const identification::FreeParameter& p : model.parameters) {
+    parameters[p.key] = {{"value", p.value},
+                         {"stderr", p.standard_error ? json(*p.standard_error) : json()},
+                         {"unit", p.unit}};
+  }
+  return {{"name", model.name},     {"label", model.label},   {"description", model.description},
+          {"parameters", parameters}, {"rmse_N", misfit.rmse}, {"nrmse", misfit.nrmse}, {"free", model.free}};
+}
+
+std::vector<std::string> assumptions(const Experiment& experiment) {
+  std::vector<std::string> result;
+  const bool laws = std::any_of(experiment.series.begin(), experiment.series.end(),
+                                [](const Series& s) { return s.law.has_value(); });
+  if (laws) {
+    result.push_back(
+        "The readings were not published: the quadratic fits stand for them, at evenly spread displacements. "
+        "Their scatter follows from the printed R2 if the readings were spread evenly too.");
+    std::string ranges;
+    for (const Series& s : experiment.series) {
+      if (s.law) ranges += fmt::format("{}{}: {:g} mm", ranges.empty() ? "" : ", ", s.name, 1e3 * s.law->to);
+    }
+    result.push_back("The range of displacement of the fits is not printed; assumed (" + ranges +
+                     "). It changes the errors: see the key law.to_mm.");
+  }
+  const coupling::PushTest& test = experiment.series.front().test;
+  result.push_back(fmt::format("The pusher is a cylinder of {:g} mm radius that pushes {} without friction{}.",
+                               1e3 * test.pusher.radius,
+                               test.pusher.direction == coupling::PushDirection::outward ? "with the bulge"
+                                                                                       : "against the bulge",
+                               test.pusher.friction > 0.0 ? fmt::format(" other than Coulomb's, mu = {:g}", test.pusher.friction) : ""));
+  result.push_back("The wire is computed in its plane; the displacement is counted from the first touch of pusher and wire.");
+  return result;
+}
+
+std::vector<identification::PredictionOptions> with_shapes(const Experiment& experiment, double offset,
+                                                           Console& console, const std::string& label) {
+  std::vector<identification::PredictionOptions> result(experiment.series.size());
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const Series& series = experiment.series[k];
+    const std::vector<double>& d = identification::measured_displacement(series);
+    // Six shapes along the push, at displacements that are computed anyhow.
+    for (int i = 0; i <= 5; ++i) {
+      result[k].shapes_at.push_back(d[(d.size() - 1) * static_cast<std::size_t>(i) / 5] - offset);
+    }
+    result[k].progress = [&console, label, &series](double travel) {
+      console.progress(fmt::format("{}, {}: {:.3f} mm", label, series.name, 1e3 * travel));
+      return !interrupted();
+    };
+  }
+  return result;
+}
+
+std::string error_table(const json& result) {
+  std::string text = fmt::format("{:<12}{:>14}{:>14}{:>10}\n", "position", "model", "rmse [N]", "nrmse");
+  for (const json& series : result["series"]) {
+    for (const auto& [name, model] : series["models"].items()) {
+      text += fmt::format("{:<12}{:>14}{:>14.3f}{:>10.4f}\n", series["name"].get<std::string>(), name,
+                          model["rmse_N"].get<double>(), model["nrmse"].get<double>());
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  std::vector<numerics::Override> overrides;
+  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const Experiment experiment = identification::read_experiment(
+      file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, overrides);
+  for (const Series& series : experiment.series) {
+    if (identification::measured_force(series).empty()) {
+      throw numerics::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
+                                  "must have readings or a law to reproduce"});
+    }
+  }
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+
+  std::vector<Model> models;
+  Model declared;
+  declared.name = "declared";
+  declared.label = "declared model";
+  declared.description = "the wire, mounts and pusher exactly as the experiment file declares them; nothing fitted";
+  for (const char* key : {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm"}) {
+    declared.parameters.push_back(identification::declared_parameter(experiment, key));
+  }
+  declared.predictions = identification::predict_all(experiment.series, experiment.solver, {},
+                                                     with_shapes(experiment, 0.0, console, "declared model"));
+  for (const Series& s : experiment.series) declared.radius_mm.push_back(1e3 * s.test.pusher.radius);
+  models.push_back(declared);
+
+  ExitStatus status = ExitStatus::done;
+  if (!experiment.free.empty() && !interrupted()) {
+    identification::CalibrationOptions fit;
+    fit.progress = [&console](int iteration, double rmse) {
+      console.progress(fmt::format("best fit: iteration {}, rmse {:.3f} N", iteration, rmse));
+      return !interrupted();
+    };
+    const identification::Calibration calibration = identification::calibrate(experiment, experiment.free, fit);
+    if (!calibration.predictions.empty()) {
+      Model best = declared;
+      best.name = "best_fit";
+      best.label = "best fit of the declared kind";
+      best.description = "the same kind of model with the listed numbers fitted to all positions together";
+      best.parameters = calibration.parameters;
+      best.free = static_cast<int>(calibration.parameters.size());
+      std::vector<Series> fitted = experiment.series;
+      identification::ReadingModel reading;
+      for (const identification::FreeParameter& p : calibration.parameters) {
+        identification::apply_parameter(p.key, p.value, fitted, reading);
+      }
+      best.predictions = identification::predict_all(
+          fitted, experiment.solver, reading,
+          with_shapes(experiment, reading.displacement_offset, console, "best fit"));
+      models.push_back(std::move(best));
+    }
+    if (!calibration.report.usable()) {
+      console.complain("best fit: " + calibration.report.message);
+      status = ExitStatus::solver_stopped;
+    }
+  }
+  console.end_progress();
+
+  const coupling::PushTest& test = experiment.series.front().test;
+  json result{{"schema", "snare-reproduce/1"},
+              {"title", experiment.title},
+              {"source", experiment.source},
+              {"version", version()},
+              {"assumptions", assumptions(experiment)},
+              {"wire",
+               {{"diameter_mm", 1e3 * test.wire.diameter},
+                {"length_mm", 1e3 * test.wire.length},
+                {"span_mm", 1e3 * test.mount.span},
+                {"bending_stiffness_Nm2", test.wire.bending_stiffness()},
+                {"axial_stiffness_N", test.wire.axial_stiffness()}}},
+              {"models", json::array()},
+              {"series", json::array()}};
+  for (const Model& model : models) {
+    result["models"].push_back(model_json(experiment, model));
+    for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+      const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
+      if (report.usable()) continue;
+      console.complain(fmt::format("{}, series {}: {}", model.label, experiment.series[k].name, report.message));
+      status = ExitStatus::solver_stopped;
+    }
+  }
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    result["series"].push_back(series_json(experiment.series[k], models, k));
+  }
+
+  std::vector<CurveColumn> columns{{"measured_N", {}}, {"base_N", {}}, {"final_N", {}}};
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    columns[0].values.push_back(identification::measured_force(experiment.series[k]));
+    columns[1].values.push_back(models.front().predictions[k].force);
+    columns[2].values.push_back(models.back().predictions[k].force);
+  }
+  write_curves(options.out / "curves.csv", experiment.series, models.front().predictions, columns);
+  numerics::write_text(options.out / "reproduce.json", result.dump(1) + "\n");
+  numerics::write_text(options.out / "report.html", reproduce_report_html(result));
+  if (options.json) {
+    std::cout << result.dump(1) << '\n';
+  } else {
+    console.say(error_table(result));
+    console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html", options.out.string()));
+  }
+  return status;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,90 @@
+#include "app/commands.hpp"
+#include "app/report_page.hpp"
+#include "numerics/files.hpp"
+#include "validation/suite.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <iostream>
+
+namespace snare::app {
+
+namespace {
+
+nlohmann::json row_json(const validation::Row& row) {
+  return {{"group", row.group},   {"name", row.name},   {"unit", row.unit},
+          {"source", row.source}, {"reference", row.reference}, {"value", row.value},
+          {"error", row.error()}, {"error_kind", row.kind == validation::ErrorKind::relative ? "relative" : "absolute"},
+          {"limit", row.limit},   {"verdict", row.within() ? "within" : "out"}};
+}
+
+std::string page(const std::vector<validation::Row>& rows, const std::vector<std::string>& skipped) {
+  ReportPage page("Validation of snare", "Every row: what was computed, beside a reference that does not come from it.");
+  std::string group;
+  Table table;
+  const auto flush = [&] {
+    if (!table.rows.empty()) page.table(table);
+    table = Table{};
+    table.columns = {{"quantity"}, {"reference", ColumnKind::number}, {"computed", ColumnKind::number},
+                     {"error", ColumnKind::number}, {"limit", ColumnKind::number}, {"verdict"}, {"source"}};
+  };
+  for (const validation::Row& row : rows) {
+    if (row.group != group) {
+      flush();
+      group = row.group;
+      page.heading(group);
+    }
+    const std::string unit = row.unit.empty() ? "" : " " + row.unit;
+    table.rows.push_back({{row.name}, {format_significant(row.reference, 8) + unit}, {format_significant(row.value, 8) + unit},
+                          {format_significant(row.error(), 2)}, {format_significant(row.limit, 2)},
+                          {row.within() ? "within" : "OUT", row.within() ? Tone::good : Tone::bad}, {row.source}});
+  }
+  flush();
+  if (!skipped.empty()) {
+    page.heading("Left out");
+    page.list(skipped);
+  }
+  return page.html();
+}
+
+}  // namespace
+
+ExitStatus run_validate(const CommonOptions& options, Console& console) {
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const std::vector<validation::Check> checks = validation::static_wire_checks();
+  std::vector<validation::Row> rows;
+  std::vector<std::string> skipped;
+  int out = 0;
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    if (interrupted()) {
+      skipped.push_back("interrupted before: " + checks[i].name);
+      break;
+    }
+    console.progress(fmt::format("{} of {}: {}", i + 1, checks.size(), checks[i].name));
+    for (validation::Row& row : checks[i].run()) {
+      if (!row.within()) {
+        ++out;
+        console.complain(fmt::format("out of its limit: {}, {}: {} instead of {}", row.group, row.name, row.value, row.reference));
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  console.end_progress();
+  nlohmann::json result{{"schema", "snare-validation/1"}, {"version", version()}, {"rows", nlohmann::json::array()}, {"skipped", skipped}};
+  for (const validation::Row& row : rows) result["rows"].push_back(row_json(row));
+  numerics::write_text(options.out / "validation.json", result.dump(1) + "\n");
+  numerics::write_text(options.out / "report.html", page(rows, skipped));
+  if (options.json) std::cout << result.dump(1) << '\n';
+  std::string group;
+  for (const validation::Row& row : rows) {
+    if (row.group != group) console.say((group = row.group) + ":");
+    console.say(fmt::format("  {:<58} {:>14.8g} {:>14.8g} {:<6} error {:.1e} of {:.0e} {}", row.name, row.reference, row.value,
+                            row.unit, row.error(), row.limit, row.within() ? "" : "OUT"));
+  }
+  console.say(fmt::format("{} rows, {} out of their limit; wrote {}/validation.json", rows.size(), out, options.out.string()));
+  return out == 0 ? ExitStatus::done : ExitStatus::row_out_of_limit;
+}
+
+}  // namespace snare::app

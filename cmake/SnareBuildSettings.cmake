@@ -1,0 +1,33 @@
+# Language, warnings, sanitizers, compiler cache. Nothing here may change a result from one machine to the
+# next: no -march=native, no -ffast-math.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_program(SNARE_CCACHE ccache)
+mark_as_advanced(SNARE_CCACHE)
+if(SNARE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${SNARE_CCACHE}")
+endif()
+
+# Private settings of our own targets; never exported.
+add_library(snare_build_settings INTERFACE)
+target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+
+# Sanitized code and the tests that use it must agree, so the flags hold for the whole tree.
+set(SNARE_SANITIZER_FLAGS "")
+if(SNARE_SANITIZE)
+  set(SNARE_SANITIZER_FLAGS -fsanitize=address,undefined -fno-sanitize-recover=all)
+  add_compile_options(${SNARE_SANITIZER_FLAGS} -fno-omit-frame-pointer)
+  add_link_options(${SNARE_SANITIZER_FLAGS})
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC warns falsely about Eigen's expressions once they are instrumented.
+    target_compile_options(snare_build_settings INTERFACE -Wno-maybe-uninitialized)
+  endif()
+endif()

@@ -1,0 +1,143 @@
+#include "coupling/push_setup.hpp"
+
+#include "wire/loose_wire.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::coupling {
+
+namespace {
+
+using Eigen::Vector2d;
+
+wire::PlanarEnd make_end(const PushTest& test, double x) {
+  wire::PlanarEnd end;
+  switch (test.mount.kind) {
+    case wire::MountKind::clamped: end.kind = wire::PlanarEnd::Kind::clamp; break;
+    case wire::MountKind::pinned: end.kind = wire::PlanarEnd::Kind::pin; break;
+    case wire::MountKind::supports: end.kind = wire::PlanarEnd::Kind::free; break;
+  }
+  end.position = {x, 0.0};
+  if (test.mount.rotational_stiffness) end.rotational_stiffness = *test.mount.rotational_stiffness;
+  if (test.mount.translational_stiffness) end.translational_stiffness = *test.mount.translational_stiffness;
+  return end;
+}
+
+double effective_radius(double radius, double diameter) {
+  return radius > 0.0 ? radius + 0.5 * diameter : 0.0;  // a knife edge meets the centreline
+}
+
+GuidedContact make_pusher(const PushTest& test, int node) {
+  const double towards = test.pusher.direction == PushDirection::outward ? 1.0 : -1.0;
+  GuidedContact pusher;
+  pusher.node = node;
+  pusher.control = 1;
+  pusher.side = towards;
+  pusher.radius = effective_radius(test.pusher.radius, test.wire.diameter);
+  pusher.friction = test.pusher.friction;
+  pusher.motion = towards * Vector2d(std::sin(test.pusher.misalignment), std::cos(test.pusher.misalignment));
+  pusher.centre = {test.contact_position, 0.0};
+  return pusher;
+}
+
+// Wire resting on two supports, the pusher touching it from the other side; straight, without force.
+void rest_on_supports(const PushTest& test, PushSetup& setup, const wire::Controls& controls) {
+  PushSystem& system = *setup.system;
+  const wire::MaterialMesh& mesh = setup.rod->mesh();
+  GuidedContact pusher = make_pusher(test, mesh.contact_vertex());
+  pusher.centre -= pusher.side * pusher.radius * Vector2d::UnitY();
+  pusher.holds_material = true;
+  pusher.last_coordinate = controls[1];
+  system.guided = {pusher};
+  for (const int end : {0, 2}) {
+    GuidedContact support;
+    support.node = end == 0 ? 0 : mesh.edges();
+    support.control = end;
+    support.side = -pusher.side;
+    support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
+    support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
+    support.last_coordinate = controls[static_cast<std::size_t>(end)];
+    system.guided.push_back(support);
+  }
+  setup.start.band.resize(setup.rod->unknowns());
+  for (int i = 0; i <= mesh.edges(); ++i) {
+    setup.start.band.segment<2>(2 * i) = Vector2d(mesh.coordinate(i, controls) - controls[0], 0.0);
+  }
+  setup.start.border.setZero(system.border_unknowns());
+  for (int k = 0; k < 3; ++k) {
+    const auto control = static_cast<std::size_t>(system.guided[static_cast<std::size_t>(k)].control);
+    setup.start.border[system.guided_row(k) + 2] = controls[control];
+  }
+}
+
+}  // namespace
+
+PushSetup prepare_push(const PushTest& test, int edges, double grading, int coarsening) {
+  const double length = test.wire.length;
+  const double fraction = test.contact_position / test.mount.span;
+  const double ei = test.wire.bending_stiffness();
+  const double ea = test.wire.axial_stiffness();
+  wire::MaterialMesh mesh = wire::make_mesh(edges, fraction, 0.0);
+  if (grading < 0.0) {
+    const double layer = std::sqrt(ei / (1e-3 * ea));
+    const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
+    const double right =
+        wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
+    grading = std::max(left, right);
+  }
+  mesh = wire::make_mesh(edges, fraction, grading);
+  if (coarsening > 1) mesh = mesh.coarsened(coarsening);
+
+  wire::PlanarRodProperties properties;
+  properties.bending_stiffness = ei;
+  properties.axial_stiffness = ea;
+  // The bulge goes to +y, where a wire running along +x turns right at its top.
+  properties.natural_curvature = -test.wire.natural_curvature;
+  properties.weight = test.wire.mass_per_length() * Vector2d(test.gravity[0], test.gravity[1]);
+  properties.left = make_end(test, 0.0);
+  properties.right = make_end(test, test.mount.span);
+
+  PushSetup setup;
+  setup.rod = std::make_unique<wire::PlanarRod>(mesh, properties);
+  if (test.mount.kind == wire::MountKind::supports) {
+    const double overhang = 0.5 * (length - test.mount.span);
+    const wire::Controls controls{overhang, overhang + test.contact_position, overhang + test.mount.span};
+    setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+    rest_on_supports(test, setup, controls);
+    return setup;
+  }
+
+  const wire::Controls controls{0.0, fraction * length, length};
+  const wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+  setup.iterations = loose.report.iterations;
+  setup.report = loose.report;
+  if (!loose.report.usable()) return setup;
+
+  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+  PushSystem& system = *setup.system;
+  GuidedContact pusher = make_pusher(test, mesh.contact_vertex());
+  const Vector2d at_contact = wire::vertex(loose.state, mesh.contact_vertex());
+  pusher.centre = Vector2d(test.contact_position, at_contact.y() - pusher.side * pusher.radius);
+  pusher.status = ContactStatus::touching;
+  system.guided = {pusher};
+  if (test.mount.slip_tension) system.mount = SlippingMount{*test.mount.slip_tension, false, 0.0, 0.0};
+
+  setup.start.band = loose.state.q;
+  setup.start.border.setZero(system.border_unknowns());
+  setup.start.border[2] = controls[1];
+  numerics::PathWorkspace workspace;
+  const numerics::SolveReport touch = numerics::correct(system, setup.start, workspace, 50);
+  setup.iterations += touch.iterations;
+  setup.report = touch;
+  if (!touch.usable()) {
+    setup.report.message = "the pusher does not touch the wire in its initial shape";
+    return setup;
+  }
+  system.guided[0].centre += setup.start.border[3] * pusher.motion;
+  setup.start.border[3] = 0.0;
+  setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
+  return setup;
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "coupling/push_system.hpp"
+#include "coupling/push_test.hpp"
+#include "numerics/report.hpp"
+
+#include <memory>
+
+namespace snare::coupling {
+
+/// A wire between its mounts with the pusher at first touch: the start of every push.
+struct PushSetup {
+  std::unique_ptr<wire::PlanarRod> rod;
+  std::unique_ptr<PushSystem> system;  ///< guided[0] is the pusher, then the supports
+  numerics::PathPoint start;           ///< travel 0, no force
+  double natural_height = 0.0;         ///< of the wire where the pusher will touch it [m]
+  int iterations = 0;
+  numerics::SolveReport report;        ///< start is only meaningful when usable
+};
+
+/// edges: a multiple of 4, >= 16; coarsening 1, 2 or 4: only every so manieth vertex of that mesh is used.
+/// grading < 0: chosen from the boundary layer sqrt(EI/T) at a strain of one in a thousand.
+[[nodiscard]] PushSetup prepare_push(const PushTest& test, int edges, double grading, int coarsening);
+
+}  // namespace snare::coupling

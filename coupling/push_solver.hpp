@@ -1,0 +1,91 @@
+#pragma once
+
+#include "coupling/push_system.hpp"
+#include "coupling/push_test.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// Something that happened along the path.
+struct PushEvent {
+  enum class Kind {
+    first_touch, lift_off, touch, slip_begins, slip_ends, wrap_begins, wrap_ends, mount_slips, mount_holds,
+    fold,         ///< the travel turns back along the path: under control of the travel the wire snaps here
+    bifurcation,  ///< another branch crosses; beyond it this one is unstable
+    snap          ///< the wire jumped to another stable shape
+  };
+  Kind kind{};
+  double travel = 0.0;  ///< [m]
+};
+[[nodiscard]] std::string to_string(PushEvent::Kind kind);
+
+/// One point of a force-displacement curve. SI units.
+struct PushPoint {
+  double travel = 0.0;         ///< of the pusher from first touch [m]
+  double force = 0.0;          ///< on the pusher along the push, positive when the wire resists [N]
+  double transverse_force = 0.0;  ///< on the pusher across the push, along the chord [N]
+  double tension_left = 0.0;   ///< axial force in the wire at the left mount, tension positive [N]
+  double tension_right = 0.0;  ///< at the right mount [N]
+  double contact_coordinate = 0.0;  ///< material coordinate of the (middle of the) contact from the left mount [m]
+  double wrapped_length = 0.0; ///< length of wire that lies on the pusher [m]; 0 for contact at a point
+  double energy = 0.0;         ///< elastic energy and potential of the weight [J]
+  double dissipated = 0.0;     ///< friction work so far [J], never decreasing
+  double imbalance = 0.0;      ///< |mounts + pusher + weight| [N]: action and reaction
+  int unstable_modes = 0;      ///< negative eigenvalues of the constrained tangent: 0 is stable
+  bool in_contact = true;
+  bool slipping = false;       ///< friction only: the contact slides
+  int iterations = 0;          ///< Newton iterations since the point before
+  bool converged = true;
+};
+
+/// Shape of the wire at one point, for plots. SI units, one entry a vertex (tension: the mean of its edges).
+struct PushShape {
+  double travel = 0.0;
+  Eigen::Vector2d pusher_centre = Eigen::Vector2d::Zero();
+  std::vector<double> x, y, arc, tension, moment;
+};
+
+/// What to do where the path of equilibria turns unstable.
+enum class Instability {
+  follow_path,   ///< stay on the path, by arc length through folds; unstable points are marked
+  switch_branch  ///< leave it at a bifurcation for the branch that is stable
+};
+
+struct PushOptions {
+  int elements = 128;   ///< edges, a multiple of 4, >= 16
+  double grading = -1;  ///< of the mesh; < 0 chooses from the boundary layer
+  Instability instability = Instability::follow_path;
+  int max_iterations = 12;      ///< Newton iterations a step
+  double smallest_step = 1e-9;  ///< of the travel [m]
+  std::vector<double> shapes_at;  ///< travels at which to keep the shape [m]
+  std::function<bool(double travel)> progress;  ///< called after every point; false stops the run
+};
+
+struct PushCurve {
+  std::vector<PushPoint> points;
+  std::vector<PushEvent> events;
+  std::vector<PushShape> shapes;
+  double natural_height = 0.0;  ///< of the wire at the contact before the push [m]
+  double touch_height = 0.0;    ///< of the pusher's centre at first touch [m]
+  int newton_iterations = 0;    ///< all, with those of the initial shape
+  numerics::SolveReport report; ///< why it ended; `points` hold what was reached
+};
+
+/// Force-displacement curve of one push by the discrete rod on one mesh.        theory.md (C.2)-(C.9)
+/// The test must be admissible (see identification::read_experiment); travel may go up and down.
+[[nodiscard]] PushCurve solve_push(const PushTest& test, const PushOptions& options);
+
+/// The same from this mesh and from those of a half and a quarter of its edges, combined to cancel the errors in
+/// h^2 and h^4 (Richardson 1911): F = (64 F_h - 20 F_2h + F_4h)/45.                  theory.md (W.11)
+/// `discretisation_error` bounds what is left: its difference to (4 F_h - F_2h)/3. Points at which the meshes
+/// differ in their state of contact keep the finest mesh's values.
+struct ExtrapolatedCurve {
+  PushCurve curve;                           ///< of the finest mesh, extrapolated
+  std::vector<double> discretisation_error;  ///< of the force, one a point [N]
+};
+[[nodiscard]] ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOptions& options);
+
+}  // namespace snare::coupling

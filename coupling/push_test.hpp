@@ -1,0 +1,41 @@
+#pragma once
+
+#include "wire/specification.hpp"
+
+#include <array>
+#include <vector>
+
+namespace snare::coupling {
+
+enum class PushDirection {
+  outward,  ///< with the bulge
+  inward    ///< against it
+};
+
+/// The rigid pusher: a cylinder whose axis is normal to the plane of the wire.
+struct PusherSpecification {
+  double radius = 0.0;    ///< [m], >= 0; 0 is a knife edge, a line that meets the wire's centreline
+  double friction = 0.0;  ///< Coulomb coefficient [-], >= 0
+  PushDirection direction = PushDirection::outward;
+  double tilt = 0.0;          ///< the axis leans in the plane of chord and axis, about the push direction [rad]
+  double misalignment = 0.0;  ///< the push direction turned in the plane of the wire, towards +x [rad]
+};
+
+/// Shape of the loose wire before the push.
+struct BulgeSpecification {
+  int mode = 1;        ///< buckling mode between the mounts, 1 to 4
+  double plane = 0.0;  ///< plane of the bulge turned about the chord from the plane of the push [rad]
+};
+
+/// One quasi-static push on one loose wire: everything the prediction of a force-displacement curve needs.
+struct PushTest {
+  wire::WireSpecification wire;
+  wire::MountSpecification mount;
+  PusherSpecification pusher;
+  BulgeSpecification bulge;
+  std::array<double, 3> gravity{0.0, 0.0, 0.0};  ///< [m/s^2] in chord axes
+  double contact_position = 0.0;  ///< of the pusher's axis along the chord, from the left mount [m]
+  std::vector<double> travel;     ///< of the pusher from first touch, in the order it is visited [m]
+};
+
+}  // namespace snare::coupling

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "coupling/push_solver.hpp"
+#include "identification/experiment.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// How the machine's record differs from what the wire feels.
+struct ReadingModel {
+  double displacement_offset = 0.0;  ///< recorded displacement at which the pusher touches the wire [m]
+  double force_offset = 0.0;         ///< recorded force without contact [N]
+  double force_gain = 1.0;           ///< recorded over true force [-], > 0
+};
+
+/// What a model says the machine records, at the displacements of a series.
+struct Prediction {
+  coupling::ExtrapolatedCurve curve;  ///< at the travels after first touch, in order
+  std::vector<double> force;          ///< recorded force [N], one a displacement that was reached
+  ReadingModel reading;               ///< as it was predicted with
+  std::size_t before_touch = 0;       ///< points that lie before first touch: they have no entry in `curve`
+};
+
+struct PredictionOptions {
+  std::vector<double> shapes_at;                ///< travels of which to keep the wire's shape [m]
+  std::function<bool(double travel)> progress;  ///< see coupling::PushOptions
+};
+
+/// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
+/// where the displacement first exceeds the offset.
+[[nodiscard]] Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading = {},
+                                 const PredictionOptions& options = {});
+
+/// Every series, in parallel; the result does not depend on the number of threads.
+[[nodiscard]] std::vector<Prediction> predict_all(const std::vector<Series>& series, const SolverSettings& solver,
+                                                  const ReadingModel& reading = {},
+                                                  const std::vector<PredictionOptions>& options = {});
+
+/// What stands for the readings of a series: the readings themselves, or the published law [N].
+/// Empty for a series that only asks for a prediction.
+[[nodiscard]] std::vector<double> measured_force(const Series& series);
+
+/// Recorded displacements of a series [m].
+[[nodiscard]] const std::vector<double>& measured_displacement(const Series& series);
+
+/// Misfit of predicted and measured force over the points that were reached.
+struct Misfit {
+  double rmse = 0.0;   ///< [N]
+  double nrmse = 0.0;  ///< rmse over the range of the measured force [-]
+  double largest = 0.0;  ///< largest |difference| [N]
+};
+[[nodiscard]] Misfit misfit(const std::vector<double>& measured, const std::vector<double>& predicted);
+
+}  // namespace snare::identification

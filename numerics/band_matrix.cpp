@@ -1,0 +1,113 @@
+#include "numerics/band_matrix.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace snare::numerics {
+
+void SymmetricBandMatrix::hold(int i) {
+  double* c = column(i);
+  c[0] = 1.0;
+  for (int k = 1; k <= b_; ++k) c[k] = 0.0;
+  for (int j = std::max(0, i - b_); j < i; ++j) lower(i, j) = 0.0;
+}
+
+Eigen::VectorXd SymmetricBandMatrix::operator*(const Eigen::VectorXd& x) const {
+  assert(x.size() == n_);
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(n_);
+  for (int j = 0; j < n_; ++j) {
+    const double* c = column(j);
+    const int last = std::min(b_, n_ - 1 - j);
+    y[j] += c[0] * x[j];
+    for (int k = 1; k <= last; ++k) {
+      y[j + k] += c[k] * x[j];
+      y[j] += c[k] * x[j + k];
+    }
+  }
+  return y;
+}
+
+namespace {
+
+// One column of the factorisation with the bandwidth known to the compiler (Band > 0) or not (Band = 0).
+template <int Band>
+bool factorize_band(SymmetricBandMatrix& a, std::vector<double>& inverse) {
+  const int n = a.order();
+  const int b = Band > 0 ? Band : a.half_bandwidth();
+  double* base = a.column(0);
+  for (int j = 0; j < n; ++j) {
+    double* c = base + static_cast<std::size_t>(j) * static_cast<std::size_t>(b + 1);
+    const double pivot = c[0];
+    if (pivot == 0.0 || !std::isfinite(pivot)) return false;
+    const double inv = 1.0 / pivot;
+    inverse[static_cast<std::size_t>(j)] = inv;
+    const int last = std::min(b, n - 1 - j);
+    if (last == b) {
+      for (int k = 1; k <= b; ++k) {
+        const double l = c[k] * inv;
+        double* ck = c + static_cast<std::size_t>(k) * static_cast<std::size_t>(b + 1);
+        for (int q = k; q <= b; ++q) ck[q - k] -= l * c[q];
+      }
+    } else {
+      for (int k = 1; k <= last; ++k) {
+        const double l = c[k] * inv;
+        double* ck = c + static_cast<std::size_t>(k) * static_cast<std::size_t>(b + 1);
+        for (int q = k; q <= last; ++q) ck[q - k] -= l * c[q];
+      }
+    }
+    for (int k = 1; k <= last; ++k) c[k] *= inv;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
+  l_ = a;
+  const int n = a.order();
+  inverse_.resize(static_cast<std::size_t>(n));
+  // 5 and 10 are the bandwidths of the planar and of the spatial rod.
+  bool factored = false;
+  switch (a.half_bandwidth()) {
+    case 5: factored = factorize_band<5>(l_, inverse_); break;
+    case 10: factored = factorize_band<10>(l_, inverse_); break;
+    default: factored = factorize_band<0>(l_, inverse_); break;
+  }
+  if (!factored) return false;
+  double smallest = std::numeric_limits<double>::max();
+  double largest = 0.0;
+  negative_ = 0;
+  for (int j = 0; j < n; ++j) {
+    const double pivot = *l_.column(j);
+    negative_ += pivot < 0.0 ? 1 : 0;
+    smallest = std::min(smallest, std::abs(pivot));
+    largest = std::max(largest, std::abs(pivot));
+  }
+  ratio_ = smallest / largest;
+  return true;
+}
+
+void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
+  const int n = l_.order();
+  const int b = l_.half_bandwidth();
+  assert(x.rows() == n);
+  for (Eigen::Index column = 0; column < x.cols(); ++column) {
+    double* v = x.col(column).data();
+    for (int j = 0; j < n; ++j) {
+      const double* c = l_.column(j);
+      const int last = std::min(b, n - 1 - j);
+      const double value = v[j];
+      for (int k = 1; k <= last; ++k) v[j + k] -= c[k] * value;
+    }
+    for (int j = n - 1; j >= 0; --j) {
+      const double* c = l_.column(j);
+      const int last = std::min(b, n - 1 - j);
+      double value = v[j] * inverse_[static_cast<std::size_t>(j)];
+      for (int k = 1; k <= last; ++k) value -= c[k] * v[j + k];
+      v[j] = value;
+    }
+  }
+}
+
+}  // namespace snare::numerics

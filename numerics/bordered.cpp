@@ -1,0 +1,101 @@
+#include "numerics/bordered.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::numerics {
+
+void BorderedSystem::reset(int n, int m) {
+  band_residual.setZero(n);
+  border_residual.setZero(m);
+  corner.setZero(m, m);
+  rows.clear();
+  anchors.clear();
+  columns.clear();
+}
+
+bool BorderedSolver::factorize(const BorderedSystem& system) {
+  const int n = system.matrix.order();
+  const auto m = system.corner.rows();
+  anchor_count_ = system.anchors.size();
+  rows_ = system.rows;
+
+  // K dq - df = -r with df = dg - s dq at the anchors: (K + s) dq - dg = -r, and every border row that holds
+  // df gets -s times its coefficient on dq.
+  SymmetricBandMatrix stiffened;
+  const SymmetricBandMatrix* matrix = &system.matrix;
+  if (anchor_count_ > 0) {
+    stiffened = system.matrix;
+    stiffness_ = 0.0;
+    for (const BorderedSystem::Anchor& a : system.anchors) {
+      stiffness_ = std::max(stiffness_, std::abs(system.matrix.lower(a.band, a.band)));
+    }
+    for (const BorderedSystem::Anchor& a : system.anchors) {
+      stiffened.lower(a.band, a.band) += stiffness_;
+      for (Eigen::Index row = 0; row < m; ++row) {
+        const double coefficient = system.corner(row, a.border);
+        if (coefficient != 0.0) rows_.push_back({static_cast<int>(row), a.band, -stiffness_ * coefficient});
+      }
+    }
+    matrix = &stiffened;
+  }
+  if (!factor_.factorize(*matrix)) return false;
+
+  column_of_.clear();
+  solved_.setZero(n, static_cast<Eigen::Index>(anchor_count_ + system.columns.size()));
+  Eigen::Index k = 0;
+  for (const BorderedSystem::Anchor& a : system.anchors) {
+    solved_(a.band, k++) = -1.0;
+    column_of_.push_back(a.border);
+  }
+  for (const auto& [border, values] : system.columns) {
+    solved_.col(k++) = *values;
+    column_of_.push_back(border);
+  }
+  factor_.solve(solved_);
+
+  Eigen::MatrixXd schur = system.corner;
+  for (const BorderedSystem::Entry& entry : rows_) {
+    for (Eigen::Index c = 0; c < solved_.cols(); ++c) {
+      schur(entry.row, column_of_[static_cast<std::size_t>(c)]) -= entry.value * solved_(entry.column, c);
+    }
+  }
+  if (m == 0) {
+    determinant_sign_ = factor_.negative_pivots() % 2 == 0 ? 1 : -1;
+    return true;
+  }
+  // Equations of different units: scale the rows before pivoting.
+  Eigen::VectorXd scale = schur.rowwise().lpNorm<Eigen::Infinity>();
+  if (!scale.allFinite() || scale.minCoeff() == 0.0) return false;
+  scale = scale.cwiseInverse();
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * schur);
+  int sign = factor_.negative_pivots() % 2 == 0 ? 1 : -1;
+  sign *= static_cast<int>(lu.permutationP().determinant());
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const double pivot = lu.matrixLU()(i, i);
+    if (pivot == 0.0) return false;
+    if (pivot < 0.0) sign = -sign;
+  }
+  determinant_sign_ = sign;
+  inverse_ = lu.inverse() * scale.asDiagonal();
+  return inverse_.allFinite();
+}
+
+void BorderedSolver::solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const {
+  factor_.solve(band);
+  if (border.size() == 0) return;
+  for (const BorderedSystem::Entry& entry : rows_) border[entry.row] -= entry.value * band[entry.column];
+  border = inverse_ * border;
+  for (Eigen::Index c = 0; c < solved_.cols(); ++c) {
+    band -= solved_.col(c) * border[column_of_[static_cast<std::size_t>(c)]];
+  }
+  for (const BorderedSystem::Anchor& a : system.anchors) border[a.border] -= stiffness_ * band[a.band];
+}
+
+Eigen::VectorXd BorderedSolver::solved_column(std::size_t k) const {
+  return solved_.col(static_cast<Eigen::Index>(anchor_count_ + k));
+}
+
+}  // namespace snare::numerics

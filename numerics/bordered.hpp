@@ -1,0 +1,74 @@
+#pragma once
+
+#include "numerics/band_matrix.hpp"
+
+#include <Eigen/Core>
+
+#include <utility>
+#include <vector>
+
+namespace snare::numerics {
+
+/// Linear system of a band matrix with a border of m further unknowns and equations:
+///
+///   [ K  C ] [dq]     [ r_q ]
+///   [ D  E ] [db] = - [ r_b ]          K: n x n symmetric band, C: n x m, D: m x n sparse, E: m x m
+///
+/// Some columns of C are -e_i: border unknown j is the force that holds band unknown i ("anchor"). The solver
+/// adds a stiffness to K at the anchors and takes it back through the border (exactly), so that K stays well
+/// conditioned where the unloaded structure is soft or unstable; its inertia is then that of the structure
+/// held at its contacts.                                                              theory.md (N.3)
+class BorderedSystem {
+ public:
+  struct Entry {
+    int row;     ///< border equation
+    int column;  ///< band unknown
+    double value;
+  };
+  struct Anchor {
+    int band;    ///< band unknown i that is held
+    int border;  ///< border unknown j: the force on it
+  };
+
+  SymmetricBandMatrix matrix;        ///< K
+  Eigen::VectorXd band_residual;     ///< r_q (n)
+  Eigen::VectorXd border_residual;   ///< r_b (m)
+  Eigen::MatrixXd corner;            ///< E (m x m)
+  std::vector<Entry> rows;           ///< D
+  std::vector<Anchor> anchors;       ///< columns of C that are -e_i
+  std::vector<std::pair<int, const Eigen::VectorXd*>> columns;  ///< dense columns of C: border unknown, values
+
+  /// Clears residuals and structure for m border unknowns; K is left to the caller.
+  void reset(int n, int m);
+};
+
+/// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides.
+class BorderedSolver {
+ public:
+  /// False when K with its anchors, or the Schur complement, is singular.
+  [[nodiscard]] bool factorize(const BorderedSystem& system);
+
+  /// Solves with right-hand sides (b_q, b_b), each given negated residuals or any other load; in place.
+  void solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const;
+
+  /// Negative eigenvalues of K held at its anchors.
+  [[nodiscard]] int negative_pivots() const noexcept { return factor_.negative_pivots(); }
+  [[nodiscard]] double pivot_ratio() const noexcept { return factor_.pivot_ratio(); }
+  /// Sign of the determinant of the whole system: +1, -1, or 0. It changes at folds and simple bifurcations.
+  [[nodiscard]] int determinant_sign() const noexcept { return determinant_sign_; }
+  /// K^-1 of the k-th dense column of the system that was factorised.
+  [[nodiscard]] Eigen::VectorXd solved_column(std::size_t k) const;
+
+ private:
+
+  BandLdlt factor_;
+  double stiffness_ = 0.0;             // added at the anchors
+  Eigen::MatrixXd solved_;             // K^-1 [anchor columns, dense columns]
+  std::vector<int> column_of_;         // border unknown of each column of solved_
+  std::size_t anchor_count_ = 0;
+  std::vector<BorderedSystem::Entry> rows_;  // D with the anchors' stiffness taken back
+  Eigen::MatrixXd inverse_;            // of the Schur complement
+  int determinant_sign_ = 0;
+};
+
+}  // namespace snare::numerics

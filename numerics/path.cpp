@@ -1,0 +1,130 @@
+#include "numerics/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace snare::numerics {
+
+namespace {
+
+// Newton's method on an assembled problem; `finish` completes system and residuals after each assembly,
+// `take` applies a step to the point.
+template <class Finish, class Take>
+SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations,
+                   const Finish& finish, const Take& take) {
+  SolveReport report;
+  double best = std::numeric_limits<double>::max();
+  int worse = 0;
+  double last_change = std::numeric_limits<double>::max();
+  for (report.iterations = 0;; ++report.iterations) {
+    problem.assemble(point, w.system, w.by_parameter);
+    report.residual_norm = problem.error(point, w.system);
+    finish(w);
+    if (!std::isfinite(report.residual_norm)) {
+      report.termination = Termination::not_finite;
+      report.message = "a residual is not finite";
+      return report;
+    }
+    // The extra equation of the arc is linear and holds after one step; the first pass always takes one.
+    if (report.residual_norm <= 1.0 && (report.iterations > 0 || w.system.border_residual.size() == point.border.size())) {
+      report.termination = Termination::converged;
+      return report;
+    }
+    // A step below the last place of the coordinates cannot be improved on.
+    if (last_change < 1e-15 * problem.length_scale() && report.residual_norm <= 1e3) {
+      report.termination = Termination::converged;
+      return report;
+    }
+    worse = report.residual_norm < best ? 0 : worse + 1;
+    best = std::min(best, report.residual_norm);
+    if (report.iterations == max_iterations || worse >= 3) {
+      report.termination = Termination::iteration_limit;
+      report.message = "Newton's method did not converge";
+      return report;
+    }
+    if (!w.solver.factorize(w.system)) {
+      report.termination = Termination::singular_matrix;
+      report.message = "the tangent matrix is singular";
+      return report;
+    }
+    w.band_step = -w.system.band_residual;
+    w.border_step = -w.system.border_residual;
+    w.solver.solve(w.system, w.band_step, w.border_step);
+    last_change = w.band_step.lpNorm<Eigen::Infinity>();
+    const double far = last_change / (0.1 * problem.length_scale());
+    if (!(far < 1e6)) {
+      report.termination = Termination::singular_matrix;
+      report.message = "the tangent matrix is nearly singular";
+      return report;
+    }
+    if (far > 1.0) {
+      w.band_step /= far;
+      w.border_step /= far;
+    }
+    take(w);
+  }
+}
+
+}  // namespace
+
+SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& workspace, int max_iterations) {
+  return newton(
+      problem, point, workspace, max_iterations, [](PathWorkspace&) {},
+      [&point](PathWorkspace& w) {
+        point.band += w.band_step;
+        point.border += w.border_step;
+      });
+}
+
+PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
+                    const PathTangent* like) {
+  problem.assemble(point, workspace.system, workspace.by_parameter);
+  PathTangent result;
+  if (!workspace.solver.factorize(workspace.system)) return like != nullptr ? *like : result;
+  result.band.setZero(point.band.size());
+  result.border = -workspace.by_parameter;
+  workspace.solver.solve(workspace.system, result.band, result.border);
+  const double norm = std::sqrt(result.band.squaredNorm() / static_cast<double>(point.band.size()) + 1.0);
+  double factor = 1.0 / norm;
+  if (like != nullptr) {
+    const double product =
+        like->band.dot(result.band) / static_cast<double>(point.band.size()) + like->parameter;
+    if (product < 0.0) factor = -factor;
+  }
+  result.band *= factor;
+  result.border *= factor;
+  result.parameter = factor;
+  return result;
+}
+
+SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
+                          const PathTangent& direction, double step, PathWorkspace& workspace,
+                          int max_iterations) {
+  const auto n = static_cast<double>(point.band.size());
+  const auto m = point.border.size();
+  const auto finish = [&](PathWorkspace& w) {
+    BorderedSystem& s = w.system;
+    s.corner.conservativeResize(m + 1, m + 1);
+    s.corner.row(m).setZero();
+    s.corner.col(m).setZero();
+    s.corner.col(m).head(m) = w.by_parameter;
+    s.corner(m, m) = direction.parameter;
+    for (Eigen::Index i = 0; i < direction.band.size(); ++i) {
+      s.rows.push_back({static_cast<int>(m), static_cast<int>(i), direction.band[i] / n});
+    }
+    s.border_residual.conservativeResize(m + 1);
+    s.border_residual[m] = direction.band.dot(point.band - start.band) / n +
+                           direction.parameter * (point.parameter - start.parameter) - step;
+  };
+  point.band = start.band + step * direction.band;
+  point.border = start.border + step * direction.border;
+  point.parameter = start.parameter + step * direction.parameter;
+  return newton(problem, point, workspace, max_iterations, finish, [&point, m](PathWorkspace& w) {
+    point.band += w.band_step;
+    point.border += w.border_step.head(m);
+    point.parameter += w.border_step[m];
+  });
+}
+
+}  // namespace snare::numerics

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "numerics/report.hpp"
+#include "validation/elastica_flow.hpp"
+#include "validation/elastica_push.hpp"
+
+/// Multiple-shooting equations behind elastica_push.hpp; not meant for use by itself.
+namespace snare::validation::shooting {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The last equation, which picks one state of the path.
+enum class Control { no_force, height, arc_length };
+
+struct Demand {
+  Control control = Control::no_force;
+  double height = 0.0;  // of the pusher, over L
+  VectorXd direction;   // arc length: row of the equation direction . (z - origin) = step
+  VectorXd origin;
+  double step = 0.0;
+};
+
+struct System {
+  VectorXd residual;
+  MatrixXd jacobian;
+};
+
+// Unknowns z: the sections at the start of every piece (left side, then right side), n on the left, n on
+// the right, unstressed arc length of the contact (point: one; wrapped: both lift-off points), height of
+// the pusher. Lengths in units of L, forces in EI/L^2.
+class Shooting {
+ public:
+  explicit Shooting(const ElasticaPush& problem)
+      : pieces_(problem.pieces_per_side),
+        contact_(problem.contact),
+        ends_(problem.ends),
+        sigma_(problem.side == ElasticaSide::with_bulge ? 1.0 : -1.0),
+        span_(problem.span / problem.wire.length),
+        position_(problem.position / problem.wire.length),
+        radius_(problem.radius / problem.wire.length),
+        slope_(problem.friction_slope),
+        material_(problem.material_coordinate / problem.wire.length) {
+    const ElasticaWire& w = problem.wire;
+    law_.compliance = w.bending_stiffness / (w.axial_stiffness * w.length * w.length);
+    law_.natural_curvature = w.natural_curvature * w.length;
+  }
+
+  [[nodiscard]] Index size(bool wrapped) const { return 8 * pieces_ + (wrapped ? 7 : 6); }
+  [[nodiscard]] Index left_force() const { return 8 * pieces_; }
+  [[nodiscard]] Index right_force() const { return 8 * pieces_ + 2; }
+  [[nodiscard]] Index begin() const { return 8 * pieces_ + 4; }
+  [[nodiscard]] Index end(bool wrapped) const { return 8 * pieces_ + (wrapped ? 5 : 4); }
+  [[nodiscard]] Index height(bool wrapped) const { return 8 * pieces_ + (wrapped ? 6 : 5); }
+  [[nodiscard]] int pieces() const { return pieces_; }
+  [[nodiscard]] double sigma() const { return sigma_; }
+  [[nodiscard]] const ElasticaLaw& law() const { return law_; }
+
+  [[nodiscard]] static ElasticaSection section(const VectorXd& z, Index piece) {
+    return {z[4 * piece], z[4 * piece + 1], z[4 * piece + 2], z[4 * piece + 3]};
+  }
+  [[nodiscard]] static ElasticaForce force(const VectorXd& z, Index at) { return {z[at], z[at + 1]}; }
+
+  // Geometric curvature of the wire at the point contact over the cylinder's, 1 where the wire begins to
+  // wrap.
+  [[nodiscard]] double relative_curvature(const VectorXd& z) const {
+    const ElasticaSection p = section(z, pieces_);
+    const double tension = section_forces(force(z, left_force()), p.angle).tension;
+    return -sigma_ * radius_ * (law_.natural_curvature + p.moment) / (1.0 + law_.compliance * tension);
+  }
+
+  [[nodiscard]] System assemble(const VectorXd& z, bool wrapped, const Demand& demand) const;
+  [[nodiscard]] numerics::SolveReport solve(VectorXd& z, bool wrapped, const Demand& demand) const;
+  [[nodiscard]] bool determinant_positive(const VectorXd& z, bool wrapped, double height) const;
+  [[nodiscard]] numerics::SolveReport start(VectorXd& z);
+
+ private:
+  [[nodiscard]] VectorXd buckled_guess(double excess) const;
+  [[nodiscard]] VectorXd straight_guess() const;
+  /// Buckling load of the straight wire.
+  [[nodiscard]] double critical() const;
+  [[nodiscard]] double first_position() const {
+    return contact_ == ElasticaContact::material_point ? material_ * span_ : position_;
+  }
+
+  int pieces_;
+  ElasticaContact contact_;
+  ElasticaEnds ends_;
+  double sigma_;
+  double span_;
+  double position_;
+  double radius_;
+  double slope_;
+  double material_;  // contact's arc length, when it is given or has been found by the first touch
+  ElasticaLaw law_;
+};
+
+}  // namespace snare::validation::shooting

@@ -1,0 +1,339 @@
+#include "validation/push_checks.hpp"
+
+#include "coupling/push_solver.hpp"
+#include "validation/closed_forms.hpp"
+#include "validation/elastica.hpp"
+#include "validation/elastica_push.hpp"
+#include "validation/shallow_elastica.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::validation {
+
+namespace {
+
+using coupling::PushTest;
+
+constexpr double mm = 1e-3;
+const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
+
+/// The wire of the published tests: solid SUS-304, 1.5 mm, 180 mm between mounts 175 mm apart.
+PushTest declared_test(double position, double radius) {
+  PushTest test;
+  test.wire.diameter = 1.5 * mm;
+  test.wire.length = 180.0 * mm;
+  test.wire.youngs_modulus = 193e9;
+  test.wire.poisson_ratio = 0.29;
+  test.wire.density = 7930.0;
+  test.mount.span = 175.0 * mm;
+  test.contact_position = position;
+  test.pusher.radius = radius;
+  return test;
+}
+
+/// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.
+PushTest stiffened(PushTest test) {
+  test.wire.axial_stiffness_override = 1e3 * test.wire.axial_stiffness();
+  return test;
+}
+
+ElasticaPush elastica_of(const PushTest& test) {
+  ElasticaPush e;
+  e.wire = {test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(), 0.0};
+  e.span = test.mount.span;
+  e.position = test.contact_position;
+  e.radius = test.pusher.radius > 0.0 ? test.pusher.radius + 0.5 * test.wire.diameter : 0.0;
+  return e;
+}
+
+coupling::PushOptions fine(int elements = 128) {
+  coupling::PushOptions options;
+  options.elements = elements;
+  return options;
+}
+
+double force_at(PushTest test, double travel, int elements = 128) {
+  test.travel = {travel};
+  const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine(elements));
+  return result.curve.points.empty() ? std::nan("") : result.curve.points.back().force;
+}
+
+/// A state in the units of the shallow limit.
+struct Normalised {
+  double force;       // F l^2 / (EI sqrt(delta))
+  double deflection;  // y / (l sqrt(delta))
+};
+
+/// delta is the end shortening of the wire's stretched length, so that the little it stretches does not count.
+Normalised normalise(const PushTest& test, const coupling::PushPoint& p, double height) {
+  const double l = test.mount.span;
+  const double tension = 0.5 * (p.tension_left + p.tension_right);
+  const double stretched = test.wire.length * (1.0 + tension / test.wire.axial_stiffness());
+  const double root = std::sqrt(stretched / l - 1.0);
+  return {p.force * l * l / (test.wire.bending_stiffness() * root), height / (l * root)};
+}
+
+PushTest shallow_test(double position, double slack) {
+  PushTest test = declared_test(position, 0.0);
+  test.wire.length = test.mount.span * (1.0 + slack);
+  // Strain at the highest tension below 1e-3 of the slack's own.
+  test.wire.axial_stiffness_override = 3e3 * test.wire.axial_stiffness();
+  return test;
+}
+
+/// Normalised force at a normalised deflection of the shallow wire, by bisection in travel.
+double shallow_force(double position, double slack, double deflection) {
+  PushTest test = shallow_test(position * 175.0 * mm, slack);
+  const double root = std::sqrt(slack) * test.mount.span;
+  const double natural = (1.0 - std::cos(2.0 * 3.14159265358979323846 * position)) / 3.14159265358979323846;
+  double low = 0.0;
+  double high = 1.02 * (std::sqrt(2.0 * position * (1.0 - position)) - natural) * root;
+  Normalised at{};
+  for (int k = 0; k < 40; ++k) {
+    const double travel = 0.5 * (low + high);
+    test.travel = {0.5 * travel, travel};
+    const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine(256));
+    if (result.curve.points.size() < 2) return std::nan("");
+    at = normalise(test, result.curve.points.back(), result.curve.touch_height + travel);
+    (at.deflection < deflection ? low : high) = travel;
+  }
+  return at.force;
+}
+
+}  // namespace
+
+std::vector<Row> buckled_shape_rows() {
+  const char* group = "Buckled shape before the push";
+  PushTest test = stiffened(declared_test(87.5 * mm, 0.0));
+  test.travel = {0.0};
+  const coupling::ExtrapolatedCurve stiff = coupling::solve_push_extrapolated(test, fine(256));
+  const BuckledElastica reference = clamped_elastica(test.wire.bending_stiffness(), test.wire.length, test.mount.span);
+  test = declared_test(87.5 * mm, 0.0);
+  test.travel = {0.0};
+  const coupling::ExtrapolatedCurve declared = coupling::solve_push_extrapolated(test, fine(256));
+  const char* integrals = "inextensible elastica, elliptic integrals (Love 1927)";
+  ElasticaPush elastica = elastica_of(test);
+  const ElasticaState unloaded = push(elastica, 0.0);
+  return {{group, "compression, inextensible wire", "N", integrals, reference.compression,
+           -stiff.curve.points.front().tension_left, ErrorKind::relative, 1e-5},
+          {group, "height of the bulge, inextensible wire", "mm", integrals, reference.height / mm,
+           stiff.curve.natural_height / mm, ErrorKind::relative, 1e-5},
+          {group, "height of the bulge, declared wire", "mm", multiple_shooting, unloaded.pusher_height / mm,
+           declared.curve.natural_height / mm, ErrorKind::relative, 1e-6},
+          {group, "tension at the mount, declared wire", "N", multiple_shooting, unloaded.tension_left,
+           declared.curve.points.front().tension_left, ErrorKind::relative, 1e-5}};
+}
+
+std::vector<Row> material_point_rows() {
+  const char* group = "Material mid-point pushed outward by 1.5 mm";
+  ElasticaPush elastica = elastica_of(declared_test(87.5 * mm, 0.0));
+  elastica.contact = ElasticaContact::material_point;
+  elastica.material_coordinate = 90.0 * mm;
+  const double reference = push(elastica, 1.5 * mm).force;
+  return {{group, "force, default mesh", "N", multiple_shooting, reference,
+           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm), ErrorKind::relative, 1e-4},
+          {group, "force, 256 edges", "N", multiple_shooting, reference,
+           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm, 256), ErrorKind::relative, 5e-6},
+          {group, "force, published to six digits", "N", "232.983 N, stated for this wire", 232.983,
+           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm, 256), ErrorKind::relative, 5e-6}};
+}
+
+std::vector<Row> elastica_rows() {
+  const char* group = "Declared wire, frictionless push";
+  std::vector<Row> rows;
+  for (const double radius : {0.0, 6.0}) {
+    for (const double position : {40.0, 65.0, 90.0}) {
+      PushTest test = declared_test(position * mm, radius * mm);
+      test.travel = {0.2 * mm, 1.0 * mm, 2.0 * mm, 3.0 * mm, 4.0 * mm};
+      const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
+      const std::vector<ElasticaState> reference = push_path(elastica_of(test), test.travel);
+      for (std::size_t i = 0; i < test.travel.size(); ++i) {
+        if (i >= reference.size() || !reference[i].report.usable()) break;
+        const double value = i < result.curve.points.size() ? result.curve.points[i].force : std::nan("");
+        rows.push_back({group,
+                        fmt::format("force, {} at {:g} mm, travel {:g} mm",
+                                    radius > 0.0 ? "cylinder" : "knife edge", position, test.travel[i] / mm),
+                        "N", multiple_shooting, reference[i].force, value, ErrorKind::relative, 1e-4});
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<Row> wrapped_rows() {
+  const char* group = "Soft wire (EI 5e-4 N m2, EA 114 kN) that wraps the pusher";
+  std::vector<Row> rows;
+  for (const double position : {87.5, 65.0}) {
+    PushTest test = declared_test(position * mm, 6.0 * mm);
+    test.wire.bending_stiffness_override = 5e-4;
+    test.wire.axial_stiffness_override = 114e3;
+    for (int i = 1; i <= 6; ++i) test.travel.push_back(i * mm);
+    ElasticaPush elastica = elastica_of(test);
+    elastica.pieces_per_side = 40;
+    const std::vector<ElasticaState> reference = push_path(elastica, test.travel);
+    const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine(256));
+    for (const std::size_t i : {std::size_t{2}, std::size_t{3}, std::size_t{5}}) {
+      if (i >= reference.size() || !reference[i].report.usable()) break;
+      const double value = i < result.curve.points.size() ? result.curve.points[i].force : std::nan("");
+      rows.push_back({group,
+                      fmt::format("force at {:g} mm, travel {:g} mm, {}", position, test.travel[i] / mm,
+                                  reference[i].wrapped ? "wrapped" : "at a point"),
+                      "N", multiple_shooting, reference[i].force, value, ErrorKind::relative, 2e-4});
+    }
+  }
+  return rows;
+}
+
+std::vector<Row> shallow_outward_rows() {
+  struct Entry {
+    double position, force, deflection;
+  };
+  // (f, a) of the inextensible shallow wire, P = 20, 0, -100, -1000.
+  constexpr Entry table[] = {{0.5, 61.181, 0.641347},   {0.5, 123.936, 0.645497},  {0.5, 435.748, 0.659454},
+                             {0.5, 3142.19, 0.686182},  {0.4, 67.100, 0.605935},   {0.4, 134.479, 0.619677},
+                             {0.4, 459.565, 0.643166},  {0.4, 3231.43, 0.671176}};
+  std::vector<Row> rows;
+  for (const Entry& e : table) {
+    // The printed deflection has six digits: use the closed form's own for the printed force.
+    const ShallowState state = shallow_state_at(e.deflection, e.position);
+    const double one = shallow_force(e.position, 1e-4, e.deflection);
+    const double two = shallow_force(e.position, 2e-4, e.deflection);
+    const std::string name = fmt::format("f at a = {:g}, s = {:g}", e.deflection, e.position);
+    rows.push_back({"Shallow limit, pushed outward", name + ", slack 1e-4", "", "table of design, closed form", e.force, one,
+                    ErrorKind::relative, 3e-3});
+    rows.push_back({"Shallow limit, pushed outward", name + ", slack to 0", "", "closed form", state.force,
+                    2.0 * one - two, ErrorKind::relative, 2e-4});
+  }
+  return rows;
+}
+
+std::vector<Row> shallow_inward_rows() {
+  const char* group = "Shallow limit, pushed inward";
+  std::vector<Row> rows;
+  struct Entry {
+    double position, largest;
+  };
+  constexpr double slack = 1e-4;
+  for (const Entry& e : {Entry{0.5, 129.530}, Entry{0.45, 85.977}, Entry{0.4, 75.573}}) {
+    PushTest test = shallow_test(e.position * 175.0 * mm, slack);
+    test.pusher.direction = coupling::PushDirection::inward;
+    const double root = std::sqrt(slack) * test.mount.span;
+    // The largest force lies within the first third of the way; at mid-span it is where the path branches.
+    const int points = 200;
+    for (int i = 1; i <= points; ++i) test.travel.push_back(0.3 * root * i / points);
+    coupling::PushOptions options = fine(256);
+    options.instability = e.position == 0.5 ? coupling::Instability::follow_path : coupling::Instability::switch_branch;
+    const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, options);
+    const std::vector<coupling::PushPoint>& points_reached = result.curve.points;
+    if (points_reached.size() < 3) continue;
+    if (e.position == 0.5) {
+      double travel = 0.0;
+      for (const coupling::PushEvent& event : result.curve.events) {
+        if (event.kind == coupling::PushEvent::Kind::bifurcation) {
+          travel = event.travel;
+          break;
+        }
+      }
+      test.travel = {0.5 * travel, travel};
+      const coupling::ExtrapolatedCurve at = coupling::solve_push_extrapolated(test, options);
+      const Normalised n = normalise(test, at.curve.points.back(), at.curve.touch_height - travel);
+      rows.push_back({group, "a where the symmetric path branches, s = 0.5", "", "closed form", 0.62351, n.deflection,
+                      ErrorKind::relative, 3e-4});
+      rows.push_back({group, "largest f under load control, s = 0.5", "", "closed form", e.largest, n.force,
+                      ErrorKind::relative, 3e-3});
+      continue;
+    }
+    // Vertex of the parabola through the three highest points.
+    std::size_t top = 1;
+    for (std::size_t i = 1; i + 1 < points_reached.size(); ++i) {
+      if (points_reached[i].force > points_reached[top].force) top = i;
+    }
+    coupling::PushPoint highest = points_reached[top];
+    const double before = points_reached[top - 1].force;
+    const double after = points_reached[top + 1].force;
+    const double curvature = before - 2.0 * highest.force + after;
+    highest.force -= 0.125 * (after - before) * (after - before) / curvature;
+    const Normalised n = normalise(test, highest, 0.0);
+    rows.push_back({group, fmt::format("largest f under load control, s = {:g}", e.position), "", "closed form", e.largest,
+                    n.force, ErrorKind::relative, 3e-3});
+  }
+  return rows;
+}
+
+std::vector<Row> taut_rows() {
+  const char* group = "Taut and tensioned wires";
+  std::vector<Row> rows;
+  const double position[] = {40.0, 65.0, 90.0};
+  const double digest[] = {7407.2, 3638.9, 3083.8};
+  for (int k = 0; k < 3; ++k) {
+    PushTest test = declared_test(position[k] * mm, 0.0);
+    test.wire.length = test.mount.span / (1.0 + 50.0 / test.wire.axial_stiffness());
+    const double travel = 1e-4 * mm;
+    rows.push_back({group, fmt::format("stiffness at {:g} mm under 50 N, clamped", position[k]), "N/m",
+                    "w'''' - (T/EI) w'' = 0, closed form", digest[k], force_at(test, travel) / travel, ErrorKind::relative, 1e-4});
+  }
+  PushTest test = declared_test(65.0 * mm, 0.0);
+  test.wire.length = test.mount.span;
+  test.wire.bending_stiffness_override = 1e-6;
+  const double travel = 1.0 * mm;
+  rows.push_back({group, "force on a straight unstretched string at 65 mm", "N", "EA d^3/(2 l) (1/s + 1/(l - s))",
+                  unstretched_wire_force(test.wire.axial_stiffness(), test.mount.span, test.contact_position, travel),
+                  force_at(test, travel, 512), ErrorKind::relative, 2e-3});
+  return rows;
+}
+
+std::vector<Row> friction_rows() {
+  const char* group = "Coulomb friction on the pusher";
+  PushTest test = declared_test(40.0 * mm, 6.0 * mm);
+  test.pusher.friction = 0.2;
+  constexpr int points = 80;
+  for (int i = 0; i <= points; ++i) test.travel.push_back(2.0 * mm * i / points);
+  for (int i = points - 1; i >= 0; --i) test.travel.push_back(2.0 * mm * i / points);
+  const coupling::PushCurve loop = coupling::solve_push(test, fine());
+  double area = 0.0;
+  double worst_cone = 0.0;
+  for (std::size_t i = 1; i < loop.points.size(); ++i) {
+    const coupling::PushPoint& a = loop.points[i - 1];
+    const coupling::PushPoint& b = loop.points[i];
+    area += 0.5 * (a.force + b.force) * (b.travel - a.travel);
+    (void)worst_cone;
+  }
+  ElasticaPush elastica = elastica_of(test);
+  elastica.friction_slope = -0.2;
+  test.travel = {1.0 * mm, 2.0 * mm};
+  const coupling::ExtrapolatedCurve pushed = coupling::solve_push_extrapolated(test, fine());
+  double reference = 0.0;
+  double best = 1e300;
+  for (const double slope : {-0.2, 0.2}) {
+    elastica.friction_slope = slope;
+    const ElasticaState state = push(elastica, 2.0 * mm);
+    if (!state.report.usable()) continue;
+    if (std::abs(state.force - pushed.curve.points.back().force) < best) {
+      best = std::abs(state.force - pushed.curve.points.back().force);
+      reference = state.force;
+    }
+  }
+  return {{group, "force while sliding, cylinder at 40 mm, mu 0.2, 2 mm", "N", multiple_shooting, reference,
+           pushed.curve.points.back().force, ErrorKind::relative, 1e-4},
+          {group, "dissipated energy beside the area of the loop", "mJ", "area of the computed loop", 1e3 * area,
+           1e3 * loop.points.back().dissipated, ErrorKind::relative, 1e-2},
+          {group, "force at the end of the closed loop", "N", "no force at first touch", 0.0, loop.points.back().force,
+           ErrorKind::absolute, 1e-6}};
+}
+
+std::vector<Row> support_rows() {
+  const char* group = "Three-point bending on two supports";
+  PushTest test = declared_test(20.0 * mm, 0.0);
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.span = 40.0 * mm;
+  test.wire.length = 60.0 * mm;
+  const double travel = 1e-3 * mm;
+  return {{group, "stiffness of a small push at mid-span", "N/m", "48 EI/l^3",
+           three_point_stiffness(test.wire.bending_stiffness(), test.mount.span, test.contact_position),
+           force_at(test, travel) / travel, ErrorKind::relative, 1e-4}};
+}
+
+}  // namespace snare::validation

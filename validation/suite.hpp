@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::validation {
+
+enum class ErrorKind { relative, absolute };
+
+/// One comparison with a reference that was not computed by the code under test.
+struct Row {
+  std::string group;
+  std::string name;
+  std::string unit;     ///< of reference and value; empty for a pure number
+  std::string source;   ///< of the reference
+  double reference = 0.0;
+  double value = 0.0;
+  ErrorKind kind = ErrorKind::relative;
+  double limit = 0.0;   ///< of the error, > 0
+
+  /// |value - reference|, over |reference| for a relative error. A value that is not finite is out of every limit.
+  [[nodiscard]] double error() const;
+  [[nodiscard]] bool within() const { return error() <= limit; }
+};
+
+/// A named piece of work that yields rows.
+struct Check {
+  std::string name;
+  std::function<std::vector<Row>()> run;
+};
+
+/// Everything about the static wire: buckled shape, push by knife edge and cylinder, friction, instability,
+/// supports. Takes some seconds in all.
+[[nodiscard]] std::vector<Check> static_wire_checks();
+
+}  // namespace snare::validation

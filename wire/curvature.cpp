@@ -1,0 +1,162 @@
+#include "wire/curvature.hpp"
+
+#include <Eigen/Geometry>
+
+namespace snare::wire {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// [v]_x, the matrix of v x (.).
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+// x y^T + y x^T
+Matrix3d symmetric_product(const Vector3d& x, const Vector3d& y) {
+  const Matrix3d m = x * y.transpose();
+  return m + m.transpose();
+}
+
+}  // namespace
+
+Turn make_turn(const Vector3d& before, const Vector3d& after) {
+  Turn turn;
+  turn.before = before;
+  turn.after = after;
+  turn.cosine = before.dot(after);
+  turn.chi = 1.0 + turn.cosine;
+  const double inverse = 1.0 / turn.chi;
+  turn.binormal = (2.0 * inverse) * before.cross(after);
+  turn.mean = inverse * (before + after);
+  return turn;
+}
+
+void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double first, PairGradient& out) {
+  out.a += (first * inverse.a) * (turn.after - turn.cosine * turn.before);
+  out.b += (first * inverse.b) * (turn.before - turn.cosine * turn.after);
+}
+
+void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double first, double second,
+                        PairHessian& out) {
+  // With p = u - c t, r = t - c u:
+  //   |a|^2 d2c/da2 = -(t p^T + p t^T) - c (I - t t^T),   likewise by b with u and r,
+  //   |a||b| d2c/da db = (I - t t^T)(I - u u^T) = I - t t^T - u u^T + c t u^T.
+  // Every block is written as a sum of columns times (t, p)^T or (u, r)^T.
+  const double c = turn.cosine;
+  const Vector3d& t = turn.before;
+  const Vector3d& u = turn.after;
+  const Vector3d p = u - c * t;
+  const Vector3d r = t - c * u;
+  const double faa = inverse.a * inverse.a;
+  const double fbb = inverse.b * inverse.b;
+  const double fab = inverse.a * inverse.b;
+  const Vector3d aa_t = faa * first * (c * t - p);
+  const Vector3d aa_p = faa * (second * p - first * t);
+  const Vector3d bb_u = fbb * first * (c * u - r);
+  const Vector3d bb_r = fbb * (second * r - first * u);
+  const Vector3d ab_t = -fab * first * t;
+  const Vector3d ab_u = fab * first * (c * t - u);
+  const Vector3d ab_r = fab * second * p;
+  const double ia = -faa * first * c;
+  const double ib = -fbb * first * c;
+  const double iab = fab * first;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      out.aa(i, j) += aa_t[i] * t[j] + aa_p[i] * p[j];
+      out.bb(i, j) += bb_u[i] * u[j] + bb_r[i] * r[j];
+      out.ab(i, j) += ab_t[i] * t[j] + ab_u[i] * u[j] + ab_r[i] * r[j];
+    }
+    out.aa(j, j) += ia;
+    out.bb(j, j) += ib;
+    out.ab(j, j) += iab;
+  }
+}
+
+Eigen::Vector2d curvatures(const Turn& turn, const Directors& before, const Directors& after) {
+  return {0.5 * turn.binormal.dot(before.second + after.second),
+          -0.5 * turn.binormal.dot(before.first + after.first)};
+}
+
+WeightedCurvature::WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after,
+                                     const Eigen::Vector2d& weights)
+    : turn_(turn),
+      w_a_(weights[0] * before.second - weights[1] * before.first),
+      w_b_(weights[0] * after.second - weights[1] * after.first),
+      v_a_(weights[0] * before.first + weights[1] * before.second),
+      v_b_(weights[0] * after.first + weights[1] * after.second) {
+  const Vector3d sum = w_a_ + w_b_;
+  const double inverse_chi = 1.0 / turn.chi;
+  value_ = 0.5 * turn.binormal.dot(sum);
+  turned_a_ = inverse_chi * turn.after.cross(sum);
+  turned_b_ = inverse_chi * turn.before.cross(sum);
+  slope_a_ = turned_a_ - value_ * turn.mean;
+  slope_b_ = -turned_b_ - value_ * turn.mean;
+}
+
+void WeightedCurvature::add_gradient(const InverseLengths& inverse, PairGradient& out) const {
+  out.a += inverse.a * slope_a_;
+  out.b += inverse.b * slope_b_;
+  out.theta_a -= 0.5 * turn_.binormal.dot(v_a_);
+  out.theta_b -= 0.5 * turn_.binormal.dot(v_b_);
+}
+
+void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& out) const {
+  const Vector3d& t = turn_.before;
+  const Vector3d& u = turn_.after;
+  const Vector3d& kb = turn_.binormal;
+  const Vector3d& mean = turn_.mean;
+  const double inverse_chi = 1.0 / turn_.chi;
+  const double share = value_ * inverse_chi;
+  // The frames of one edge are carried with it; they add 1/4 (kb w^T + w kb^T), the symmetric part of their
+  // second variation: the skew part belongs to the holonomy of the transport and is no second derivative.
+  const Matrix3d aa = 2.0 * value_ * mean * mean.transpose() - symmetric_product(turned_a_, mean) +
+                      share * t * t.transpose() + 0.25 * symmetric_product(kb, w_a_);
+  const Matrix3d bb = 2.0 * value_ * mean * mean.transpose() + symmetric_product(turned_b_, mean) +
+                      share * u * u.transpose() + 0.25 * symmetric_product(kb, w_b_);
+  const Matrix3d ab = 2.0 * value_ * mean * mean.transpose() - turned_a_ * mean.transpose() +
+                      mean * turned_b_.transpose() - share * t * u.transpose() -
+                      cross_matrix(inverse_chi * (w_a_ + w_b_));
+  const Matrix3d diagonal = share * Matrix3d::Identity();
+  out.aa += (inverse.a * inverse.a) * (aa - diagonal);
+  out.bb += (inverse.b * inverse.b) * (bb - diagonal);
+  out.ab += (inverse.a * inverse.b) * (ab - diagonal);
+
+  // d/da and d/db of d kappa_w/dtheta = -1/2 kb.v
+  const double along_a = 0.5 * kb.dot(v_a_);
+  const double along_b = 0.5 * kb.dot(v_b_);
+  out.a_theta_a += inverse.a * (along_a * mean - inverse_chi * u.cross(v_a_));
+  out.a_theta_b += inverse.a * (along_b * mean - inverse_chi * u.cross(v_b_));
+  out.b_theta_a += inverse.b * (along_a * mean + inverse_chi * t.cross(v_a_));
+  out.b_theta_b += inverse.b * (along_b * mean + inverse_chi * t.cross(v_b_));
+  out.theta_aa -= 0.5 * kb.dot(w_a_);
+  out.theta_bb -= 0.5 * kb.dot(w_b_);
+}
+
+Vector3d WeightedCurvature::by_rotation() const {
+  // u and w_b turn by omega: d kb = 2 t x (omega x u)/chi - kb t.(omega x u)/chi.
+  const Vector3d half_sum = 0.5 * (w_a_ + w_b_);
+  return 0.5 * w_b_.cross(turn_.binormal) +
+         (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) + 0.5 * value_ * turn_.binormal;
+}
+
+void add_square(const PairGradient& g, double factor, PairHessian& out) {
+  const Vector3d a = factor * g.a;
+  const Vector3d b = factor * g.b;
+  out.aa += a * g.a.transpose();
+  out.ab += a * g.b.transpose();
+  out.bb += b * g.b.transpose();
+  out.a_theta_a += g.theta_a * a;
+  out.a_theta_b += g.theta_b * a;
+  out.b_theta_a += g.theta_a * b;
+  out.b_theta_b += g.theta_b * b;
+  out.theta_aa += factor * g.theta_a * g.theta_a;
+  out.theta_ab += factor * g.theta_a * g.theta_b;
+  out.theta_bb += factor * g.theta_b * g.theta_b;
+}
+
+}  // namespace snare::wire

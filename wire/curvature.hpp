@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace snare::wire {
+
+/// How the tangent turns at a vertex, from the unit tangent t of the edge before it to u of the edge after.
+///                                                           theory.md (W.22); Bergou et al. 2008, sec. 4.2.1
+///   c = t.u,  chi = 1 + c,  kb = 2 t x u/chi,  mean = (t + u)/chi
+/// kb is the integrated curvature binormal, of length 2 tan(phi/2) for the turning angle phi in [0, pi) [-].
+struct Turn {
+  Eigen::Vector3d before;    ///< t
+  Eigen::Vector3d after;     ///< u
+  Eigen::Vector3d binormal;  ///< kb
+  Eigen::Vector3d mean;
+  double cosine = 1.0;  ///< c
+  double chi = 2.0;
+};
+
+[[nodiscard]] Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after);
+
+/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist angles.
+struct PairGradient {
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double theta_a = 0.0;
+  double theta_b = 0.0;
+};
+
+/// Second derivatives of a scalar of a vertex; `ab` has rows of a and columns of b.
+struct PairHessian {
+  Eigen::Matrix3d aa = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d ab = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d bb = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d a_theta_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d a_theta_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d b_theta_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d b_theta_b = Eigen::Vector3d::Zero();
+  double theta_aa = 0.0;
+  double theta_ab = 0.0;
+  double theta_bb = 0.0;
+};
+
+/// Reciprocal lengths of the two edges beside a vertex [1/m]; 0 for a mount's direction, which makes every
+/// derivative by it zero.
+struct InverseLengths {
+  double a = 0.0;
+  double b = 0.0;
+};
+
+/// Adds first * gradient of c.                                                              theory.md (W.23)
+///   dc/da = (u - c t)/|a|,  dc/db = (t - c u)/|b|
+void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double first, PairGradient& out);
+
+/// Adds first * hessian of c + second * (gradient of c)(gradient of c)^T: the Hessian of a function of c with
+/// those derivatives.                                                                       theory.md (W.23)
+void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double first, double second,
+                        PairHessian& out);
+
+/// Material directors of an edge.
+struct Directors {
+  Eigen::Vector3d first;   ///< m1
+  Eigen::Vector3d second;  ///< m2 = tangent x m1
+};
+
+/// Integrated curvatures in the mean material directors [-].   theory.md (W.24); Bergou et al. 2010, sec. 4.1
+///   kappa_1 = 1/2 (m2 before + m2 after).kb,  kappa_2 = -1/2 (m1 before + m1 after).kb
+/// kappa_1 > 0 bends the rod towards its director m1, kappa_2 > 0 towards m2.
+[[nodiscard]] Eigen::Vector2d curvatures(const Turn& turn, const Directors& before, const Directors& after);
+
+/// One linear combination kappa_w = g_1 kappa_1 + g_2 kappa_2 = 1/2 (w before + w after).kb with
+/// w = g_1 m2 - g_2 m1, dw/dtheta = -v, v = g_1 m1 + g_2 m2.                                 theory.md (W.25)
+///
+/// Derivatives at frames carried along by parallel transport in time; Bergou et al. 2010, appendix; Jawed,
+/// Novelia and O'Reilly 2018, sec. 7.2, there for kappa_1 and kappa_2 one by one. The weights are constants.
+class WeightedCurvature {
+ public:
+  WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after,
+                    const Eigen::Vector2d& weights);
+
+  /// kappa_w [-].
+  [[nodiscard]] double value() const noexcept { return value_; }
+  void add_gradient(const InverseLengths& inverse, PairGradient& out) const;
+  void add_hessian(const InverseLengths& inverse, PairHessian& out) const;
+  /// Derivative of kappa_w by a rigid rotation of the edge after the vertex with its frame [-].
+  [[nodiscard]] Eigen::Vector3d by_rotation() const;
+
+ private:
+  const Turn& turn_;
+  Eigen::Vector3d w_a_, w_b_;    // w of the two edges
+  Eigen::Vector3d v_a_, v_b_;    // v of the two edges
+  Eigen::Vector3d slope_a_;      // |a| d kappa_w/da
+  Eigen::Vector3d slope_b_;      // |b| d kappa_w/db
+  Eigen::Vector3d turned_a_;     // u x (w_a + w_b)/chi
+  Eigen::Vector3d turned_b_;     // t x (w_a + w_b)/chi
+  double value_;
+};
+
+/// Adds factor * g g^T.
+void add_square(const PairGradient& g, double factor, PairHessian& out);
+
+}  // namespace snare::wire

@@ -1,0 +1,145 @@
+#pragma once
+
+#include "numerics/report.hpp"
+#include "wire/planar_rod.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace snare::wire {
+
+/// Which equilibrium is wanted.
+enum class Branch {
+  stable,  ///< a minimum of the energy: the iteration descends and ends with no negative pivot
+  nearest  ///< the one that Newton's method reaches from the start, stable or not
+};
+
+struct EquilibriumOptions {
+  Branch branch = Branch::stable;
+  int max_iterations = 200;
+  double tolerance = 1e-10;  ///< of the largest force residual over the force scale of the rod [-]
+};
+
+struct EquilibriumReport : numerics::SolveReport {
+  int negative_pivots = 0;    ///< of the tangent at the end: 0 means stable
+  double pivot_ratio = 0.0;   ///< smallest over largest |pivot|: near 0 means a neutral direction
+};
+
+/// Force below which a residual of the rod is round-off or of no account [N].
+///
+/// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the shortest
+/// edge, eps L (4 EA/h + 16 EI/h^3): no iteration can do better than that.
+inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness,
+                              double length, double shortest_edge, double largest_force) {
+  const double scale = bending_stiffness / (length * length) + largest_force;
+  const double h = shortest_edge;
+  const double round_off = std::numeric_limits<double>::epsilon() * length *
+                           (4.0 * axial_stiffness / h + 16.0 * bending_stiffness / (h * h * h));
+  return std::max(tolerance * scale, round_off);
+}
+
+/// Finds an equilibrium of a rod that only its mounts and its weight hold.            theory.md (W.9)
+///
+/// Damped Newton: the Hessian is shifted until all its pivots are positive (Branch::stable), the step is halved
+/// until the energy falls (stable) or the residual does (nearest). `state` holds the start and the result; on
+/// failure the last state with a lower energy (residual).
+template <class Rod, class State>
+EquilibriumReport find_equilibrium(const Rod& rod, State& state, const EquilibriumOptions& options = {}) {
+  constexpr std::array<bool, 3> no_controls{false, false, false};
+  EquilibriumReport report;
+  RodAssembly assembly;
+  numerics::BandLdlt factor;
+  const double length = state.controls[2] - state.controls[0];
+  double shortest = length;
+  for (int e = 0; e < rod.mesh().edges(); ++e) {
+    shortest = std::min(shortest, rod.mesh().rest_length(e, state.controls));
+  }
+  const double ea = rod.properties().axial_stiffness;
+  const double ei = rod.properties().bending_stiffness;
+  double shift = 0.0;
+
+  const auto evaluate = [&](const State& at) {
+    rod.assemble(at, no_controls, assembly);
+    rod.hold_mounts(assembly);
+    return assembly.gradient.template lpNorm<Eigen::Infinity>();
+  };
+  double residual = evaluate(state);
+  for (report.iterations = 0; report.iterations <= options.max_iterations; ++report.iterations) {
+    report.residual_norm = residual;
+    if (!std::isfinite(residual) || !std::isfinite(assembly.energy)) {
+      report.termination = numerics::Termination::not_finite;
+      report.message = "the energy or a force of the rod is not finite";
+      return report;
+    }
+    const double largest = rod.tensions(state).template lpNorm<Eigen::Infinity>();
+    const double allowed = force_tolerance(options.tolerance, ei, ea, length, shortest, largest);
+    bool factored = factor.factorize(assembly.hessian);
+    report.negative_pivots = factored ? factor.negative_pivots() : -1;
+    report.pivot_ratio = factored ? factor.pivot_ratio() : 0.0;
+    if (residual <= allowed && (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
+      report.termination = numerics::Termination::converged;
+      return report;
+    }
+    if (report.iterations == options.max_iterations) break;
+
+    if (options.branch == Branch::stable) {
+      // Shift until positive definite; start from the last shift, so that a long descent does not search anew.
+      double trial = (factored && factor.negative_pivots() == 0) ? 0.0 : std::max(shift, 1e-3 * ei / std::pow(length, 3));
+      while (trial > 0.0) {
+        numerics::SymmetricBandMatrix shifted = assembly.hessian;
+        for (int i = 0; i < shifted.order(); ++i) shifted.lower(i, i) += trial;
+        factored = factor.factorize(shifted);
+        if (factored && factor.negative_pivots() == 0) break;
+        trial *= 4.0;
+      }
+      shift = 0.25 * trial;
+    }
+    if (!factored) {
+      report.termination = numerics::Termination::singular_matrix;
+      report.message = "the tangent stiffness of the rod is singular";
+      return report;
+    }
+    Eigen::VectorXd step = -assembly.gradient;
+    factor.solve(step);
+    // No vertex moves more than a tenth of the length at once.
+    const double far = step.template lpNorm<Eigen::Infinity>() / (0.1 * length);
+    if (far > 1.0) step /= far;
+
+    const double old_energy = assembly.energy;
+    const double old_residual = residual;
+    const double slope = assembly.gradient.dot(step);
+    const State start = state;
+    double fraction = 1.0;
+    bool accepted = false;
+    for (int k = 0; k < 30; ++k, fraction *= 0.5) {
+      state = start;
+      advance(state, fraction * step);
+      residual = evaluate(state);
+      if (!std::isfinite(residual)) continue;
+      // Near the end energies differ by round-off only: a falling residual then is enough.
+      accepted = residual <= 0.5 * old_residual && options.branch == Branch::nearest;
+      accepted = accepted || (options.branch == Branch::stable && assembly.energy <= old_energy + 1e-4 * fraction * slope);
+      accepted = accepted || (std::abs(fraction * slope) < 1e-12 * std::abs(old_energy) && residual < old_residual);
+      accepted = accepted || (options.branch == Branch::nearest && residual < (1.0 - 1e-4 * fraction) * old_residual);
+      if (accepted) break;
+    }
+    if (!accepted) {
+      state = start;
+      residual = evaluate(state);
+      report.residual_norm = residual;
+      if (residual <= 100.0 * allowed && (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
+        report.termination = numerics::Termination::converged;  // stalled on round-off
+        return report;
+      }
+      report.termination = numerics::Termination::step_too_small;
+      report.message = "no step lowers the energy of the rod";
+      return report;
+    }
+  }
+  report.termination = numerics::Termination::iteration_limit;
+  report.message = "the equilibrium of the rod was not reached in the allowed iterations";
+  return report;
+}
+
+}  // namespace snare::wire

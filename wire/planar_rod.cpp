@@ -1,0 +1,312 @@
+#include "wire/planar_rod.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace snare::wire {
+
+namespace {
+
+/// One edge: its vector's length and unit tangent, its rest length, and the derivative of its direction angle
+/// alpha, d alpha/d e = e_perp / l^2.
+struct Edge {
+  double tx, ty;  // unit tangent
+  double length;
+  double rest;
+  double ax, ay;  // d alpha / d e
+};
+
+/// Bending of one vertex as a function of the turning angle phi.
+struct Cell {
+  double moment = 0.0;     // dE/dphi
+  double stiffness = 0.0;  // d2E/dphi2
+  double energy = 0.0;
+  double by_length = 0.0;             // dE/d l_i
+  double moment_by_length = 0.0;      // d2E/dphi d l_i
+  double by_length_twice = 0.0;       // d2E/d l_i^2
+};
+
+Edge make_edge(double ex, double ey, double rest) {
+  const double length = std::sqrt(ex * ex + ey * ey);
+  const double inv = 1.0 / length;
+  return {ex * inv, ey * inv, length, rest, -ey * inv * inv, ex * inv * inv};
+}
+
+/// E = 1/2 k (kappa - kappa_nat l)^2, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives.
+Cell bend(const Edge& before, const Edge& after, double cell_length, const PlanarRodProperties& p,
+          double mount_flexibility) {
+  const double cross = before.tx * after.ty - before.ty * after.tx;
+  const double dot = before.tx * after.tx + before.ty * after.ty;
+  const double kappa = 2.0 * cross / (1.0 + dot);
+  const double k = 1.0 / (cell_length / p.bending_stiffness + mount_flexibility);
+  const double strain = kappa - p.natural_curvature * cell_length;
+  const double slope = 1.0 + 0.25 * kappa * kappa;  // d kappa / d phi
+  const double k1 = -k * k / p.bending_stiffness;   // dk/dl
+  const double k2 = -2.0 * k * k1 / p.bending_stiffness;
+  Cell cell;
+  cell.energy = 0.5 * k * strain * strain;
+  cell.moment = k * strain * slope;
+  cell.stiffness = k * (slope * slope + 0.5 * strain * kappa * slope);
+  cell.by_length = 0.5 * k1 * strain * strain - k * p.natural_curvature * strain;
+  cell.moment_by_length = (k1 * strain - k * p.natural_curvature) * slope;
+  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * p.natural_curvature * strain +
+                         k * p.natural_curvature * p.natural_curvature;
+  return cell;
+}
+
+Edge direction_of(const PlanarEnd& end) {
+  return {end.direction.x(), end.direction.y(), 1.0, 1.0, 0.0, 0.0};
+}
+
+double flexibility(const PlanarEnd& end) { return 1.0 / end.rotational_stiffness; }
+
+/// Bending of vertex i between edges i-1 and i; a mount's direction stands for the edge outside.
+Cell bend_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p) {
+  const int last = static_cast<int>(edges.size());
+  if (i == 0) {
+    if (p.left.kind != PlanarEnd::Kind::clamp) return {};
+    return bend(direction_of(p.left), edges.front(), 0.5 * edges.front().rest, p, flexibility(p.left));
+  }
+  if (i == last) {
+    if (p.right.kind != PlanarEnd::Kind::clamp) return {};
+    return bend(edges.back(), direction_of(p.right), 0.5 * edges.back().rest, p, flexibility(p.right));
+  }
+  const Edge& before = edges[static_cast<std::size_t>(i - 1)];
+  const Edge& after = edges[static_cast<std::size_t>(i)];
+  return bend(before, after, 0.5 * (before.rest + after.rest), p, 0.0);
+}
+
+void fill_edges(const MaterialMesh& mesh, const PlanarState& state, std::vector<Edge>& edges) {
+  const int n = mesh.edges();
+  edges.resize(static_cast<std::size_t>(n));
+  const double* q = state.q.data();
+  for (int e = 0; e < n; ++e) {
+    edges[static_cast<std::size_t>(e)] = make_edge(q[2 * e + 2] - q[2 * e], q[2 * e + 3] - q[2 * e + 1],
+                                                   mesh.rest_length(e, state.controls));
+  }
+}
+
+}  // namespace
+
+PlanarRod::PlanarRod(MaterialMesh mesh, const PlanarRodProperties& properties)
+    : mesh_(std::move(mesh)), properties_(properties) {
+  assert(properties.bending_stiffness > 0.0 && properties.axial_stiffness > 0.0);
+}
+
+double PlanarRod::energy(const PlanarState& state) const {
+  std::vector<Edge> edges;
+  fill_edges(mesh_, state, edges);
+  double sum = 0.0;
+  for (int e = 0; e < mesh_.edges(); ++e) {
+    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    const double strain = edge.length / edge.rest - 1.0;
+    sum += 0.5 * properties_.axial_stiffness * strain * strain * edge.rest;
+    sum -= 0.5 * edge.rest * properties_.weight.dot(vertex(state, e) + vertex(state, e + 1));
+  }
+  for (int i = 0; i <= mesh_.edges(); ++i) sum += bend_at(i, edges, properties_).energy;
+  const auto spring = [](const PlanarEnd& end, double x) {
+    if (end.kind == PlanarEnd::Kind::free || std::isinf(end.translational_stiffness)) return 0.0;
+    const double give = x - end.position.x();
+    return 0.5 * end.translational_stiffness * give * give;
+  };
+  return sum + spring(properties_.left, state.q[0]) + spring(properties_.right, state.q[2 * mesh_.edges()]);
+}
+
+void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+  thread_local std::vector<Edge> edges;
+  thread_local std::vector<Cell> cells;
+  const int n = mesh_.edges();
+  const int unknown_count = unknowns();
+  fill_edges(mesh_, state, edges);
+  cells.resize(static_cast<std::size_t>(n + 1));
+  for (int i = 0; i <= n; ++i) cells[static_cast<std::size_t>(i)] = bend_at(i, edges, properties_);
+
+  out.gradient.setZero(unknown_count);
+  if (out.hessian.order() != unknown_count) {
+    out.hessian = numerics::SymmetricBandMatrix(unknown_count, half_bandwidth);
+  } else {
+    out.hessian.set_zero();
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (wanted[k]) out.control_columns[k].setZero(unknown_count);
+  }
+  out.control_gradient.setZero();
+  out.control_hessian.setZero();
+  out.energy = 0.0;
+
+  const double ea = properties_.axial_stiffness;
+  const double wx = properties_.weight.x();
+  const double wy = properties_.weight.y();
+  for (int e = 0; e < n; ++e) {
+    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    const Cell& left = cells[static_cast<std::size_t>(e)];
+    const Cell& right = cells[static_cast<std::size_t>(e + 1)];
+    const double stretch = edge.length / edge.rest;
+    const double tension = ea * (stretch - 1.0);
+    // The edge turns with alpha: it is the outgoing edge of its left vertex, the incoming of its right one.
+    const double turn = left.moment - right.moment;
+    const double gx = tension * edge.tx + turn * edge.ax;
+    const double gy = tension * edge.ty + turn * edge.ay;
+    double* g = out.gradient.data() + 2 * e;
+    const double half = 0.5 * edge.rest;
+    g[0] -= gx + half * wx;
+    g[1] -= gy + half * wy;
+    g[2] += gx - half * wx;
+    g[3] += gy - half * wy;
+
+    // d2l/de2 = (I - t t^T)/l,  d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4.
+    const double axial = ea / edge.rest;
+    const double lateral = tension / edge.length;
+    const double bxx = (axial - lateral) * edge.tx * edge.tx + lateral;
+    const double bxy = (axial - lateral) * edge.tx * edge.ty;
+    const double byy = (axial - lateral) * edge.ty * edge.ty + lateral;
+    const double twist = -turn / (edge.length * edge.length);
+    const double cxx = bxx - 2.0 * twist * edge.tx * edge.ty;
+    const double cxy = bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty);
+    const double cyy = byy + 2.0 * twist * edge.tx * edge.ty;
+    double* c0 = out.hessian.column(2 * e);
+    double* c1 = out.hessian.column(2 * e + 1);
+    double* c2 = out.hessian.column(2 * e + 2);
+    double* c3 = out.hessian.column(2 * e + 3);
+    c0[0] += cxx;
+    c0[1] += cxy;
+    c0[2] -= cxx;
+    c0[3] -= cxy;
+    c1[0] += cyy;
+    c1[1] -= cxy;
+    c1[2] -= cyy;
+    c2[0] += cxx;
+    c2[1] += cxy;
+    c3[0] += cyy;
+
+    // By the rest length, through the edge and through the two cells it belongs to.
+    const double middle_x = 0.5 * (state.q[2 * e] + state.q[2 * e + 2]);
+    const double middle_y = 0.5 * (state.q[2 * e + 1] + state.q[2 * e + 3]);
+    const double weight_work = wx * middle_x + wy * middle_y;
+    out.energy += 0.5 * ea * (stretch - 1.0) * (stretch - 1.0) * edge.rest - edge.rest * weight_work;
+    const double by_rest = -0.5 * ea * (stretch * stretch - 1.0) - weight_work +
+                           0.5 * (left.by_length + right.by_length);
+    for (int k = 0; k < 3; ++k) {
+      const double share = mesh_.rest_length_derivative(e, k);
+      if (share == 0.0) continue;
+      out.control_gradient[k] += share * by_rest;
+      for (int m = 0; m < 3; ++m) {
+        out.control_hessian(k, m) +=
+            share * mesh_.rest_length_derivative(e, m) * axial * stretch * stretch;
+      }
+      if (!wanted[static_cast<std::size_t>(k)]) continue;
+      double* column = out.control_columns[static_cast<std::size_t>(k)].data() + 2 * e;
+      const double pull = -share * axial * stretch;
+      column[0] -= pull * edge.tx + 0.5 * share * wx;
+      column[1] -= pull * edge.ty + 0.5 * share * wy;
+      column[2] += pull * edge.tx - 0.5 * share * wx;
+      column[3] += pull * edge.ty - 0.5 * share * wy;
+    }
+  }
+
+  const auto spring = [&](const PlanarEnd& end, int row) {
+    if (end.kind == PlanarEnd::Kind::free || std::isinf(end.translational_stiffness)) return;
+    const double give = state.q[row] - end.position.x();
+    out.energy += 0.5 * end.translational_stiffness * give * give;
+    out.gradient[row] += end.translational_stiffness * give;
+    out.hessian.add(row, row, end.translational_stiffness);
+  };
+  spring(properties_.left, 0);
+  spring(properties_.right, 2 * n);
+
+  // Rank-one part of bending: stiffness v v^T with v = d phi / d(x_{i-1}, x_i, x_{i+1}).
+  for (int i = 0; i <= n; ++i) {
+    const Cell& cell = cells[static_cast<std::size_t>(i)];
+    out.energy += cell.energy;
+    if (cell.stiffness == 0.0) continue;
+    const bool has_before = i > 0;
+    const bool has_after = i < n;
+    double v[6] = {};
+    if (has_before) {
+      const Edge& edge = edges[static_cast<std::size_t>(i - 1)];
+      v[0] = edge.ax;
+      v[1] = edge.ay;
+    }
+    if (has_after) {
+      const Edge& edge = edges[static_cast<std::size_t>(i)];
+      v[4] = edge.ax;
+      v[5] = edge.ay;
+    }
+    v[2] = -v[0] - v[4];
+    v[3] = -v[1] - v[5];
+    const int first = has_before ? 0 : 2;
+    const int end = has_after ? 6 : 4;
+    const int base = 2 * i - 2;
+    for (int a = first; a < end; ++a) {
+      double* column = out.hessian.column(base + a);
+      const double s = cell.stiffness * v[a];
+      for (int b = a; b < end; ++b) column[b - a] += s * v[b];
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double share = 0.5 * ((has_before ? mesh_.rest_length_derivative(i - 1, k) : 0.0) +
+                                  (has_after ? mesh_.rest_length_derivative(i, k) : 0.0));
+      if (share == 0.0) continue;
+      for (int m = 0; m < 3; ++m) {
+        const double other = 0.5 * ((has_before ? mesh_.rest_length_derivative(i - 1, m) : 0.0) +
+                                    (has_after ? mesh_.rest_length_derivative(i, m) : 0.0));
+        out.control_hessian(k, m) += share * other * cell.by_length_twice;
+      }
+      if (!wanted[static_cast<std::size_t>(k)]) continue;
+      Eigen::VectorXd& column = out.control_columns[static_cast<std::size_t>(k)];
+      for (int a = first; a < end; ++a) column[base + a] += share * cell.moment_by_length * v[a];
+    }
+  }
+}
+
+namespace {
+
+/// Calls `action` with every unknown that the mounts hold rigidly.
+template <class Action>
+void for_each_held(const PlanarRodProperties& p, int edges, const Action& action) {
+  const auto mount = [&action](const PlanarEnd& end, int first_row) {
+    if (end.kind == PlanarEnd::Kind::free) return;
+    if (std::isinf(end.translational_stiffness)) action(first_row);
+    action(first_row + 1);
+  };
+  mount(p.left, 0);
+  mount(p.right, 2 * edges);
+}
+
+}  // namespace
+
+void PlanarRod::hold_mounts(RodAssembly& assembly) const {
+  for_each_held(properties_, mesh_.edges(), [&assembly](int row) {
+    assembly.gradient[row] = 0.0;
+    assembly.hessian.hold(row);
+    for (Eigen::VectorXd& column : assembly.control_columns) {
+      if (column.size() > row) column[row] = 0.0;
+    }
+  });
+}
+
+void PlanarRod::clear_held(Eigen::VectorXd& band) const {
+  for_each_held(properties_, mesh_.edges(), [&band](int row) { band[row] = 0.0; });
+}
+
+Eigen::VectorXd PlanarRod::moments(const PlanarState& state) const {
+  std::vector<Edge> edges;
+  fill_edges(mesh_, state, edges);
+  Eigen::VectorXd result(mesh_.vertices());
+  for (int i = 0; i < mesh_.vertices(); ++i) result[i] = bend_at(i, edges, properties_).moment;
+  return result;
+}
+
+Eigen::VectorXd PlanarRod::tensions(const PlanarState& state) const {
+  std::vector<Edge> edges;
+  fill_edges(mesh_, state, edges);
+  Eigen::VectorXd result(mesh_.edges());
+  for (int e = 0; e < mesh_.edges(); ++e) {
+    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    result[e] = properties_.axial_stiffness * (edge.length / edge.rest - 1.0);
+  }
+  return result;
+}
+
+}  // namespace snare::wire

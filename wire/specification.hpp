@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+namespace snare::wire {
+
+enum class Construction { solid, strand };
+
+/// A uniform round wire as it is declared. SI units.
+struct WireSpecification {
+  Construction construction = Construction::solid;
+  double diameter = 0.0;        ///< outer diameter [m], > 0
+  double length = 0.0;          ///< unstretched length between the mounts [m], > 0
+  double youngs_modulus = 0.0;  ///< [Pa], > 0
+  double poisson_ratio = 0.3;   ///< [-], in (-1, 0.5]
+  double density = 0.0;         ///< of the metal [kg/m^3], > 0
+  std::optional<double> bending_stiffness_override;    ///< EI [N m^2], > 0
+  std::optional<double> axial_stiffness_override;      ///< EA [N], > 0
+  std::optional<double> torsional_stiffness_override;  ///< GJ [N m^2], > 0
+  double natural_curvature = 0.0;  ///< in the plane of the bulge, positive with the bulge [1/m]
+
+  /// EI [N m^2]: as declared, else of the solid round section, E pi d^4 / 64.
+  [[nodiscard]] double bending_stiffness() const;
+  /// EA [N]: as declared, else of the solid round section, E pi d^2 / 4.
+  [[nodiscard]] double axial_stiffness() const;
+  /// GJ [N m^2]: as declared, else 2 EI G / E with G = E / (2 (1 + nu)), that is EI / (1 + nu).
+  [[nodiscard]] double torsional_stiffness() const;
+  /// Mass per unit length of the solid round section, rho pi d^2 / 4 [kg/m].
+  [[nodiscard]] double mass_per_length() const;
+};
+
+enum class MountKind {
+  clamped,  ///< position and direction held
+  pinned,   ///< position held, free to turn
+  supports  ///< the wire rests on two round supports and slides over them (three-point bending)
+};
+
+/// The two mounts; the chord runs along +x from the left mount at the origin, the bulge towards +y.
+struct MountSpecification {
+  MountKind kind = MountKind::clamped;
+  double span = 0.0;            ///< distance of the mounts (or of the supports' centres) [m], > 0
+  double support_radius = 0.0;  ///< supports only [m], >= 0
+  std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
+  std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
+  std::optional<double> slip_tension;  ///< wire feeds through the left mount beyond this |tension| [N]
+};
+
+}  // namespace snare::wire

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "wire/curvature.hpp"
+
+namespace snare::wire {
+
+/// Integrated twist of a vertex [rad].                         theory.md (W.26); Bergou et al. 2010, sec. 4.1
+///   tau = theta_b - theta_a + m,  m: reference twist
+///   dm/da = kb/(2 |a|),  dm/db = kb/(2 |b|),  dtau/dtheta = (-1, 1)
+/// Adds moment * gradient of tau.
+void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out);
+
+/// Adds moment * hessian of tau + stiffness * (gradient of tau)(gradient of tau)^T:
+///   |a|^2 d2m/da2 = -1/4 (kb (t + mean)^T + (t + mean) kb^T),
+///   |a||b| d2m/da db = 1/2 (2 [t]_x/chi - kb mean^T).
+void add_twist_hessian(const Turn& turn, const InverseLengths& inverse, double moment, double stiffness,
+                       PairHessian& out);
+
+}  // namespace snare::wire
