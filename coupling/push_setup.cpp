@@ -80,7 +80,8 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
   const double ea = test.wire.axial_stiffness();
   wire::MaterialMesh mesh = wire::make_mesh(edges, fraction, 0.0);
   if (grading < 0.0) {
-    const double layer = std::sqrt(ei / (1e-3 * ea));
+    constexpr double strain = 5e-3;  // about where steel wire yields: the highest tension of interest
+    const double layer = std::sqrt(ei / (strain * ea));
     const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
     const double right =
         wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());

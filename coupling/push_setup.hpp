@@ -19,7 +19,7 @@ struct PushSetup {
 };
 
 /// edges: a multiple of 4, >= 16; coarsening 1, 2 or 4: only every so manieth vertex of that mesh is used.
-/// grading < 0: chosen from the boundary layer sqrt(EI/T) at a strain of one in a thousand.
+/// grading < 0: chosen from the boundary layer sqrt(EI/T) at a strain of 0.5 %.
 [[nodiscard]] PushSetup prepare_push(const PushTest& test, int edges, double grading, int coarsening);
 
 }  // namespace snare::coupling

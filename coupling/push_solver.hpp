@@ -55,7 +55,7 @@ enum class Instability {
 };
 
 struct PushOptions {
-  int elements = 128;   ///< edges, a multiple of 4, >= 16
+  int elements = 256;   ///< edges, a multiple of 4, >= 16
   double grading = -1;  ///< of the mesh; < 0 chooses from the boundary layer
   Instability instability = Instability::follow_path;
   int max_iterations = 12;      ///< Newton iterations a step

@@ -45,7 +45,7 @@ struct Series {
 };
 
 struct SolverSettings {
-  int elements = 128;       ///< edges of the finest mesh, a multiple of 4, 16 to 100000
+  int elements = 256;       ///< edges of the finest mesh, a multiple of 4, 16 to 100000
   bool extrapolate = true;  ///< Richardson extrapolation from this mesh, the half and the quarter one
 };
 

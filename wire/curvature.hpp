@@ -19,7 +19,8 @@ struct Turn {
 
 [[nodiscard]] Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after);
 
-/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist angles.
+/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist
+/// angles.
 struct PairGradient {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -87,12 +88,12 @@ class WeightedCurvature {
 
  private:
   const Turn& turn_;
-  Eigen::Vector3d w_a_, w_b_;    // w of the two edges
-  Eigen::Vector3d v_a_, v_b_;    // v of the two edges
-  Eigen::Vector3d slope_a_;      // |a| d kappa_w/da
-  Eigen::Vector3d slope_b_;      // |b| d kappa_w/db
-  Eigen::Vector3d turned_a_;     // u x (w_a + w_b)/chi
-  Eigen::Vector3d turned_b_;     // t x (w_a + w_b)/chi
+  Eigen::Vector3d w_a_, w_b_;  // w of the two edges
+  Eigen::Vector3d v_a_, v_b_;  // v of the two edges
+  Eigen::Vector3d slope_a_;    // |a| d kappa_w/da
+  Eigen::Vector3d slope_b_;    // |b| d kappa_w/db
+  Eigen::Vector3d turned_a_;   // u x (w_a + w_b)/chi
+  Eigen::Vector3d turned_b_;   // t x (w_a + w_b)/chi
   double value_;
 };
 

@@ -51,10 +51,10 @@ MaterialMesh make_mesh(int edges, double fraction, double grading) {
 }
 
 double grading_for_layer(double layer, double side, int edges_per_side) {
-  // At the ends of a side the edges are g / (sinh g cosh g) of their mean; ask for three edges in a layer.
-  const double wanted = std::min(1.0, layer / 3.0 * edges_per_side / side);
+  // At the ends of a side the edges are g / (sinh g cosh g) of their mean; ask for ten edges in a layer.
+  const double wanted = std::min(1.0, layer / 10.0 * edges_per_side / side);
   double low = 0.0;
-  double high = 2.5;  // beyond, the middle of the side gets too coarse
+  double high = 2.0;  // beyond, the middle of the side gets too coarse
   for (int k = 0; k < 40; ++k) {
     const double g = 0.5 * (low + high);
     (g / (std::sinh(g) * std::cosh(g)) > wanted ? low : high) = g;

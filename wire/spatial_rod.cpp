@@ -52,12 +52,12 @@ struct Cell {
   Turn turn;
   InverseLengths inverse;
   double energy = 0.0;
-  double by_cosine = 0.0;         // dE/dc
-  double by_cosine_twice = 0.0;   // d2E/dc2
+  double by_cosine = 0.0;        // dE/dc
+  double by_cosine_twice = 0.0;  // d2E/dc2
   Vector2d by_kappa = Vector2d::Zero();
-  double anisotropy = 0.0;        // d2E/dkappa_1^2 = -d2E/dkappa_2^2
-  double torque = 0.0;            // dE/dtau
-  double twist_stiffness = 0.0;   // d2E/dtau2
+  double anisotropy = 0.0;       // d2E/dkappa_1^2 = -d2E/dkappa_2^2
+  double torque = 0.0;           // dE/dtau
+  double twist_stiffness = 0.0;  // d2E/dtau2
   // And by the cell's length.
   double by_length = 0.0;
   double by_length_twice = 0.0;
@@ -70,7 +70,8 @@ struct Cell {
 struct Law {
   explicit Law(const SpatialRodProperties& p)
       : properties(p),
-        directed(p.bending_stiffness != p.second_bending_stiffness || p.natural_curvature != Vector2d::Zero()) {}
+        directed(p.bending_stiffness != p.second_bending_stiffness ||
+                 p.natural_curvature != Vector2d::Zero()) {}
   const SpatialRodProperties& properties;
   bool directed;
 };
@@ -79,8 +80,7 @@ void bend(const Edge& before, const Edge& after, double l, double flexibility, c
   const SpatialRodProperties& p = law.properties;
   cell.bends = true;
   const SeriesStiffness k1 = in_series(l, p.bending_stiffness, flexibility);
-  const SeriesStiffness k2 =
-      law.directed ? in_series(l, p.second_bending_stiffness, flexibility) : k1;
+  const SeriesStiffness k2 = law.directed ? in_series(l, p.second_bending_stiffness, flexibility) : k1;
   // |kb|^2 = 4 (1 - c)/(1 + c), taken from kb to keep its digits; d/dc = -8/(1 + c)^2.
   const double square = cell.turn.binormal.squaredNorm();
   const double inverse_chi = 1.0 / cell.turn.chi;
@@ -191,8 +191,8 @@ void visit_cells(const MaterialMesh& mesh, const SpatialState& state, const Law&
          "a state is made by make_state");
   Edge before = mount_edge(law.properties.left, state.left_mount, law);
   for (int i = 0; i <= n; ++i) {
-    const Edge after = i < n ? edge_at(i, mesh, state, law)
-                             : mount_edge(law.properties.right, state.right_mount, law);
+    const Edge after =
+        i < n ? edge_at(i, mesh, state, law) : mount_edge(law.properties.right, state.right_mount, law);
     visit(i, cell_at(i, n, before, after, state, law), before, after);
     before = after;
   }
@@ -202,7 +202,8 @@ PairGradient gradient_of(const Cell& cell, const Edge& before, const Edge& after
   PairGradient g;
   if (cell.bends) add_cosine_gradient(cell.turn, cell.inverse, cell.by_cosine, g);
   if (cell.directed) {
-    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).add_gradient(cell.inverse, g);
+    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa)
+        .add_gradient(cell.inverse, g);
   }
   if (cell.twists) add_twist_gradient(cell.turn, cell.inverse, cell.torque, g);
   return g;
@@ -225,11 +226,14 @@ PairHessian hessian_of(const Cell& cell, const Edge& before, const Edge& after) 
   if (cell.bends) add_cosine_hessian(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
   if (cell.twists) add_twist_hessian(cell.turn, cell.inverse, cell.torque, cell.twist_stiffness, h);
   if (cell.directed) {
-    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).add_hessian(cell.inverse, h);
+    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa)
+        .add_hessian(cell.inverse, h);
     PairGradient g1;
     PairGradient g2;
-    WeightedCurvature(cell.turn, before.directors, after.directors, {1.0, 0.0}).add_gradient(cell.inverse, g1);
-    WeightedCurvature(cell.turn, before.directors, after.directors, {0.0, 1.0}).add_gradient(cell.inverse, g2);
+    WeightedCurvature(cell.turn, before.directors, after.directors, {1.0, 0.0})
+        .add_gradient(cell.inverse, g1);
+    WeightedCurvature(cell.turn, before.directors, after.directors, {0.0, 1.0})
+        .add_gradient(cell.inverse, g2);
     add_square(g1, cell.anisotropy, h);
     add_square(g2, -cell.anisotropy, h);
   }
@@ -238,11 +242,11 @@ PairHessian hessian_of(const Cell& cell, const Edge& before, const Edge& after) 
 
 /// Everything that belongs to one edge alone, collected from its two vertices and its stretching.
 struct EdgeBlock {
-  Vector3d force = Vector3d::Zero();       // dE/de
-  Matrix3d stiffness = Matrix3d::Zero();   // d2E/de2
-  Vector3d coupling = Vector3d::Zero();    // d2E/de dtheta
-  double torsion = 0.0;                    // d2E/dtheta2
-  double by_rest = 0.0;                    // through the cells' lengths
+  Vector3d force = Vector3d::Zero();      // dE/de
+  Matrix3d stiffness = Matrix3d::Zero();  // d2E/de2
+  Vector3d coupling = Vector3d::Zero();   // d2E/de dtheta
+  double torsion = 0.0;                   // d2E/dtheta2
+  double by_rest = 0.0;                   // through the cells' lengths
 };
 
 /// Adds an edge's block to its two vertices and its angle: e = x_{e+1} - x_e.
@@ -254,7 +258,7 @@ void scatter_edge(int e, const EdgeBlock& block, RodAssembly& out) {
     g[4 + r] += block.force[r];
   }
   for (int s = 0; s < 3; ++s) {
-    double* near = out.hessian.column(first + s);       // entries of rows first + s + k
+    double* near = out.hessian.column(first + s);  // entries of rows first + s + k
     double* far = out.hessian.column(first + 4 + s);
     for (int r = s; r < 3; ++r) {
       near[r - s] += block.stiffness(r, s);
@@ -421,7 +425,8 @@ double SpatialRod::energy(const SpatialState& state) const {
   return sum;
 }
 
-void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted,
+                          RodAssembly& out) const {
   reset(out, unknowns(), wanted);
   const int n = mesh_.edges();
   const double ea = properties_.axial_stiffness;
@@ -490,30 +495,31 @@ void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& 
     }
   };
 
-  visit_cells(mesh_, state, Law(properties_), [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
-    EdgeBlock next;
-    if (cell.bends || cell.twists) {
-      out.energy += cell.energy;
-      const PairGradient g = gradient_of(cell, before, after);
-      const PairHessian h = hessian_of(cell, before, after);
-      pending.force += g.a;
-      pending.stiffness += h.aa;
-      pending.coupling += h.a_theta_a;
-      pending.torsion += h.theta_aa;
-      pending.by_rest += 0.5 * cell.by_length;
-      next.force = g.b;
-      next.stiffness = h.bb;
-      next.coupling = h.b_theta_b;
-      next.torsion = h.theta_bb;
-      next.by_rest = 0.5 * cell.by_length;
-      if (i > 0) out.gradient[block * i - 1] += g.theta_a;
-      if (i < n) out.gradient[block * i + 3] += g.theta_b;
-      if (i > 0 && i < n) scatter_pair(i, h, out);
-      add_cell_controls(i, cell, before, after);
-    }
-    if (i > 0) finish_edge(i - 1, before, pending);
-    pending = next;
-  });
+  visit_cells(mesh_, state, Law(properties_),
+              [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
+                EdgeBlock next;
+                if (cell.bends || cell.twists) {
+                  out.energy += cell.energy;
+                  const PairGradient g = gradient_of(cell, before, after);
+                  const PairHessian h = hessian_of(cell, before, after);
+                  pending.force += g.a;
+                  pending.stiffness += h.aa;
+                  pending.coupling += h.a_theta_a;
+                  pending.torsion += h.theta_aa;
+                  pending.by_rest += 0.5 * cell.by_length;
+                  next.force = g.b;
+                  next.stiffness = h.bb;
+                  next.coupling = h.b_theta_b;
+                  next.torsion = h.theta_bb;
+                  next.by_rest = 0.5 * cell.by_length;
+                  if (i > 0) out.gradient[block * i - 1] += g.theta_a;
+                  if (i < n) out.gradient[block * i + 3] += g.theta_b;
+                  if (i > 0 && i < n) scatter_pair(i, h, out);
+                  add_cell_controls(i, cell, before, after);
+                }
+                if (i > 0) finish_edge(i - 1, before, pending);
+                pending = next;
+              });
 
   const auto spring = [&](const SpatialEnd& end, int row) {
     if (end.kind == SpatialEnd::Kind::free || std::isinf(end.translational_stiffness)) return;
@@ -546,15 +552,16 @@ void SpatialRod::hold_mounts(RodAssembly& assembly) const {
 
 Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
   Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, mesh_.vertices());
-  visit_cells(mesh_, state, Law(properties_), [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
-    // By a rotation omega of what follows: dc = t.(omega x u), dtau = omega.(t + u)/chi.
-    if (cell.bends) result.col(i) -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
-    if (cell.directed) {
-      result.col(i) +=
-          WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).by_rotation();
-    }
-    if (cell.twists) result.col(i) += cell.torque * cell.turn.mean;
-  });
+  visit_cells(
+      mesh_, state, Law(properties_), [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
+        // By a rotation omega of what follows: dc = t.(omega x u), dtau = omega.(t + u)/chi.
+        if (cell.bends) result.col(i) -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
+        if (cell.directed) {
+          result.col(i) +=
+              WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).by_rotation();
+        }
+        if (cell.twists) result.col(i) += cell.torque * cell.turn.mean;
+      });
   return result;
 }
 

@@ -28,8 +28,8 @@ struct SpatialEnd {
   /// Of the rod's material director m1 from `director`, about `direction` [rad]; any number of turns.
   double twist_angle = 0.0;
   /// Of a clamp that gives in bending, the same about both axes [N m/rad], > 0. In series with the half cell
-  /// beside the mount for each of kappa_1, kappa_2: exact in the plane, to second order in the angle by which
-  /// the mount gives when it gives out of plane.
+  /// beside the mount, for kappa_1 and kappa_2 each: the law is linear in 2 tan(phi/2) of the mount's and the
+  /// half cell's turn together, so it errs by the third power of the angle by which the mount gives.
   double rotational_stiffness = std::numeric_limits<double>::infinity();
   /// Of a mount that gives in twist [N m/rad], > 0.
   double twisting_stiffness = std::numeric_limits<double>::infinity();
@@ -60,23 +60,26 @@ struct SpatialRodProperties {
 struct SpatialState {
   Eigen::VectorXd q;
   Controls controls{};
-  std::vector<Frame> frames;            ///< reference frames of the edges
-  std::optional<Frame> left_mount;      ///< of a mount that orients
+  std::vector<Frame> frames;        ///< reference frames of the edges
+  std::optional<Frame> left_mount;  ///< of a mount that orients
   std::optional<Frame> right_mount;
   std::vector<double> reference_twist;  ///< m of every vertex [rad]
 };
 
-/// The discrete elastic rod in space.                        theory.md (W.20)-(W.30); Bergou et al. 2008, 2010
+/// The discrete elastic rod in space.                       theory.md (W.20)-(W.30); Bergou et al. 2008, 2010
 ///
 ///   E = sum_edges 1/2 EA (l/l0 - 1)^2 l0 - sum w.x m + sum_vertices 1/2 GJ/l_i (tau_i - tau_nat l_i)^2
 ///     + sum_vertices [ 1/4 (k_1 + k_2) |kb|^2 + 1/4 (k_1 - k_2)(kappa_1^2 - kappa_2^2)
 ///                      - sum_j k_j kappa_j kn_j l_i + 1/2 sum_j k_j (kn_j l_i)^2 ],  k_j = EI_j/l_i
 ///
-/// The bracket is 1/2 sum_j k_j (kappa_j - kn_j l_i)^2 but for kappa_1^2 + kappa_2^2 = cos^2(tau_m/2) |kb|^2 of
-/// the mean directors (tau_m: their angle), which is replaced by |kb|^2: a round rod then bends independently of
-/// its twist, as the continuous one does, however many turns fall on a cell. In the plane it is PlanarRod.
-/// A clamp is the vertex at the mount with the mount's direction and directors as its outer edge and half a cell
-/// for bending and for twisting; a twisting pin has the twisting half cell only.
+/// The bracket is 1/2 sum_j k_j (kappa_j - kn_j l_i)^2 but for kappa_1^2 + kappa_2^2 = cos^2(tau_m/2) |kb|^2
+/// of the mean directors (tau_m: their angle), which is replaced by |kb|^2: a round rod then bends
+/// independently of its twist, as the continuous one does, however many turns fall on a cell. In the plane it
+/// is PlanarRod. (A rod with natural curvature and natural twist keeps 1/2 EI kappa_nat^2 (tau_nat l/2)^2 per
+/// length in its natural state, an error of second order like the others.)
+///
+/// A clamp is the vertex at the mount with the mount's direction and directors as its outer
+/// edge and half a cell for bending and for twisting; a twisting pin has the twisting half cell only.
 class SpatialRod {
  public:
   static constexpr int dimension = 3;
@@ -92,35 +95,36 @@ class SpatialRod {
   /// Moves or turns the mounts; bring a state along with `adopt_mounts`.
   void set_mounts(const SpatialEnd& left, const SpatialEnd& right);
 
-  /// A state with these unknowns. Its reference frames run from the left mount (or from any normal) to the right
-  /// without turning about the wire, so that theta is counted from there; at the right mount the reference twist
-  /// is in (-pi, pi].
+  /// A state with these unknowns. Its reference frames run from the left mount (or from any normal) to the
+  /// right without turning about the wire, so that theta is counted from there; at the right mount the
+  /// reference twist is in (-pi, pi].
   [[nodiscard]] SpatialState make_state(const Eigen::VectorXd& q, const Controls& controls) const;
 
   /// The straight, untwisted state between the two mounts' positions, every vertex at its share.
   [[nodiscard]] SpatialState straight_state(const Controls& controls) const;
 
-  /// Brings a state to mounts that were moved: sets the rigidly held positions and the mounts' frames. A mount may
-  /// turn about its axis by less than pi at once through its director, by any angle through its twist angle.
+  /// Brings a state to mounts that were moved: sets the rigidly held positions and the mounts' frames. A
+  /// mount may turn about its axis by less than pi at once through its director, by any angle through its
+  /// twist angle.
   void adopt_mounts(SpatialState& state) const;
 
   /// Energy [J] alone.
   [[nodiscard]] double energy(const SpatialState& state) const;
 
   /// Everything at once into `out`, whose storage is reused. wanted[k]: fill control_columns[k].
-  /// Springs of the mounts are in; rigidly held unknowns are not yet applied, so that the gradient there is the
-  /// reaction: see `hold_mounts`. The Hessian is that of the energy with frames carried from this state.
+  /// Springs of the mounts are in; rigidly held unknowns are not yet applied, so that the gradient there is
+  /// the reaction: see `hold_mounts`. The Hessian is that of the energy with frames carried from this state.
   void assemble(const SpatialState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const;
 
-  /// Holds the rigid positions and the unused last angle: gradient entries of held unknowns become zero, their
-  /// rows and columns those of the identity. When neither mount holds the twist, a spin of the whole rod about
-  /// itself stays free: the caller must hold it.
+  /// Holds the rigid positions and the unused last angle: gradient entries of held unknowns become zero,
+  /// their rows and columns those of the identity. When neither mount holds the twist, a spin of the whole
+  /// rod about itself stays free: the caller must hold it.
   void hold_mounts(RodAssembly& assembly) const;
 
-  /// Moment vector of every vertex, (3, vertices) [N m]: dE by a rigid rotation of all that follows the vertex,
-  /// which is the moment that the part after it exerts on the part before; positive about z for turning left in
-  /// the plane, with the torque as component along the wire. The end columns belong to the mounts.
-  ///                                            theory.md (W.29)
+  /// Moment vector of every vertex, (3, vertices) [N m]: dE by a rigid rotation of all that follows the
+  /// vertex, which is the moment that the part after it exerts on the part before; positive about z for
+  /// turning left in the plane, with the torque as component along the wire. The end columns belong to the
+  /// mounts.                                                                              theory.md (W.29)
   [[nodiscard]] Eigen::Matrix3Xd moments(const SpatialState& state) const;
   /// Twisting moment of every vertex [N m], positive for a right-handed turn along the wire.
   [[nodiscard]] Eigen::VectorXd torques(const SpatialState& state) const;
@@ -132,12 +136,14 @@ class SpatialRod {
   SpatialRodProperties properties_;
 };
 
-/// Sets the unknowns and carries the reference frames to the new tangents; the reference twist follows without
-/// jumps while it changes by less than pi a step at every vertex.
+/// Sets the unknowns and carries the reference frames to the new tangents; the reference twist follows
+/// without jumps while it changes by less than pi a step at every vertex.
 void accept(SpatialState& state, const Eigen::VectorXd& q);
 
 /// Adds a step to the unknowns.
-inline void advance(SpatialState& state, const Eigen::VectorXd& step) { accept(state, state.q + step); }
+inline void advance(SpatialState& state, const Eigen::VectorXd& step) {
+  accept(state, state.q + step);
+}
 
 /// Position of vertex i [m].
 [[nodiscard]] inline Eigen::Vector3d vertex(const SpatialState& state, int i) {

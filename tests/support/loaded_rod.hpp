@@ -50,7 +50,8 @@ template <class Rod, class State>
 }
 
 /// Load in (low, high) at which `unstable` becomes true, to a relative 1e-12.
-[[nodiscard]] inline double critical_load(double low, double high, const std::function<bool(double)>& unstable) {
+[[nodiscard]] inline double critical_load(double low, double high,
+                                          const std::function<bool(double)>& unstable) {
   while (high - low > 1e-12 * high) {
     const double middle = 0.5 * (low + high);
     (unstable(middle) ? high : low) = middle;
@@ -58,8 +59,8 @@ template <class Rod, class State>
   return 0.5 * (low + high);
 }
 
-/// From values at n, 2n and 4n edges: the limit for errors of second and third order (the half cells at the mounts leave
-/// one of third), and the observed order.
+/// From values at n, 2n and 4n edges: the limit for errors of second and third order (the half cells at the
+/// mounts leave one of third), and the observed order.
 struct Extrapolation {
   double limit = 0.0;
   double order = 0.0;
@@ -67,7 +68,8 @@ struct Extrapolation {
 [[nodiscard]] inline Extrapolation extrapolate(const std::array<double, 3>& values) {
   const double coarse = (4.0 * values[1] - values[0]) / 3.0;
   const double fine = (4.0 * values[2] - values[1]) / 3.0;
-  return {(8.0 * fine - coarse) / 7.0, std::log2(std::abs((values[1] - values[0]) / (values[2] - values[1])))};
+  return {(8.0 * fine - coarse) / 7.0,
+          std::log2(std::abs((values[1] - values[0]) / (values[2] - values[1])))};
 }
 
 }  // namespace snare::test

@@ -50,8 +50,8 @@ wire::SpatialRodProperties general_properties() {
   return p;
 }
 
-wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls& controls, std::mt19937& random,
-                               double amount) {
+wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls& controls,
+                               std::mt19937& random, double amount) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const double disturbance = amount * (controls[2] - controls[0]) / rod.mesh().edges();
   wire::PlanarState state;
@@ -64,8 +64,8 @@ wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls&
   return state;
 }
 
-wire::SpatialState random_state(const wire::SpatialRod& rod, const wire::Controls& controls, std::mt19937& random,
-                                double amount) {
+wire::SpatialState random_state(const wire::SpatialRod& rod, const wire::Controls& controls,
+                                std::mt19937& random, double amount) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const double disturbance = amount * (controls[2] - controls[0]) / rod.mesh().edges();
   Eigen::VectorXd q(rod.unknowns());

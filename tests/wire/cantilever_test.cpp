@@ -31,7 +31,8 @@ Vector2d planar_tip(int half_edges) {
   p.bending_stiffness = 1.0;
   p.axial_stiffness = kAxialStiffness;
   p.right.kind = PlanarEnd::Kind::free;
-  const test::TipLoadedRod<PlanarRod> rod(PlanarRod(MaterialMesh(half_edges, half_edges, 0.0), p), {0.0, kForce});
+  const test::TipLoadedRod<PlanarRod> rod(PlanarRod(MaterialMesh(half_edges, half_edges, 0.0), p),
+                                          {0.0, kForce});
   PlanarState state;
   state.controls = kUnit;
   state.q = Eigen::VectorXd::Zero(rod.rod().unknowns());
@@ -44,7 +45,8 @@ Vector2d planar_tip(int half_edges) {
 
 // The same in a plane turned out of the coordinate planes, with a twist of the clamp that must not matter.
 Vector2d spatial_tip(int half_edges, double clamp_angle) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.9, Vector3d(1.0, -2.0, 0.7).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.9, Vector3d(1.0, -2.0, 0.7).normalized()).toRotationMatrix();
   SpatialRodProperties p;
   p.bending_stiffness = 1.0;
   p.second_bending_stiffness = 1.0;
@@ -79,19 +81,23 @@ void expect_tip(const std::array<Vector2d, 3>& tips) {
   EXPECT_NEAR(reach.limit, 1.0 - exact.shortening, 2.0 * kExtension);
 }
 
-TEST(Cantilever, PlanarRodUnderATipForce) { expect_tip({planar_tip(20), planar_tip(40), planar_tip(80)}); }
+TEST(Cantilever, PlanarRodUnderATipForce) {
+  expect_tip({planar_tip(20), planar_tip(40), planar_tip(80)});
+}
 
 TEST(Cantilever, SpatialRodUnderATipForce) {
   expect_tip({spatial_tip(20, 0.0), spatial_tip(40, 0.0), spatial_tip(80, 0.0)});
 }
 
 TEST(Cantilever, TwistOfTheClampDoesNotMatterForARoundRod) {
-  EXPECT_LT((spatial_tip(10, 2.5) - spatial_tip(10, 0.0)).norm(), 1e-9);  // residual 1e-9 over the stiffness 3
+  EXPECT_LT((spatial_tip(10, 2.5) - spatial_tip(10, 0.0)).norm(),
+            1e-9);  // residual 1e-9 over the stiffness 3
 }
 
 TEST(Cantilever, NaturalCurvatureMakesACircle) {
-  // Three quarters of a turn towards a director that the clamp has turned by 0.6 rad. On a free, untwisted, naturally
-  // curved rod every vertex turns by 2 atan(kappa h/2): an exact polygon, whose inner vertices lie on a circle.
+  // Three quarters of a turn towards a director that the clamp has turned by 0.6 rad. On a free, untwisted,
+  // naturally curved rod every vertex turns by 2 atan(kappa h/2): an exact polygon, whose inner vertices lie
+  // on a circle.
   SpatialRodProperties p;
   p.bending_stiffness = 1.0;
   p.second_bending_stiffness = 2.0;
@@ -114,7 +120,8 @@ TEST(Cantilever, NaturalCurvatureMakesACircle) {
   double angle = 2.0 * std::atan(0.25 * 4.7 / n);  // of the half cell
   for (int e = 0; e < n; ++e, angle += step) {
     x += Vector3d(std::cos(angle), std::sin(angle), 0.0) / n;
-    EXPECT_LT((vertex(state, e + 1) - x).norm(), 1e-7) << e;  // residual 1e-10 (EI/L^2 + tension) over stiffness
+    EXPECT_LT((vertex(state, e + 1) - x).norm(), 1e-7)
+        << e;  // residual 1e-10 (EI/L^2 + tension) over stiffness
   }
 }
 

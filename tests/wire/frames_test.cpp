@@ -61,7 +61,8 @@ TEST(Frames, TransportDoesNotTurnAboutTheTangent) {
 TEST(Frames, StayOrthonormalOverManySteps) {
   std::mt19937 random(4);
   Frame frame{Vector3d::UnitX(), Vector3d::UnitY()};
-  for (int k = 0; k < 10000; ++k) frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
+  for (int k = 0; k < 10000; ++k)
+    frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
   EXPECT_NEAR(frame.director.norm(), 1.0, kRoundOff);
   EXPECT_NEAR(frame.director.dot(frame.tangent), 0.0, kRoundOff);
 }
@@ -84,7 +85,8 @@ TEST(Frames, ReferenceTwistInvertsTurnedDirector) {
     Frame after = transport(before, u);
     after.director = turned_director(after, angle);
     EXPECT_NEAR(reference_twist(before, after, 0.0), angle, kRoundOff);
-    EXPECT_NEAR(reference_twist(before, after, angle + 40.0 * pi + 0.5), angle + 40.0 * pi, 1e-13);  // eps * 130
+    EXPECT_NEAR(reference_twist(before, after, angle + 40.0 * pi + 0.5), angle + 40.0 * pi,
+                1e-13);  // eps * 130
     EXPECT_NEAR(reference_twist(before, after, angle - 40.0 * pi - 3.0), angle - 40.0 * pi, 1e-13);
   }
 }

@@ -22,11 +22,13 @@ constexpr Controls kUnit{0.0, 0.5, 1.0};
 constexpr double kOrderTolerance = 0.05;
 
 // ------------------------------------------------------------------------------------------- compression
-// The straight rod under compression P is shortened to lambda = 1 - P/EA; linearised, EI theta'' = -lambda (P theta + V),
-// so that the inextensible load is P lambda.
+// The straight rod under compression P is shortened to lambda = 1 - P/EA; linearised, EI theta'' = -lambda (P
+// theta + V), so that the inextensible load is P lambda.
 constexpr double kAxialStiffness = 2e4;
 
-double effective_load(double compression) { return compression * (1.0 - compression / kAxialStiffness); }
+double effective_load(double compression) {
+  return compression * (1.0 - compression / kAxialStiffness);
+}
 
 double planar_critical(PlanarEnd::Kind left, PlanarEnd::Kind right, int half_edges) {
   return test::critical_load(1.0, 100.0, [&](double compression) {
@@ -56,7 +58,8 @@ SpatialRodProperties round_rod() {
   return p;
 }
 
-double spatial_critical(SpatialEnd::Kind left, SpatialEnd::Kind right, double second_stiffness, int half_edges) {
+double spatial_critical(SpatialEnd::Kind left, SpatialEnd::Kind right, double second_stiffness,
+                        int half_edges) {
   return test::critical_load(1.0, 100.0, [&](double compression) {
     SpatialRodProperties p = round_rod();
     p.second_bending_stiffness = second_stiffness;
@@ -72,7 +75,8 @@ void expect_load(const std::array<double, 3>& compressions, double expected) {
   const test::Extrapolation result = test::extrapolate(
       {effective_load(compressions[0]), effective_load(compressions[1]), effective_load(compressions[2])});
   EXPECT_NEAR(result.order, 2.0, kOrderTolerance);
-  // Fourth-order rest: the relative error at 160 edges is about P h^2/12 = 1e-4, its square times a constant of 10.
+  // Fourth-order rest: the relative error at 160 edges is about P h^2/12 = 1e-4, its square times a constant
+  // of 10.
   EXPECT_NEAR(result.limit, expected, 1e-6 * expected);
 }
 
@@ -83,7 +87,8 @@ TEST(Buckling, PlanarColumn) {
     return std::array{planar_critical(left, right, 20), planar_critical(left, right, 40),
                       planar_critical(left, right, 80)};
   };
-  expect_load(loads(Kind::clamp, Kind::clamp), validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
+  expect_load(loads(Kind::clamp, Kind::clamp),
+              validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
   expect_load(loads(Kind::clamp, Kind::pin), validation::buckling_load(ColumnEnds::clamped_pinned, 1.0, 1.0));
   expect_load(loads(Kind::pin, Kind::pin), validation::buckling_load(ColumnEnds::pinned_pinned, 1.0, 1.0));
 }
@@ -98,7 +103,8 @@ TEST(Buckling, SpatialColumn) {
   expect_load(loads(Kind::clamp, Kind::clamp, 1.0),
               validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
   // About its weak axis.
-  expect_load(loads(Kind::clamp, Kind::pin, 0.4), validation::buckling_load(ColumnEnds::clamped_pinned, 0.4, 1.0));
+  expect_load(loads(Kind::clamp, Kind::pin, 0.4),
+              validation::buckling_load(ColumnEnds::clamped_pinned, 0.4, 1.0));
 }
 
 TEST(Buckling, PinsLikeTheirPlanarCounterpart) {
@@ -134,8 +140,8 @@ TEST(TwistInstability, ClampedRodUnderAnyTension) {
         {critical_torque(tension, 20), critical_torque(tension, 40), critical_torque(tension, 80)});
     const double expected = validation::critical_torque_clamped(1.0, tension, 1.0);
     EXPECT_NEAR(result.order, 2.0, kOrderTolerance);
-    // Fourth-order rest 1e-6 as above, and the stretch |T|/EA (no more than 2e-3) with its influence on the torque of at
-    // most half of it, since M^2 ~ 4 B T + const; none at T = 0.
+    // Fourth-order rest 1e-6 as above, and the stretch |T|/EA (no more than 2e-3) with its influence on the
+    // torque of at most half of it, since M^2 ~ 4 B T + const; none at T = 0.
     EXPECT_NEAR(result.limit, expected, (1e-6 + 0.5 * std::abs(tension) / kAxialStiffness) * expected);
   }
 }
@@ -174,8 +180,8 @@ double critical_tip_force(double strong_stiffness, int half_edges) {
 }
 
 TEST(LateralTorsionalBuckling, DeepCantileverUnderATipForce) {
-  // The closed form takes the strong axis as rigid; the beam's own deflection before it buckles raises the load by
-  // about 0.95 EI_2/EI_1 of it, so two stiffnesses are extrapolated to the rigid one.
+  // The closed form takes the strong axis as rigid; the beam's own deflection before it buckles raises the
+  // load by about 0.95 EI_2/EI_1 of it, so two stiffnesses are extrapolated to the rigid one.
   const auto load = [](double strong) {
     const test::Extrapolation result = test::extrapolate(
         {critical_tip_force(strong, 10), critical_tip_force(strong, 20), critical_tip_force(strong, 40)});

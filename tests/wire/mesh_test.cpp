@@ -56,7 +56,8 @@ TEST(MaterialMesh, GradingDrawsVerticesTowardsMountsAndContact) {
   for (const int side : {0, 8}) {
     for (int e = 0; e < 4; ++e) {
       // Symmetric about the middle of the side, growing towards it.
-      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls), kRoundOff);
+      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls),
+                  kRoundOff);
     }
     for (int e = 1; e < 4; ++e) {
       EXPECT_GT(mesh.rest_length(side + e, kControls), mesh.rest_length(side + e - 1, kControls));

@@ -14,8 +14,9 @@ namespace {
 
 constexpr Controls kControls{0.0, 0.45, 1.05};
 
-// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge (truncation
-// h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for other seeds.
+// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge
+// (truncation h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for
+// other seeds.
 constexpr double kDifference = 1e-10;
 
 void expect_exact(const test::RodDerivativeErrors& errors) {
@@ -54,7 +55,8 @@ TEST(PlanarRod, EnergyIsInvariantAndGradientTurnsWithTheRod) {
     at.gradient.segment<2>(2 * i) = turn * Eigen::Vector2d(at.gradient.segment<2>(2 * i));
   }
   const RodAssembly there = test::assembled(rod, moved);
-  EXPECT_NEAR(there.energy, at.energy, 1e-12 * at.energy);  // coordinates of order 2 lose 4 eps an edge of 0.1
+  EXPECT_NEAR(there.energy, at.energy,
+              1e-12 * at.energy);  // coordinates of order 2 lose 4 eps an edge of 0.1
   EXPECT_LT((there.gradient - at.gradient).lpNorm<Eigen::Infinity>(),
             1e-11 * at.gradient.lpNorm<Eigen::Infinity>());  // round-off of the coordinates times EA/l0
 }
@@ -76,7 +78,8 @@ TEST(PlanarRod, HeldRowsAreThoseOfTheIdentity) {
 }
 
 TEST(PlanarRod, MomentsOfACircularArc) {
-  // A free rod on a circle has M = EI (curvature - natural) at every inner vertex, to second order in the edge.
+  // A free rod on a circle has M = EI (curvature - natural) at every inner vertex, to second order in the
+  // edge.
   PlanarRodProperties p;
   p.bending_stiffness = 0.7;
   p.axial_stiffness = 5.0;

@@ -2,6 +2,7 @@
 
 #include "tests/support/random_rods.hpp"
 #include "tests/support/rod_derivatives.hpp"
+#include "wire/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +19,9 @@ using std::numbers::pi;
 
 constexpr Controls kControls{0.0, 0.45, 1.05};
 
-// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge (truncation
-// h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for other seeds.
+// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge
+// (truncation h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for
+// other seeds.
 constexpr double kDifference = 1e-10;
 
 void expect_exact(const test::RodDerivativeErrors& errors) {
@@ -158,9 +160,11 @@ TEST(SpatialRod, EnergyIsInvariantAndGradientTurnsWithTheRod) {
     for (int i = 0; i < rod.mesh().vertices(); ++i) {
       expected.segment<3>(4 * i) = turn * Vector3d(at.gradient.segment<3>(4 * i));
     }
-    // Coordinates of order one lose eps on edges of 0.1: 1e-15 relative, times the stiffness ratio 1e2 to 1e3.
+    // Coordinates of order one lose eps on edges of 0.1: 1e-15 relative, times the stiffness ratio 1e2 to
+    // 1e3.
     EXPECT_NEAR(there.energy, at.energy, 1e-12 * at.energy);
-    EXPECT_LT((there.gradient - expected).lpNorm<Eigen::Infinity>(), 1e-11 * expected.lpNorm<Eigen::Infinity>());
+    EXPECT_LT((there.gradient - expected).lpNorm<Eigen::Infinity>(),
+              1e-11 * expected.lpNorm<Eigen::Infinity>());
   }
 }
 
@@ -180,19 +184,19 @@ TEST(SpatialRod, FreeRodHasNoNetForceNorMoment) {
     force += f;
     moment += vertex(state, i).cross(f);
   }
-  // A rotation omega turns every edge and, at fixed theta, its frame by omega less the transport's share; what
-  // the frame lacks is omega.t: so the torques dE/dtheta belong to the balance.
+  // A rotation omega turns every edge and, at fixed theta, its frame by omega less the transport's share;
+  // what the frame lacks is omega.t: so the torques dE/dtheta belong to the balance.
   for (int e = 0; e < rod.mesh().edges(); ++e) {
     moment += at.gradient[4 * e + 3] * (vertex(state, e + 1) - vertex(state, e)).normalized();
   }
   const double size = at.gradient.lpNorm<Eigen::Infinity>();
-  EXPECT_LT(force.norm(), 1e-13 * size);   // sums of ten terms
+  EXPECT_LT(force.norm(), 1e-13 * size);  // sums of ten terms
   EXPECT_LT(moment.norm(), 1e-13 * size);
 }
 
 TEST(SpatialRod, MomentsBalanceTheForcesOnEveryEdge) {
-  // dE by a rotation of all that follows vertex i is the moment there plus what the tension does: for the part
-  // after i, held at nothing, M_i = sum of (x_j - x_i) x f_j + sum dE/dtheta t over that part.
+  // dE by a rotation of all that follows vertex i is the moment there plus what the tension does: for the
+  // part after i, held at nothing, M_i = sum of (x_j - x_i) x f_j + sum dE/dtheta t over that part.
   std::mt19937 random(9);
   SpatialRodProperties p = test::general_properties();
   p.weight.setZero();
@@ -235,12 +239,14 @@ TEST(SpatialRod, ManyTurnsOfAMountAreCounted) {
   }
   Eigen::VectorXd q = state.q;
   for (int e = 0; e < 12; ++e) {
-    const double middle = 0.5 * (rod.mesh().coordinate(e, state.controls) + rod.mesh().coordinate(e + 1, state.controls));
+    const double middle =
+        0.5 * (rod.mesh().coordinate(e, state.controls) + rod.mesh().coordinate(e + 1, state.controls));
     q[4 * e + 3] = 2.0 * pi * turns * middle;
   }
   accept(state, q);
   const Eigen::VectorXd torque = rod.torques(state);
-  for (int i = 0; i <= 12; ++i) EXPECT_NEAR(torque[i], 0.5 * 2.0 * pi * turns, 1e-11);  // eps of 130 rad / 0.02
+  for (int i = 0; i <= 12; ++i)
+    EXPECT_NEAR(torque[i], 0.5 * 2.0 * pi * turns, 1e-11);  // eps of 130 rad / 0.02
 
   // The director instead: the reference twist at the mount follows.
   for (int step = 1; step <= 70; ++step) {
@@ -253,6 +259,40 @@ TEST(SpatialRod, ManyTurnsOfAMountAreCounted) {
   EXPECT_LT((rod.torques(state) - torque).norm(), 1e-9);
 }
 
+TEST(SpatialRod, MountThatGivesInTwistIsInSeries) {
+  // Torque of a straight rod: angle/(L/GJ + 1/k).
+  SpatialRodProperties p;
+  p.bending_stiffness = 0.7;
+  p.second_bending_stiffness = 0.7;
+  p.torsional_stiffness = 0.5;
+  p.axial_stiffness = 5.0;
+  p.left.twisting_stiffness = 0.4;
+  p.right.position = 1.05 * Vector3d::UnitX();
+  p.right.twist_angle = 0.9;
+  const SpatialRod rod(MaterialMesh(4, 5, 0.7), p);
+  SpatialState state = rod.straight_state(kControls);
+  const EquilibriumReport report = find_equilibrium(rod, state);
+  ASSERT_TRUE(report.usable()) << report.message;
+  const double torque = 0.9 / (1.05 / 0.5 + 1.0 / 0.4);
+  // Residual 1e-10 (EI/L^2 + tension) of the solver.
+  for (int i = 0; i <= 9; ++i) EXPECT_NEAR(rod.torques(state)[i], torque, 1e-9);
+}
+
+TEST(SpatialRod, TwistingPinHoldsTheTwistOnly) {
+  // A rod that leaves a twisting pin at an angle is neither bent nor twisted by it.
+  SpatialRodProperties p = test::round_properties();
+  p.weight.setZero();
+  p.left.kind = SpatialEnd::Kind::twisting_pin;
+  p.left.direction = Vector3d(1.0, 1.0, 0.3).normalized();
+  p.left.director = p.left.direction.cross(Vector3d::UnitZ()).normalized();
+  p.right.kind = SpatialEnd::Kind::pin;
+  p.right.position = 1.05 * Vector3d::UnitX();
+  const SpatialRod rod(MaterialMesh(4, 5, 0.7), p);
+  const RodAssembly at = test::assembled(rod, rod.straight_state(kControls));
+  EXPECT_NEAR(at.energy, 0.0, 1e-15);
+  EXPECT_LT(at.gradient.lpNorm<Eigen::Infinity>(), 1e-13);  // EA eps L/h
+}
+
 TEST(SpatialRod, RoundRodBendsIndependentlyOfItsTwist) {
   std::mt19937 random(10);
   SpatialRodProperties p = test::round_properties();
@@ -260,7 +300,8 @@ TEST(SpatialRod, RoundRodBendsIndependentlyOfItsTwist) {
   p.right.kind = SpatialEnd::Kind::free;
   const SpatialRod rod(MaterialMesh(4, 5, 0.5), p);
   SpatialState state = test::random_state(rod, kControls, random, 0.4);
-  for (int e = 0; e < 9; ++e) state.q[4 * e + 3] = -Eigen::VectorXd::Map(state.reference_twist.data(), 10).head(e + 1).sum();
+  for (int e = 0; e < 9; ++e)
+    state.q[4 * e + 3] = -Eigen::VectorXd::Map(state.reference_twist.data(), 10).head(e + 1).sum();
   const double untwisted = rod.energy(state);
   SpatialState twisted = state;
   for (int e = 0; e < 9; ++e) twisted.q[4 * e + 3] += 2.9 * e;
@@ -301,13 +342,14 @@ TEST(SpatialRod, NaturalHelixKeepsAnEnergyOfSecondOrder) {
       Frame wanted{state.frames[static_cast<std::size_t>(e)].tangent, normal};
       wanted.director -= wanted.tangent.dot(normal) * wanted.tangent;
       wanted.director.normalize();
-      q[4 * e + 3] = reference_twist(state.frames[static_cast<std::size_t>(e)], wanted, e == 0 ? 0.0 : q[4 * e - 1]);
+      q[4 * e + 3] =
+          reference_twist(state.frames[static_cast<std::size_t>(e)], wanted, e == 0 ? 0.0 : q[4 * e - 1]);
     }
     accept(state, q);
     return rod.energy(state);
   };
-  // Mean directors see cos(m/2) of the curvature, m = torsion h: 1/2 (EI_1 + EI_2)/2 curvature^2 (m/2)^2 is left per
-  // length. The two half cells at the free ends are missing, 1/n, and the next order is h^2.
+  // Mean directors see cos(m/2) of the curvature, m = torsion h: 1/2 (EI_1 + EI_2)/2 curvature^2 (m/2)^2 is
+  // left per length. The two half cells at the free ends are missing, 1/n, and the next order is h^2.
   const double coarse = energy(20);
   EXPECT_NEAR(coarse, 0.5 * 1.3 * 4.0 * std::pow(1.5 / 80.0, 2), 0.04 * coarse);
   EXPECT_NEAR(coarse / energy(40), 4.0, 0.1);
