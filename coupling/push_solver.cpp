@@ -2,6 +2,7 @@
 
 #include "coupling/contact_switch.hpp"
 #include "coupling/push_setup.hpp"
+#include "coupling/spatial_push.hpp"
 #include "wire/equilibrium.hpp"
 
 #include <fmt/format.h>
@@ -21,8 +22,9 @@ constexpr int history_length = 4;  // points behind the predictor: a cubic
 /// Follows one push from first touch through the asked travels.
 class PushFollower {
  public:
-  PushFollower(PushSetup setup, const PushOptions& options)
-      : setup_(std::move(setup)), system_(*setup_.system), options_(options), point_(setup_.start) {}
+  PushFollower(PushSetup setup, const PushOptions& options, double torsional_stiffness)
+      : setup_(std::move(setup)), system_(*setup_.system), options_(options),
+        torsional_stiffness_(torsional_stiffness), point_(setup_.start) {}
 
   PushCurve run(const std::vector<double>& travel);
 
@@ -46,6 +48,7 @@ class PushFollower {
   PushSetup setup_;
   PushSystem& system_;
   const PushOptions& options_;
+  double torsional_stiffness_;
   numerics::PathPoint point_;            // last accepted
   std::deque<numerics::PathPoint> past_; // accepted ones with the same contact, newest last
   numerics::PathWorkspace workspace_;
@@ -378,6 +381,9 @@ void PushFollower::record(double travel) {
   p.energy = system_.rod().energy(state);
   p.dissipated = dissipated_;
   p.unstable_modes = unstable_;
+  if (options_.examine_out_of_plane) {
+    p.out_of_plane_modes = out_of_plane_modes(system_.rod(), state, torsional_stiffness_);
+  }
   p.in_contact = pusher.status != ContactStatus::open;
   p.slipping = pusher.friction > 0.0 && pusher.status == ContactStatus::slip;
   p.iterations = iterations_;
@@ -430,13 +436,14 @@ PushCurve PushFollower::run(const std::vector<double>& travel) {
 }
 
 PushCurve solve_on_mesh(const PushTest& test, const PushOptions& options, int coarsening) {
+  if (needs_space(test)) return solve_spatial_push(test, options, coarsening);
   PushSetup setup = prepare_push(test, options.elements, options.grading, coarsening);
   if (!setup.report.usable()) {
     PushCurve curve;
     curve.report = setup.report;
     return curve;
   }
-  return PushFollower(std::move(setup), options).run(test.travel);
+  return PushFollower(std::move(setup), options, test.wire.torsional_stiffness()).run(test.travel);
 }
 
 }  // namespace

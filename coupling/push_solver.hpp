@@ -27,6 +27,7 @@ struct PushPoint {
   double travel = 0.0;         ///< of the pusher from first touch [m]
   double force = 0.0;          ///< on the pusher along the push, positive when the wire resists [N]
   double transverse_force = 0.0;  ///< on the pusher across the push, along the chord [N]
+  double axial_force = 0.0;    ///< on the pusher along z, where it is tilted [N]
   double tension_left = 0.0;   ///< axial force in the wire at the left mount, tension positive [N]
   double tension_right = 0.0;  ///< at the right mount [N]
   double contact_coordinate = 0.0;  ///< material coordinate of the (middle of the) contact from the left mount [m]
@@ -34,6 +35,7 @@ struct PushPoint {
   double energy = 0.0;         ///< elastic energy and potential of the weight [J]
   double dissipated = 0.0;     ///< friction work so far [J], never decreasing
   double imbalance = 0.0;      ///< |mounts + pusher + weight| [N]: action and reaction
+  int out_of_plane_modes = 0;  ///< unstable ones that leave the plane, when asked for
   int unstable_modes = 0;      ///< negative eigenvalues of the constrained tangent: 0 is stable
   bool in_contact = true;
   bool slipping = false;       ///< friction only: the contact slides
@@ -60,6 +62,7 @@ struct PushOptions {
   Instability instability = Instability::follow_path;
   int max_iterations = 12;      ///< Newton iterations a step
   double smallest_step = 1e-9;  ///< of the travel [m]
+  bool examine_out_of_plane = false;  ///< count the modes that leave the plane (a spatial factorisation a point)
   std::vector<double> shapes_at;  ///< travels at which to keep the shape [m]
   std::function<bool(double travel)> progress;  ///< called after every point; false stops the run
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cassert>
 #include <vector>
 
@@ -57,7 +58,7 @@ class SymmetricBandMatrix {
 /// A = L D L^T of a symmetric band matrix without pivoting; n b^2 operations.
 ///
 /// By Sylvester's law the signs of D are the signs of the eigenvalues of A, which decides stability. Without
-/// pivoting the factorisation is accurate while no leading minor is nearly singular; `growth()` tells.
+/// pivoting the factorisation is accurate while no leading minor is nearly singular; `pivot_ratio()` tells.
 class BandLdlt {
  public:
   /// Factorises a. Returns false, and leaves the factor unusable, when a pivot is zero or not finite.

@@ -290,7 +290,7 @@ std::vector<Row> friction_rows() {
   const char* group = "Coulomb friction on the pusher";
   PushTest test = declared_test(40.0 * mm, 6.0 * mm);
   test.pusher.friction = 0.2;
-  constexpr int points = 80;
+  constexpr int points = 400;
   for (int i = 0; i <= points; ++i) test.travel.push_back(2.0 * mm * i / points);
   for (int i = points - 1; i >= 0; --i) test.travel.push_back(2.0 * mm * i / points);
   const coupling::PushCurve loop = coupling::solve_push(test, fine());
