@@ -10,7 +10,7 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
   std::vector<std::string> columns{
       "series",          "displacement_mm", "force_N",          "tension_left_N", "tension_right_N",
       "contact_arc_mm",  "iterations",      "converged",        "discretisation_error_N",
-      "transverse_force_N", "wrapped_mm",   "in_contact",       "slipping",       "unstable_modes",
+      "transverse_force_N", "wrapped_mm",   "in_contact",       "slipping",       "unstable_modes",   "out_of_plane_modes", "axial_force_N",
       "energy_J",        "dissipated_J",    "imbalance_N"};
   for (const CurveColumn& column : more) columns.push_back(column.name);
   numerics::CsvWriter csv(file, columns);
@@ -53,6 +53,8 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
                                          static_cast<long long>(p.in_contact),
                                          static_cast<long long>(p.slipping),
                                          static_cast<long long>(p.unstable_modes),
+                                         static_cast<long long>(p.out_of_plane_modes),
+                                         p.axial_force,
                                          p.energy,
                                          p.dissipated,
                                          p.imbalance};

@@ -38,6 +38,7 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
 
   std::vector<identification::PredictionOptions> prediction_options(experiment.series.size());
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    prediction_options[k].examine_out_of_plane = true;
     prediction_options[k].progress = [&console, &series = experiment.series[k]](double travel) {
       console.progress(fmt::format("{}: {:.3f} of {:.3f} mm", series.name, 1e3 * travel,
                                    1e3 * identification::measured_displacement(series).back()));

@@ -404,7 +404,7 @@ ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& 
   return {0.5 * (first + last), last - first};
 }
 
-bool reseat_open_contact(PushSystem& system, numerics::PathPoint& point, numerics::PathWorkspace& workspace) {
+bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::PathWorkspace& workspace) {
   const Vector2d centre = pusher_centre(system, point.parameter);
   const wire::PlanarState state = system.state(point);
   int nearest = 1;
@@ -419,7 +419,15 @@ bool reseat_open_contact(PushSystem& system, numerics::PathPoint& point, numeric
   const VertexTangent v = system.tangent_at(pusher, moved);
   point.border[3] = pusher.side * v.normal.dot(wire::vertex(moved, pusher.node) - centre) - pusher.radius;
   const numerics::SolveReport report = numerics::correct(system, point, workspace, 50);
-  return report.usable() && point.border[3] >= 0.0;
+  if (!report.usable()) return false;
+  if (point.border[3] >= 0.0) return true;
+  pusher.status = pusher.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
+  pusher.last_coordinate = point.border[2];
+  pusher.last_tangent = system.tangent_at(pusher, system.state(point)).t;
+  point.border[3] = 0.0;
+  if (!numerics::correct(system, point, workspace, 50).usable()) return false;
+  const VertexTangent pressed = system.tangent_at(pusher, system.state(point));
+  return pusher.side * pressed.normal.dot(point.border.segment<2>(0)) >= 0.0;
 }
 
 }  // namespace snare::coupling

@@ -61,9 +61,9 @@ struct ContactExtent {
 };
 [[nodiscard]] ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& state);
 
-/// Puts the contact vertex at the point of the wire nearest to the pusher and opens the contact; false when the
-/// wire lies inside the pusher or on its other side.
-[[nodiscard]] bool reseat_open_contact(PushSystem& system, numerics::PathPoint& point,
+/// Puts the contact vertex at the point of the wire nearest to the pusher and opens the contact, or, where the wire
+/// lies inside the pusher, presses it out. False when there is no such equilibrium.
+[[nodiscard]] bool reseat_contact(PushSystem& system, numerics::PathPoint& point,
                                        numerics::PathWorkspace& workspace);
 
 }  // namespace snare::coupling

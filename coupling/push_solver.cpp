@@ -223,8 +223,8 @@ bool PushFollower::snap_free_wire() {
   if (!report.usable()) return fail(report.termination, "the wire snapped and its new shape was not found");
   trial_ = point_;
   trial_.band = free.q;
-  if (!reseat_open_contact(system_, trial_, workspace_)) {
-    return fail(numerics::Termination::step_too_small, "after the snap the wire lies on the other side of the pusher");
+  if (!reseat_contact(system_, trial_, workspace_)) {
+    return fail(numerics::Termination::step_too_small, "after the snap no equilibrium was found on this side of the pusher");
   }
   past_.clear();
   point_ = trial_;
@@ -476,6 +476,7 @@ ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOption
   PushOptions coarse_options = options;
   coarse_options.shapes_at.clear();
   coarse_options.progress = nullptr;
+  coarse_options.examine_out_of_plane = false;
   const PushCurve half = solve_on_mesh(test, coarse_options, 2);
   const PushCurve quarter = solve_on_mesh(test, coarse_options, 4);
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;

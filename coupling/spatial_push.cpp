@@ -1,12 +1,14 @@
 #include "coupling/spatial_push.hpp"
 
 #include "numerics/band_matrix.hpp"
+#include "wire/loose_wire.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace snare::coupling {
 
@@ -41,12 +43,6 @@ wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_sti
   return {planar.mesh(), properties};
 }
 
-wire::SpatialState in_space(const wire::SpatialRod& rod, const wire::PlanarState& planar) {
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(rod.unknowns());
-  for (int i = 0; i < rod.mesh().vertices(); ++i) q.segment<2>(wire::SpatialRod::block * i) = planar.q.segment<2>(2 * i);
-  return rod.make_state(q, planar.controls);
-}
-
 Vector3d axis_of(double tilt) { return {std::sin(tilt), 0.0, std::cos(tilt)}; }
 
 /// Follows a push in space.
@@ -61,7 +57,6 @@ class SpatialFollower {
   [[nodiscard]] bool advance(double target);
   void accept(const numerics::PathPoint& point);
   void record();
-  [[nodiscard]] numerics::SolveReport solve(numerics::PathPoint& point);
   [[nodiscard]] bool fail(const numerics::SolveReport& report, const std::string& message);
 
   const PushTest& test_;
@@ -77,6 +72,7 @@ class SpatialFollower {
   int iterations_ = 0;
   double dissipated_ = 0.0;
   Vector2d last_friction_ = Vector2d::Zero();  // on the wire in (c, a) [N]
+  bool slides_ = false;
 };
 
 bool SpatialFollower::fail(const numerics::SolveReport& report, const std::string& message) {
@@ -87,35 +83,19 @@ bool SpatialFollower::fail(const numerics::SolveReport& report, const std::strin
   return false;
 }
 
-// Newton's method with the friction's direction settled: the drag opposes the slip.
-numerics::SolveReport SpatialFollower::solve(numerics::PathPoint& point) {
-  numerics::SolveReport report;
-  for (int round = 0; round < 40; ++round) {
-    report = numerics::correct(*system_, point, workspace_, options_.max_iterations);
-    iterations_ += report.iterations;
-    SpatialPin& pin = system_->pin;
-    if (!report.usable() || pin.status != ContactStatus::slip || pin.friction == 0.0) return report;
-    const Vector2d slip = system_->geometry(point, system_->state(point)).slip;
-    if (slip.norm() < 1e-15 * system_->length_scale()) return report;
-    const Vector2d drag = -slip.normalized();
-    if (drag.dot(pin.drag) < 0.0 || (drag - pin.drag).norm() < 1e-8) return report;
-    pin.drag = drag;
-  }
-  report.termination = numerics::Termination::iteration_limit;
-  report.message = "the direction of the friction does not settle";
-  return report;
-}
-
 void SpatialFollower::accept(const numerics::PathPoint& point) {
   const wire::SpatialState s = system_->state(point);
   const SpatialPushSystem::Geometry g = system_->geometry(point, s);
   SpatialPin& pin = system_->pin;
-  const Vector3d force = point.border.head<3>();
-  const Vector2d friction(force.dot(g.across), force.dot(pin.axis));
-  if (pin.friction > 0.0 && pin.status == ContactStatus::slip) {
-    dissipated_ += 0.5 * (friction + last_friction_).norm() * g.slip.norm();
+  const bool slides = pin.pressed && pin.friction > 0.0 && system_->slides(g);
+  // Trapezoidal in the force; where the slip has turned round, the force it ends with.
+  const bool turned = g.friction.dot(last_friction_) <= 0.0;
+  if (slides) dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * g.slip.norm();
+  if (slides != slides_) {
+    curve_.events.push_back({slides ? PushEvent::Kind::slip_begins : PushEvent::Kind::slip_ends, point.parameter});
+    slides_ = slides;
   }
-  last_friction_ = friction;
+  last_friction_ = g.friction;
   before_ = point_;
   has_before_ = point_.band.size() > 0 && point.parameter != point_.parameter;
   point_ = point;
@@ -158,7 +138,7 @@ bool SpatialFollower::start() {
   pin.side = flat.side;
   pin.radius = flat.radius;
   pin.last_coordinate = planar_state.controls[1];
-  wire::SpatialState state = in_space(*rod_, planar_state);
+  wire::SpatialState state = wire::in_space(*rod_, planar_state);
   system_ = std::make_unique<SpatialPushSystem>(*rod_, state, pin);
   point_.band = state.q;
   point_.border.setZero(SpatialPushSystem::border_unknowns);
@@ -227,7 +207,7 @@ bool SpatialFollower::start() {
   system_->pin.friction = test_.pusher.friction;
   accept(point_);
   has_before_ = false;
-  if (test_.pusher.friction > 0.0) system_->pin.status = ContactStatus::stick;
+  curve_.events.clear();
   dissipated_ = 0.0;
   return true;
 }
@@ -250,40 +230,25 @@ bool SpatialFollower::advance(double target) {
     }
     numerics::SolveReport report;
     bool settled = false;
-    for (int round = 0; round < 20 && !settled; ++round) {
-      report = solve(trial);
+    std::optional<PushEvent::Kind> event;
+    for (int round = 0; round < 3 && !settled; ++round) {
+      report = numerics::correct(*system_, trial, workspace_, 2 * options_.max_iterations);
+      iterations_ += report.iterations;
       if (!report.usable()) break;
       SpatialPin& pin = system_->pin;
-      const wire::SpatialState s = system_->state(trial);
-      const SpatialPushSystem::Geometry g = system_->geometry(trial, s);
-      const Vector3d force = trial.border.head<3>();
-      const double normal = force.dot(g.normal);
+      const SpatialPushSystem::Geometry g = system_->geometry(trial, system_->state(trial));
       const double floor = 1e-9 * (system_->mount_reactions()[0].norm() + system_->mount_reactions()[1].norm());
       settled = true;
-      if (pin.status == ContactStatus::open) {
-        if (trial.border[4] < -1e-9 * system_->length_scale()) {
-          pin.status = pin.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
-          trial.border[4] = 0.0;
-          settled = false;
-          curve_.events.push_back({PushEvent::Kind::touch, travel});
-        }
-        continue;
-      }
-      const Vector2d friction(force.dot(g.across), force.dot(pin.axis));
-      if (pin.status == ContactStatus::stick && friction.norm() > pin.friction * std::max(0.0, normal) + floor) {
-        pin.status = ContactStatus::slip;
-        pin.drag = friction.normalized();
+      if (!pin.pressed && trial.border[4] < -1e-9 * system_->length_scale()) {
+        pin.pressed = true;
+        trial.border[4] = 0.0;
         settled = false;
-        curve_.events.push_back({PushEvent::Kind::slip_begins, travel});
-      } else if (normal < -floor) {
-        pin.status = ContactStatus::open;
+        event = PushEvent::Kind::touch;
+      } else if (pin.pressed && g.normal_force < -floor) {
+        pin.pressed = false;
         trial.border.head<3>().setZero();
         settled = false;
-        curve_.events.push_back({PushEvent::Kind::lift_off, travel});
-      } else if (pin.status == ContactStatus::slip && pin.friction > 0.0 && g.slip.dot(pin.drag) > 1e-12 * system_->length_scale()) {
-        pin.status = ContactStatus::stick;
-        settled = false;
-        curve_.events.push_back({PushEvent::Kind::slip_ends, travel});
+        event = PushEvent::Kind::lift_off;
       }
     }
     if (!report.usable() || !settled) {
@@ -306,6 +271,7 @@ bool SpatialFollower::advance(double target) {
       }
     }
     accept(trial);
+    if (event) curve_.events.push_back({*event, travel});
     step *= 2.0;
   }
   return true;
@@ -328,8 +294,8 @@ void SpatialFollower::record() {
   p.energy = rod_->energy(s);
   p.dissipated = dissipated_;
   p.unstable_modes = workspace_.solver.negative_pivots();
-  p.in_contact = pin.status != ContactStatus::open;
-  p.slipping = pin.friction > 0.0 && pin.status == ContactStatus::slip;
+  p.in_contact = pin.pressed;
+  p.slipping = slides_;
   p.iterations = iterations_;
   curve_.newton_iterations += iterations_;
   iterations_ = 0;
@@ -381,7 +347,7 @@ PushCurve solve_spatial_push(const PushTest& test, const PushOptions& options, i
 
 int out_of_plane_modes(const wire::PlanarRod& planar, const wire::PlanarState& state, double torsional_stiffness) {
   const wire::SpatialRod rod = spatial_rod(planar, torsional_stiffness, 0.0);
-  const wire::SpatialState s = in_space(rod, state);
+  const wire::SpatialState s = wire::in_space(rod, state);
   wire::RodAssembly assembly;
   rod.assemble(s, {false, false, false}, assembly);
   rod.hold_mounts(assembly);

@@ -4,6 +4,8 @@
 #include "coupling/push_solver.hpp"
 #include "wire/spatial_rod.hpp"
 
+#include <algorithm>
+
 namespace snare::coupling {
 
 /// The point of contact between a wire and a straight pin of any direction.          theory.md (C.10)
@@ -17,15 +19,16 @@ struct SpatialPin {
   double side = 1.0;
   double radius = 0.0;    ///< [m], >= 0
   double friction = 0.0;  ///< Coulomb coefficient
-  ContactStatus status = ContactStatus::slip;  ///< slip, stick or open
-  Eigen::Vector2d drag = Eigen::Vector2d::Zero();  ///< unit: direction of the friction on the wire in (c, a) while it slips
+  bool pressed = true;    ///< false: open, the gap is positive
   double last_coordinate = 0.0;                    ///< S at the last accepted state [m]
   Eigen::Vector3d last_normal = Eigen::Vector3d::UnitY();
   double last_zeta = 0.0;                          ///< [m]
 };
 
-/// Equilibrium of a spatial rod with one pin, as a path problem. The parameter is the travel, or the tilt of the
-/// pin at fixed travel. Border unknowns: f (3), S, g.
+/// Equilibrium of a spatial rod with one pin, Coulomb friction in both directions of its surface by the projection
+///   f_T = P(f_T - r v),  P onto the disc of radius mu N                              theory.md (C.11)
+/// (Alart and Curnier 1991), v the slip since the last accepted state: sticking is inside the disc, sliding on its rim.
+/// The parameter is the travel. Border unknowns: f (3), S, g.
 class SpatialPushSystem final : public numerics::PathProblem {
  public:
   static constexpr int border_unknowns = 5;
@@ -51,8 +54,15 @@ class SpatialPushSystem final : public numerics::PathProblem {
     Eigen::Vector3d tangent, normal, across;  ///< t, n, c
     double zeta = 0.0;
     Eigen::Vector2d slip = Eigen::Vector2d::Zero();  ///< of the wire over the pin since the last state, in (c, a) [m]
+    double normal_force = 0.0;                       ///< f.n [N]
+    Eigen::Vector2d friction = Eigen::Vector2d::Zero();  ///< f in (c, a) [N]
+    Eigen::Vector2d trial = Eigen::Vector2d::Zero();     ///< f_T - r v [N]
   };
   [[nodiscard]] Geometry geometry(const numerics::PathPoint& at, const wire::SpatialState& state) const;
+  /// Whether the friction is on the rim of its disc.
+  [[nodiscard]] bool slides(const Geometry& g) const {
+    return pin.friction == 0.0 || g.trial.norm() > pin.friction * std::max(0.0, g.normal_force);
+  }
 
  private:
   const wire::SpatialRod* rod_;

@@ -77,6 +77,10 @@ SpatialPushSystem::Geometry SpatialPushSystem::geometry(const numerics::PathPoin
   const double fed = at.border[3] - pin.last_coordinate;
   g.slip = {-pin.radius * turned - g.tangent.dot(g.across) * fed,
             g.zeta - pin.last_zeta - g.tangent.dot(pin.axis) * fed};
+  const Vector3d force = at.border.head<3>();
+  g.normal_force = force.dot(g.normal);
+  g.friction = {force.dot(g.across), force.dot(pin.axis)};
+  g.trial = g.friction - rod_->properties().axial_stiffness / length_ * g.slip;
   return g;
 }
 
@@ -103,7 +107,7 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
   Eigen::MatrixXd& corner = system.corner;
   Eigen::VectorXd& residual = system.border_residual;
   system.columns.emplace_back(3, &assembly_.control_columns[1]);
-  const bool pressed = pin.status != ContactStatus::open;
+  const bool pressed = pin.pressed;
   if (pressed) {
     for (int a = 0; a < 3; ++a) {
       system.band_residual[block * i + a] -= force[a];
@@ -151,26 +155,53 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
   }
   residual[4] = gap;
   corner(4, 4) = 1.0;
-  if (pin.status == ContactStatus::stick) {
-    residual.segment<2>(2) = g.slip;
-    const double fed = at.border[3] - pin.last_coordinate;
-    // -R d(turned) = R c.dn; the tangent's components along c and a change with u as well.
-    add_slope(2, pin.radius * g.across.transpose() * dn - fed * (g.across.transpose() * dt + g.tangent.transpose() * dc));
-    corner(2, 3) -= g.tangent.dot(g.across);
-    add_slope(3, -fed * pin.axis.transpose() * dt);
-    corner(3, 3) -= g.tangent.dot(pin.axis);
-    for (int a = 0; a < 3; ++a) system.rows.push_back({3, block * i + a, pin.axis[a]});
-    by_parameter[3] = -pin.axis.dot(pin.motion);
-    return;
+  // Friction in the directions c and a: rows f_T - mu N w/|w| while it slides, r v while it sticks.
+  const bool sliding = slides(g);
+  const double scale = rod_->properties().axial_stiffness / length_;
+  const double fed = at.border[3] - pin.last_coordinate;
+  const std::array<RowVector3d, 2> direction{g.across.transpose(), pin.axis.transpose()};
+  const std::array<RowVector3d, 2> friction_by_u{force.transpose() * dc, RowVector3d::Zero()};
+  const std::array<RowVector3d, 2> slip_by_u{
+      pin.radius * g.across.transpose() * dn - fed * (g.across.transpose() * dt + g.tangent.transpose() * dc),
+      -fed * pin.axis.transpose() * dt};
+  const std::array<double, 2> slip_by_feed{-g.tangent.dot(g.across), -g.tangent.dot(pin.axis)};
+  // Adds factor * d slip_k to a row.
+  const auto add_slip = [&](int row, int k, double factor) {
+    const auto c = static_cast<std::size_t>(k);
+    add_slope(row, factor * slip_by_u[c]);
+    corner(row, 3) += factor * slip_by_feed[c];
+    if (k == 0) return;
+    for (int a = 0; a < 3; ++a) system.rows.push_back({row, block * i + a, factor * pin.axis[a]});
+    by_parameter[row] -= factor * pin.axis.dot(pin.motion);
+  };
+  const auto add_friction = [&](int row, int k, double factor) {
+    const auto c = static_cast<std::size_t>(k);
+    corner.block<1, 3>(row, 0) += factor * direction[c];
+    add_slope(row, factor * friction_by_u[c]);
+  };
+  const double size_of_trial = g.trial.norm();
+  const Vector2d unit = size_of_trial > 0.0 ? Vector2d(g.trial / size_of_trial) : Vector2d(Vector2d::Zero());
+  const double normal = std::max(0.0, g.normal_force);
+  for (int k = 0; k < 2; ++k) {
+    const int row = 2 + k;
+    if (!sliding) {
+      residual[row] = scale * g.slip[k];
+      add_slip(row, k, scale);
+      continue;
+    }
+    residual[row] = g.friction[k] - pin.friction * normal * unit[k];
+    add_friction(row, k, 1.0);
+    if (pin.friction == 0.0) continue;
+    if (g.normal_force > 0.0) {
+      corner.block<1, 3>(row, 0) -= pin.friction * unit[k] * g.normal.transpose();
+      add_slope(row, -pin.friction * unit[k] * force.transpose() * dn);
+    }
+    for (int m = 0; m < 2; ++m) {
+      const double turn = pin.friction * normal / size_of_trial * ((k == m ? 1.0 : 0.0) - unit[k] * unit[m]);
+      add_friction(row, m, -turn);
+      add_slip(row, m, turn * scale);
+    }
   }
-  // Sliding: f.c - mu f.n drag_c = 0 and f.a - mu f.n drag_a = 0.
-  const Vector2d limit = pin.friction * pin.drag;
-  residual[2] = force.dot(g.across) - limit[0] * force.dot(g.normal);
-  residual[3] = force.dot(pin.axis) - limit[1] * force.dot(g.normal);
-  corner.block<1, 3>(2, 0) = (g.across - limit[0] * g.normal).transpose();
-  corner.block<1, 3>(3, 0) = (pin.axis - limit[1] * g.normal).transpose();
-  add_slope(2, force.transpose() * (dc - limit[0] * dn));
-  add_slope(3, -limit[1] * force.transpose() * dn);
 }
 
 double SpatialPushSystem::error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const {
@@ -185,10 +216,9 @@ double SpatialPushSystem::error(const numerics::PathPoint& at, const numerics::B
     const double allowed = i % block == block - 1 ? force * shortest_edge_ : force;
     error = std::max(error, std::abs(system.band_residual[i]) / allowed);
   }
-  const bool open = pin.status == ContactStatus::open;
-  const bool sticks = pin.status == ContactStatus::stick;
+  const bool open = !pin.pressed;
   error = std::max(error, system.border_residual.head<2>().lpNorm<Eigen::Infinity>() / position);
-  error = std::max(error, system.border_residual.segment<2>(2).lpNorm<Eigen::Infinity>() / (sticks ? position : force));
+  error = std::max(error, system.border_residual.segment<2>(2).lpNorm<Eigen::Infinity>() / force);
   return std::max(error, std::abs(system.border_residual[4]) / (open ? force : position));
 }
 

@@ -158,7 +158,7 @@ coupling::PusherSpecification read_pusher(const TomlTable& table) {
 coupling::BulgeSpecification read_bulge(const TomlTable& table) {
   coupling::BulgeSpecification bulge;
   bulge.mode = table.integer_or("mode", bulge.mode, 1, 4);
-  bulge.plane = table.number_or("plane_deg", 0.0, Range::from(-180.0, 180.0), degree);
+  bulge.plane = table.number_or("plane_deg", 0.0, Range::from(-90.0, 90.0), degree);
   return bulge;
 }
 

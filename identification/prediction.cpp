@@ -26,6 +26,7 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   push.elements = solver.elements;
   push.shapes_at = options.shapes_at;
   push.progress = options.progress;
+  push.examine_out_of_plane = options.examine_out_of_plane;
   if (solver.extrapolate) {
     result.curve = coupling::solve_push_extrapolated(test, push);
   } else {

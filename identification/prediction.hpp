@@ -26,6 +26,7 @@ struct Prediction {
 
 struct PredictionOptions {
   std::vector<double> shapes_at;                ///< travels of which to keep the wire's shape [m]
+  bool examine_out_of_plane = false;            ///< see coupling::PushOptions
   std::function<bool(double travel)> progress;  ///< see coupling::PushOptions
 };
 

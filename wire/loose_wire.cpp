@@ -86,4 +86,24 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
   return result;
 }
 
+SpatialState in_space(const SpatialRod& rod, const PlanarState& planar, double plane) {
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(rod.unknowns());
+  for (int i = 0; i < rod.mesh().vertices(); ++i) {
+    const Eigen::Vector2d x = vertex(planar, i);
+    q.segment<3>(SpatialRod::block * i) = Eigen::Vector3d(x.x(), x.y() * std::cos(plane), x.y() * std::sin(plane));
+  }
+  return rod.make_state(q, planar.controls);
+}
+
+LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar, const Controls& controls, int mode,
+                                 double plane) {
+  const LooseWire flat = find_loose_wire(planar, controls, mode);
+  LooseSpatialWire result{in_space(rod, flat.state, plane), flat.report};
+  if (!flat.report.usable()) return result;
+  EquilibriumOptions options;
+  options.branch = mode == 1 ? Branch::stable : Branch::nearest;
+  result.report = find_equilibrium(rod, result.state, options);
+  return result;
+}
+
 }  // namespace snare::wire

@@ -2,6 +2,7 @@
 
 #include "wire/equilibrium.hpp"
 #include "wire/planar_rod.hpp"
+#include "wire/spatial_rod.hpp"
 
 namespace snare::wire {
 
@@ -21,5 +22,18 @@ struct LooseWire {
 /// Compression at which the straight wire buckles between its mounts in the given mode [N]:
 /// clamped (2 pi)^2, 80.7629, (4 pi)^2, 238.7 times EI/L^2; pinned (n pi)^2.
 [[nodiscard]] double buckling_load(const PlanarRod& rod, double length, int mode);
+
+/// A planar state in space: turned about the chord's direction x by `plane` [rad], without twist. `rod` has the mesh
+/// of the planar one and mounts on the x axis.
+[[nodiscard]] SpatialState in_space(const SpatialRod& rod, const PlanarState& planar, double plane = 0.0);
+
+/// The loose wire in space, buckled in the given mode in the plane at angle `plane` about the chord. `planar` is
+/// the same wire in its plane. Weight and natural curvature then shape it further.
+struct LooseSpatialWire {
+  SpatialState state;
+  EquilibriumReport report;
+};
+[[nodiscard]] LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar,
+                                               const Controls& controls, int mode, double plane);
 
 }  // namespace snare::wire

@@ -114,7 +114,7 @@ const WrongFile wrong_files[] = {
      "x.toml:2: gravity.vector_m_s2 = [0, -9.81], must be an array of 3 numbers"},
     {"title = \"a loose wire\"", "bulge = { mode = 5, plane_deg = 181 }",
      "x.toml:2: bulge.mode = 5, must be an integer >= 1 and <= 4\n"
-     "x.toml:2: bulge.plane_deg = 181, must be >= -180 and <= 180"},
+     "x.toml:2: bulge.plane_deg = 181, must be >= -90 and <= 90"},
     {"span_mm = 175.0", "span_mm = 175.0\nsupport_radius_mm = 2.0",
      "x.toml:15: mount.support_radius_mm = 2.0, only for a mount of kind \"supports\""},
     {"kind = \"clamped\"", "kind = \"supports\"",
