@@ -373,12 +373,9 @@ Vector2d pusher_force_on_wire(const PushSystem& system, const numerics::PathPoin
   return force;
 }
 
-MountForces mount_forces(PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
   MountForces result;
   const wire::PlanarRodProperties& p = system.rod().properties();
-  numerics::BorderedSystem scratch;
-  Eigen::VectorXd by_parameter;
-  system.assemble(at, scratch, by_parameter);
   std::array<Vector2d, 2> reaction = system.mount_reactions();
   if (p.left.kind == wire::PlanarEnd::Kind::free) {
     for (int k = 1; k < static_cast<int>(system.guided.size()); ++k) {

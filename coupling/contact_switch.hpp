@@ -52,7 +52,8 @@ struct MountForces {
   double tension_left = 0.0;                        ///< [N]
   double tension_right = 0.0;
 };
-[[nodiscard]] MountForces mount_forces(PushSystem& system, const wire::PlanarState& state,
+/// At the point that the system was assembled at last.
+[[nodiscard]] MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state,
                                        const numerics::PathPoint& at);
 
 struct ContactExtent {

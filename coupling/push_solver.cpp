@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 namespace snare::coupling {
 
@@ -56,6 +57,7 @@ class PushFollower {
   PushCurve curve_;
   numerics::PathPoint trial_;
   numerics::PathPoint pressed_;          // last solution in which the pusher pressed
+  std::optional<double> assembled_at_;   // parameter of the accepted point that the system was assembled at last
   int unstable_ = 0;
   int iterations_ = 0;                   // since the last record
   double dissipated_ = 0.0;
@@ -137,6 +139,7 @@ int PushFollower::count_unstable_modes() const {
 }
 
 void PushFollower::accept(const ContactStates& states_before) {
+  assembled_at_ = trial_.parameter;
   const double before = point_.parameter;
   const std::vector<PushEvent::Kind> events = contact_events(states_before, system_);
   dissipated_ += friction_work(system_, point_, trial_);
@@ -159,6 +162,7 @@ void PushFollower::examine_stability() {
 // The number of unstable modes changed between `before` and the accepted point while both were reached by
 // ordinary steps: bisect for the travel where it does.
 void PushFollower::locate_bifurcation(const numerics::PathPoint& before, int modes_before) {
+  assembled_at_.reset();
   numerics::PathPoint low = before;
   numerics::PathPoint high = point_;
   for (int k = 0; k < 24 && std::abs(high.parameter - low.parameter) > options_.smallest_step; ++k) {
@@ -175,6 +179,7 @@ void PushFollower::locate_bifurcation(const numerics::PathPoint& before, int mod
 // At an unstable point beyond a bifurcation: pushes the wire along its softest direction until Newton's method
 // ends on another equilibrium that is stable.
 bool PushFollower::leave_unstable_branch() {
+  assembled_at_.reset();
   numerics::PathPoint start = point_;
   const auto n = start.band.size();
   // Inverse iteration on the linearised equations.
@@ -209,6 +214,7 @@ bool PushFollower::leave_unstable_branch() {
 
 // The wire has left the pusher in an unstable shape: it falls into a stable one, the pusher standing still.
 bool PushFollower::snap_free_wire() {
+  assembled_at_.reset();
   wire::PlanarState free = system_.state(point_);
   Eigen::VectorXd kick = past_.size() >= 2 ? Eigen::VectorXd(past_.back().band - past_[past_.size() - 2].band)
                                            : Eigen::VectorXd(Eigen::VectorXd::Zero(point_.band.size()));
@@ -240,6 +246,7 @@ bool PushFollower::lift_off(const ContactStates& before) {
   system_.guided[0].status = ContactStatus::open;
   trial_.border.segment<2>(0).setZero();
   accept(before);
+  assembled_at_.reset();
   // Free now: is this shape stable without the pusher?
   const numerics::SolveReport report = numerics::correct(system_, trial_, workspace_, options_.max_iterations);
   iterations_ += report.iterations;
@@ -371,6 +378,10 @@ void PushFollower::record(double travel) {
   p.force = force.dot(pusher.motion);
   p.transverse_force = pusher.motion.y() * force.x() - pusher.motion.x() * force.y();
   const wire::PlanarState state = system_.state(point_);
+  if (assembled_at_ != point_.parameter) {
+    // A search for an event or a first point: the last assembly was elsewhere.
+    system_.assemble(point_, workspace_.system, workspace_.by_parameter);
+  }
   const MountForces mounts = mount_forces(system_, state, point_);
   p.tension_left = mounts.tension_left;
   p.tension_right = mounts.tension_right;

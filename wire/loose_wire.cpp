@@ -64,14 +64,25 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
     return x.x() - p.left.position.x();
   };
   if (buckled_length > span) {
-    // The chord of the shape falls with the amplitude: bisect for the span.
+    // The chord of the shape falls with the amplitude, about as 1 - a^2/4: false position in a^2 (Illinois).
     double low = 0.0;
-    double high = 2.2;
-    for (int k = 0; k < 60; ++k) {
-      const double middle = 0.5 * (low + high);
-      (shape(middle) > span ? low : high) = middle;
+    double high = 2.2 * 2.2;
+    double above = buckled_length - span;
+    double below = shape(2.2) - span;
+    for (int k = 0; k < 60 && high - low > 1e-12 * high; ++k) {
+      const double middle = low + (high - low) * above / (above - below);
+      const double excess = shape(std::sqrt(middle)) - span;
+      if (std::abs(excess) < 1e-12 * span) break;
+      if (excess > 0.0) {
+        low = middle;
+        above = excess;
+        below *= 0.5;
+      } else {
+        high = middle;
+        below = excess;
+        above *= 0.5;
+      }
     }
-    shape(high);
   } else {
     for (int i = 0; i <= n; ++i) {
       result.state.q.segment<2>(2 * i) =
