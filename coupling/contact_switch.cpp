@@ -274,7 +274,9 @@ bool settle_contact(PushSystem& system, numerics::PathPoint& point, ContactMemor
 
   const wire::PlanarState state = system.state(point);
   if (pusher.status == ContactStatus::open) {
-    if (point.border[3] >= -relative_gap * system.length_scale()) return false;
+    const double gap = point.border[3];
+    if (gap >= -relative_gap * system.length_scale()) return false;
+    if (pusher.last_gap > relative_gap * system.length_scale()) memory.at_fraction(crossing(pusher.last_gap, gap));
     pusher.status = pusher.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
     pusher.last_coordinate = point.border[2];
     pusher.last_tangent = system.tangent_at(pusher, state).t;
@@ -325,6 +327,7 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
     contact.last_coordinate = point.border[system.guided_row(k) + 2];
     contact.last_tangent = system.tangent_at(contact, state).t;
     contact.last_force = point.border.segment<2>(system.guided_row(k));
+    contact.last_gap = point.border[system.guided_row(k) + 3];
   }
   const Vector2d centre = pusher_centre(system, point.parameter);
   for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {

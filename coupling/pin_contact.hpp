@@ -55,6 +55,7 @@ struct GuidedContact {
   double last_coordinate = 0.0;     ///< material coordinate at the last accepted state [m]
   Eigen::Vector2d last_tangent = Eigen::Vector2d::UnitX();  ///< t at the last accepted state
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();     ///< on the wire at the last accepted state [N]
+  double last_gap = 0.0;                                    ///< at the last accepted state [m]
 };
 
 /// A material vertex that lies on the pusher when the wire wraps it.                 theory.md (C.7)

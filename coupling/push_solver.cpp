@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numbers>
 #include <optional>
 
 namespace snare::coupling {
@@ -35,7 +36,7 @@ class PushFollower {
   [[nodiscard]] numerics::PathPoint predict(double travel);
   [[nodiscard]] bool follow_arc(double target);
   void examine_stability();
-  void locate_bifurcation(const numerics::PathPoint& before, int modes_before);
+  [[nodiscard]] numerics::PathPoint locate_bifurcation(const numerics::PathPoint& before, int modes_before);
   [[nodiscard]] bool leave_unstable_branch();
   [[nodiscard]] bool snap_free_wire();
   void accept(const ContactStates& before);
@@ -43,7 +44,7 @@ class PushFollower {
   void record(double travel);
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
   void keep_shape(double travel);
-  [[nodiscard]] int count_unstable_modes() const;
+  [[nodiscard]] int count_unstable_modes();
   [[nodiscard]] bool fail(numerics::Termination termination, const std::string& message);
 
   PushSetup setup_;
@@ -123,7 +124,8 @@ numerics::SolveReport PushFollower::step_to(double travel) {
   return report;
 }
 
-int PushFollower::count_unstable_modes() const {
+int PushFollower::count_unstable_modes() {
+  if (!workspace_.factored && workspace_.solver.factorize(workspace_.system)) workspace_.factored = true;
   if (system_.guided[0].status == ContactStatus::open) return workspace_.solver.negative_pivots();
   int count = workspace_.solver.negative_pivots();
   // Sliding: d2E/dS2 with the wire relaxed and the point of contact held must be positive as well.
@@ -160,8 +162,8 @@ void PushFollower::examine_stability() {
 }
 
 // The number of unstable modes changed between `before` and the accepted point while both were reached by
-// ordinary steps: bisect for the travel where it does.
-void PushFollower::locate_bifurcation(const numerics::PathPoint& before, int modes_before) {
+// ordinary steps: bisects for the travel where it does. Returns a point just beyond.
+numerics::PathPoint PushFollower::locate_bifurcation(const numerics::PathPoint& before, int modes_before) {
   assembled_at_.reset();
   numerics::PathPoint low = before;
   numerics::PathPoint high = point_;
@@ -174,6 +176,7 @@ void PushFollower::locate_bifurcation(const numerics::PathPoint& before, int mod
     (count_unstable_modes() == modes_before ? low : high) = middle;
   }
   curve_.events.push_back({PushEvent::Kind::bifurcation, 0.5 * (low.parameter + high.parameter)});
+  return high;
 }
 
 // At an unstable point beyond a bifurcation: pushes the wire along its softest direction until Newton's method
@@ -212,33 +215,40 @@ bool PushFollower::leave_unstable_branch() {
   return false;
 }
 
-// The wire has left the pusher in an unstable shape: it falls into a stable one, the pusher standing still.
+// The wire has left the pusher in an unstable shape: it falls into a stable one, the pusher standing still. A
+// perturbation away from the pusher decides the side; a small one first.
 bool PushFollower::snap_free_wire() {
   assembled_at_.reset();
-  wire::PlanarState free = system_.state(point_);
-  Eigen::VectorXd kick = past_.size() >= 2 ? Eigen::VectorXd(past_.back().band - past_[past_.size() - 2].band)
-                                           : Eigen::VectorXd(Eigen::VectorXd::Zero(point_.band.size()));
-  if (kick.lpNorm<Eigen::Infinity>() == 0.0) {
-    for (Eigen::Index i = 0; i < kick.size(); i += 2) kick[i + 1] = system_.guided[0].motion.y();
-    kick.head<2>().setZero();
-    kick.tail<2>().setZero();
+  const wire::PlanarState start = system_.state(point_);
+  const int last = system_.rod().mesh().edges();
+  numerics::SolveReport worst;
+  for (const double size : {1e-4, 1e-3, 1e-2, 5e-2}) {
+    wire::PlanarState free = start;
+    for (int i = 1; i < last; ++i) {
+      const double bump = std::sin(std::numbers::pi * i / last);
+      free.q.segment<2>(2 * i) += size * system_.length_scale() * bump * bump * system_.guided[0].motion;
+    }
+    const wire::EquilibriumReport report = wire::find_equilibrium(system_.rod(), free);
+    iterations_ += report.iterations;
+    worst = report;
+    if (!report.usable()) continue;
+    const ContactStates saved = system_.contact_states();
+    trial_ = point_;
+    trial_.band = free.q;
+    if (!reseat_contact(system_, trial_, workspace_)) {
+      system_.restore(saved);
+      continue;
+    }
+    past_.clear();
+    point_ = trial_;
+    past_.push_back(point_);
+    remember_contact(system_, point_);
+    note(PushEvent::Kind::snap);
+    unstable_ = 0;
+    return true;
   }
-  free.q += 1e-3 * system_.length_scale() / kick.lpNorm<Eigen::Infinity>() * kick;
-  const wire::EquilibriumReport report = wire::find_equilibrium(system_.rod(), free);
-  iterations_ += report.iterations;
-  if (!report.usable()) return fail(report.termination, "the wire snapped and its new shape was not found");
-  trial_ = point_;
-  trial_.band = free.q;
-  if (!reseat_contact(system_, trial_, workspace_)) {
-    return fail(numerics::Termination::step_too_small, "after the snap no equilibrium was found on this side of the pusher");
-  }
-  past_.clear();
-  point_ = trial_;
-  past_.push_back(point_);
-  remember_contact(system_, point_);
-  note(PushEvent::Kind::snap);
-  unstable_ = 0;
-  return true;
+  return fail(worst.termination, worst.usable() ? "after the snap no equilibrium was found on this side of the pusher"
+                                                : "the wire snapped and its new shape was not found");
 }
 
 // The pusher has come to where the wire leaves it (trial_, still pressed but without force).
@@ -302,9 +312,23 @@ bool PushFollower::advance(double target) {
     accept(saved);
     examine_stability();
     if (unstable_ != modes_before && !contact_changed) {
-      locate_bifurcation(before, modes_before);
-      if (options_.instability == Instability::switch_branch && modes_before == 0 && !leave_unstable_branch()) {
-        return fail(numerics::Termination::step_too_small, "no stable branch was found beyond the bifurcation");
+      const numerics::PathPoint beyond = locate_bifurcation(before, modes_before);
+      if (options_.instability == Instability::switch_branch && modes_before == 0) {
+        // Branches part slowly: leave a little beyond the crossing, else where the step ended.
+        const numerics::PathPoint end = point_;
+        const double ahead = 0.05 * (end.parameter - beyond.parameter);
+        point_ = {beyond.band, beyond.border, beyond.parameter + ahead};
+        bool left = numerics::correct(system_, point_, workspace_, options_.max_iterations).usable() &&
+                    leave_unstable_branch();
+        if (!left) {
+          point_ = end;
+          left = leave_unstable_branch();
+        }
+        if (!left) {
+          return fail(numerics::Termination::step_too_small, "no stable branch was found beyond the bifurcation");
+        }
+        step = target - point_.parameter;
+        continue;
       }
     }
     step = 2.0 * length;

@@ -50,12 +50,6 @@ struct PushShape {
   std::vector<double> x, y, arc, tension, moment;
 };
 
-/// What to do where the path of equilibria turns unstable.
-enum class Instability {
-  follow_path,   ///< stay on the path, by arc length through folds; unstable points are marked
-  switch_branch  ///< leave it at a bifurcation for the branch that is stable
-};
-
 struct PushOptions {
   int elements = 256;   ///< edges, a multiple of 4, >= 16
   double grading = -1;  ///< of the mesh; < 0 chooses from the boundary layer

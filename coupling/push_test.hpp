@@ -29,6 +29,12 @@ struct BulgeSpecification {
   double plane = 0.0;
 };
 
+/// What to do where the path of equilibria turns unstable.
+enum class Instability {
+  follow_path,   ///< stay on the path, by arc length through folds; unstable points are marked
+  switch_branch  ///< leave it at a bifurcation for the branch that is stable
+};
+
 /// One quasi-static push on one loose wire: everything the prediction of a force-displacement curve needs.
 struct PushTest {
   wire::WireSpecification wire;

@@ -374,6 +374,11 @@ SolverSettings read_solver(const TomlTable& table) {
   solver.elements = table.integer_or("elements", solver.elements, 16, 100'000);
   if (solver.elements % 4 != 0) table.fail("elements", "must be a multiple of 4");
   solver.extrapolate = table.boolean_or("extrapolate", solver.extrapolate);
+  constexpr numerics::Choice<coupling::Instability> branches[]{
+      {"follow_path", coupling::Instability::follow_path}, {"switch_branch", coupling::Instability::switch_branch}};
+  if (table.has("instability")) {
+    solver.instability = table.choice("instability", branches).value_or(solver.instability);
+  }
   return solver;
 }
 

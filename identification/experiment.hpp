@@ -46,6 +46,7 @@ struct Series {
 
 struct SolverSettings {
   int elements = 256;       ///< edges of the finest mesh, a multiple of 4, 16 to 100000
+  coupling::Instability instability = coupling::Instability::follow_path;  ///< at a bifurcation
   bool extrapolate = true;  ///< Richardson extrapolation from this mesh, the half and the quarter one
 };
 

@@ -24,6 +24,7 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   }
   coupling::PushOptions push;
   push.elements = solver.elements;
+  push.instability = solver.instability;
   push.shapes_at = options.shapes_at;
   push.progress = options.progress;
   push.examine_out_of_plane = options.examine_out_of_plane;

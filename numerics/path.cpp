@@ -14,6 +14,7 @@ template <class Finish, class Take>
 SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations,
                    const Finish& finish, const Take& take) {
   SolveReport report;
+  w.factored = false;
   double best = std::numeric_limits<double>::max();
   int worse = 0;
   double last_change = std::numeric_limits<double>::max();
@@ -48,6 +49,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       report.message = "the tangent matrix is singular";
       return report;
     }
+    w.factored = true;
     w.band_step = -w.system.band_residual;
     w.border_step = -w.system.border_residual;
     w.solver.solve(w.system, w.band_step, w.border_step);

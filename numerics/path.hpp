@@ -37,10 +37,11 @@ struct PathWorkspace {
   Eigen::VectorXd by_parameter;
   Eigen::VectorXd band_step;
   Eigen::VectorXd border_step;
+  bool factored = false;  ///< whether the solver holds a factorisation of the last correction's path
 };
 
 /// Newton's method at the fixed parameter of `point`, from `point` as the start.     theory.md (N.1)
-/// On success the factorisation of the last Newton step is in the workspace.
+/// On success the factorisation of the last Newton step is in the workspace, unless none was needed (`factored`).
 SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& workspace, int max_iterations);
 
 /// Direction of the path at a corrected point, of unit length in the norm |band|^2 / n + parameter^2 and pointing
