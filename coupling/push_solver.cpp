@@ -83,16 +83,19 @@ numerics::PathPoint PushFollower::predict(double travel) {
     if (t.band.size() == 0) return {point_.band, point_.border, travel};
     return {point_.band + factor * t.band, point_.border + factor * t.border, travel};
   }
-  // Lagrange polynomial through the last points.
-  numerics::PathPoint guess{Eigen::VectorXd::Zero(point_.band.size()), Eigen::VectorXd::Zero(point_.border.size()),
-                            travel};
-  for (std::size_t i = 0; i < past_.size(); ++i) {
+  // Lagrange polynomial through the last points, in their differences to the newest: what does not change (the
+  // mounts) then stays to the last bit.
+  numerics::PathPoint guess{point_.band, point_.border, travel};
+  // Over a tiny step a cubic would only amplify round-off: a straight line.
+  const bool tiny = std::abs(travel - point_.parameter) < 1e-5 * system_.length_scale();
+  const std::size_t first = tiny ? past_.size() - 2 : 0;
+  for (std::size_t i = first; i + 1 < past_.size(); ++i) {
     double weight = 1.0;
-    for (std::size_t j = 0; j < past_.size(); ++j) {
+    for (std::size_t j = first; j < past_.size(); ++j) {
       if (j != i) weight *= (travel - past_[j].parameter) / (past_[i].parameter - past_[j].parameter);
     }
-    guess.band += weight * past_[i].band;
-    guess.border += weight * past_[i].border;
+    guess.band += weight * (past_[i].band - point_.band);
+    guess.border += weight * (past_[i].border - point_.border);
   }
   return guess;
 }
@@ -109,7 +112,7 @@ numerics::SolveReport PushFollower::step_to(double travel) {
     if (!report.usable()) return report;
     if (round == 0 && past_.size() >= 2) {
       const double miss = (trial_.band - predicted).lpNorm<Eigen::Infinity>();
-      if (miss > 0.5 * predicted_move + 1e-7 * system_.length_scale()) {
+      if (miss > 0.5 * predicted_move + 1e-6 * system_.length_scale()) {
         report.termination = numerics::Termination::step_too_small;
         report.message = "the step leaves the path";
         return report;
@@ -149,11 +152,20 @@ void PushFollower::accept(const ContactStates& states_before) {
   const bool turned = !past_.empty() && past_.size() >= 2 &&
                       (trial_.parameter - before) * (before - past_[past_.size() - 2].parameter) < 0.0;
   if (!same_contact || turned) past_.clear();
+  if (past_.size() >= 2 && std::abs(trial_.parameter - before) <
+                               1e-2 * std::abs(before - past_[past_.size() - 2].parameter)) {
+    past_.pop_back();
+  }
   point_ = trial_;
   past_.push_back(point_);
   if (past_.size() > history_length) past_.pop_front();
   remember_contact(system_, point_);
-  for (const PushEvent::Kind kind : events) note(kind);
+  // A gap that had closed at the end of the step before touched there.
+  const bool touched_before = states_before.guided[0].last_gap < 1e-6 * system_.length_scale();
+  for (const PushEvent::Kind kind : events) {
+    const bool earlier = kind == PushEvent::Kind::touch && touched_before;
+    curve_.events.push_back({kind, earlier ? before : point_.parameter});
+  }
 }
 
 void PushFollower::examine_stability() {
@@ -275,10 +287,13 @@ bool PushFollower::lift_off(const ContactStates& before) {
 
 bool PushFollower::advance(double target) {
   double step = target - point_.parameter;
+  double stretch = 1.1;
   while (point_.parameter != target) {
     const double rest = target - point_.parameter;
     if (std::abs(step) > std::abs(rest) || step * rest <= 0.0) step = rest;
-    const double travel = std::abs(step) >= 0.999999 * std::abs(rest) ? target : point_.parameter + step;
+    // A remainder shorter than a tenth of the step is taken with it: points too near each other spoil the predictor.
+    const double travel = stretch * std::abs(step) >= std::abs(rest) ? target : point_.parameter + step;
+    stretch = 1.1;
     const double length = travel - point_.parameter;
     const ContactStates saved = system_.contact_states();
     const numerics::PathPoint before = point_;
@@ -290,6 +305,7 @@ bool PushFollower::advance(double target) {
     if (at && *at < 0.99 && *at * std::abs(length) > 10.0 * options_.smallest_step) {
       system_.restore(saved);
       step = *at * length;
+      stretch = 1.000001;  // to just there
       continue;
     }
     if (pressed_.parameter == travel && system_.guided[0].status == ContactStatus::open &&
@@ -301,6 +317,7 @@ bool PushFollower::advance(double target) {
     }
     if (!report.usable()) {
       system_.restore(saved);
+      past_.assign(1, point_);  // the past misleads here: predict along the tangent
       step = 0.5 * length;
       if (std::abs(step) < options_.smallest_step) {
         return system_.riding.empty() && !system_.mount ? follow_arc(target)

@@ -217,7 +217,7 @@ bool SpatialFollower::advance(double target) {
   while (point_.parameter != target) {
     const double rest = target - point_.parameter;
     if (std::abs(step) > std::abs(rest) || step * rest <= 0.0) step = rest;
-    const double travel = std::abs(step) >= 0.999999 * std::abs(rest) ? target : point_.parameter + step;
+    const double travel = 1.1 * std::abs(step) >= std::abs(rest) ? target : point_.parameter + step;
     const SpatialPin saved = system_->pin;
     numerics::PathPoint trial = point_;
     trial.parameter = travel;
