@@ -179,29 +179,30 @@ bool settle_wrapped(PushSystem& system, numerics::PathPoint& point, ContactMemor
     kept.push_back(r);
     forces.push_back(force);
   }
-  // Take in neighbours of the arc that have come inside.
-  const auto inside = [&](int node) {
-    return (wire::vertex(state, node) - centre).norm() < pusher.radius - relative_gap * system.length_scale();
-  };
-  const auto join = [&](int node, const RidingContact& like) {
-    RidingContact r = like;
-    r.node = node;
-    r.last_radial = (wire::vertex(state, node) - centre).normalized();
-    return r;
-  };
+  // Take in the vertices of the arc and its neighbours that are inside the pusher.
   if (!kept.empty()) {
-    const int first = kept.front().node;
-    const int last = kept.back().node;
-    if (first > 1 && inside(first - 1)) {
-      kept.insert(kept.begin(), join(first - 1, kept.front()));
-      forces.insert(forces.begin(), Vector2d::Zero());
+    const int first = std::max(1, kept.front().node - 1);
+    const int last = std::min(system.rod().mesh().edges() - 1, kept.back().node + 1);
+    std::vector<RidingContact> complete;
+    std::vector<Vector2d> all_forces;
+    std::size_t k = 0;
+    for (int node = first; node <= last; ++node) {
+      if (k < kept.size() && kept[k].node == node) {
+        complete.push_back(kept[k]);
+        all_forces.push_back(forces[k++]);
+        continue;
+      }
+      const Vector2d arm = wire::vertex(state, node) - centre;
+      if (arm.norm() >= pusher.radius - relative_gap * system.length_scale()) continue;
+      RidingContact joined = complete.empty() ? kept.front() : complete.back();
+      joined.node = node;
+      joined.last_radial = arm.normalized();
+      complete.push_back(joined);
+      all_forces.push_back(Vector2d::Zero());
       changed = true;
     }
-    if (last < system.rod().mesh().edges() - 1 && inside(last + 1)) {
-      kept.push_back(join(last + 1, kept.back()));
-      forces.push_back(Vector2d::Zero());
-      changed = true;
-    }
+    kept = complete;
+    forces = all_forces;
   }
   if (!changed) return false;
   memory.change();
