@@ -377,6 +377,30 @@ Vector2d pusher_force_on_wire(const PushSystem& system, const numerics::PathPoin
   return force;
 }
 
+PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+  const GuidedContact& pusher = system.guided[0];
+  PusherForces sum;
+  if (system.riding.empty()) {
+    const Pressed p = resolve(at.border.segment<2>(0), system.tangent_at(pusher, state).t, pusher.side);
+    sum.slipping = pusher.friction > 0.0 && pusher.status == ContactStatus::slip;
+    sum.normal = p.normal;
+    sum.friction = p.tangential;
+    return sum;
+  }
+  const Vector2d centre = pusher_centre(system, at.parameter);
+  sum.slipping = pusher.friction > 0.0;
+  for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {
+    const RidingContact& r = system.riding[static_cast<std::size_t>(k)];
+    const Vector2d n = (wire::vertex(state, r.node) - centre).normalized();
+    const Vector2d force = at.border.segment<2>(system.riding_row(k));
+    sum.normal += force.dot(n);
+    // Along increasing arc length, which runs against the angle about a pin on the right of the wire.
+    sum.friction += -pusher.side * force.dot(Vector2d(-n.y(), n.x()));
+    sum.slipping = sum.slipping && r.status == ContactStatus::slip;
+  }
+  return sum;
+}
+
 MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
   MountForces result;
   const wire::PlanarRodProperties& p = system.rod().properties();

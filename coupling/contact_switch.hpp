@@ -47,6 +47,15 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point);
 /// Force of the pusher on the wire [N].
 [[nodiscard]] Eigen::Vector2d pusher_force_on_wire(const PushSystem& system, const numerics::PathPoint& at);
 
+/// Sums of the pusher's normal forces and of its friction forces (along the wire's tangent) [N].
+struct PusherForces {
+  double normal = 0.0;
+  double friction = 0.0;
+  bool slipping = false;  ///< every point of contact slides (false without friction)
+};
+[[nodiscard]] PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
+                                         const numerics::PathPoint& at);
+
 struct MountForces {
   Eigen::Vector2d total = Eigen::Vector2d::Zero();  ///< of mounts, supports and weight on the wire [N]
   double tension_left = 0.0;                        ///< [N]

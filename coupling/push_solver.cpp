@@ -129,6 +129,7 @@ numerics::SolveReport PushFollower::step_to(double travel) {
 
 int PushFollower::count_unstable_modes() {
   if (!workspace_.factored && workspace_.solver.factorize(workspace_.system)) workspace_.factored = true;
+  if (!workspace_.solver.blockwise()) return unstable_;  // at a singular point the inertia is not known
   if (system_.guided[0].status == ContactStatus::open) return workspace_.solver.negative_pivots();
   int count = workspace_.solver.negative_pivots();
   // Sliding: d2E/dS2 with the wire relaxed and the point of contact held must be positive as well.
@@ -427,6 +428,10 @@ void PushFollower::record(double travel) {
   p.tension_left = mounts.tension_left;
   p.tension_right = mounts.tension_right;
   p.imbalance = (mounts.total + force).norm();
+  const PusherForces contact = pusher_forces(system_, state, point_);
+  p.normal_force = contact.normal;
+  p.friction_force = contact.friction;
+  p.slipping = contact.slipping;
   const ContactExtent extent = contact_extent(system_, state);
   p.contact_coordinate = extent.coordinate;
   p.wrapped_length = extent.length;
@@ -437,7 +442,6 @@ void PushFollower::record(double travel) {
     p.out_of_plane_modes = out_of_plane_modes(system_.rod(), state, torsional_stiffness_);
   }
   p.in_contact = pusher.status != ContactStatus::open;
-  p.slipping = pusher.friction > 0.0 && pusher.status == ContactStatus::slip;
   p.iterations = iterations_;
   curve_.newton_iterations += iterations_;
   iterations_ = 0;

@@ -27,6 +27,8 @@ struct PushPoint {
   double travel = 0.0;         ///< of the pusher from first touch [m]
   double force = 0.0;          ///< on the pusher along the push, positive when the wire resists [N]
   double transverse_force = 0.0;  ///< on the pusher across the push, along the chord [N]
+  double normal_force = 0.0;   ///< of the pusher on the wire, all contact points together [N], >= 0
+  double friction_force = 0.0; ///< along the wire, the same way [N]; |friction| <= mu normal
   double axial_force = 0.0;    ///< on the pusher along z, where it is tilted [N]
   double tension_left = 0.0;   ///< axial force in the wire at the left mount, tension positive [N]
   double tension_right = 0.0;  ///< at the right mount [N]

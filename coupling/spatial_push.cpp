@@ -285,6 +285,9 @@ void SpatialFollower::record() {
   p.travel = point_.parameter;
   p.force = force.dot(pin.motion);
   p.transverse_force = pin.motion.y() * force.x() - pin.motion.x() * force.y();
+  const SpatialPushSystem::Geometry g = system_->geometry(point_, s);
+  p.normal_force = g.normal_force;
+  p.friction_force = g.friction.norm();
   p.axial_force = force.z();
   const std::array<Vector3d, 2>& reaction = system_->mount_reactions();
   p.tension_left = -reaction[0].dot(rod_->properties().left.direction);

@@ -1,5 +1,8 @@
 #include "numerics/bordered.hpp"
 
+#include "numerics/klu.hpp"
+#include "numerics/sparse_matrix.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -16,7 +19,24 @@ void BorderedSystem::reset(int n, int m) {
   columns.clear();
 }
 
+BorderedSolver::BorderedSolver() = default;
+BorderedSolver::~BorderedSolver() = default;
+BorderedSolver::BorderedSolver(BorderedSolver&&) noexcept = default;
+BorderedSolver& BorderedSolver::operator=(BorderedSolver&&) noexcept = default;
+
 bool BorderedSolver::factorize(const BorderedSystem& system) {
+  whole_.reset();
+  // Fewer than two digits would be left below a pivot ratio of 1e-14.
+  if (factorize_blocks(system) && factor_.pivot_ratio() > 1e-14) return true;
+  const SparseMatrix matrix = to_sparse(system);
+  auto whole = std::make_unique<Klu>(matrix);
+  if (!whole->factorize(matrix) || whole->reciprocal_condition() < 1e-15) return false;
+  whole_ = std::move(whole);
+  determinant_sign_ = 0;
+  return true;
+}
+
+bool BorderedSolver::factorize_blocks(const BorderedSystem& system) {
   const int n = system.matrix.order();
   const auto m = system.corner.rows();
   anchor_count_ = system.anchors.size();
@@ -84,6 +104,14 @@ bool BorderedSolver::factorize(const BorderedSystem& system) {
 }
 
 void BorderedSolver::solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const {
+  if (whole_ != nullptr) {
+    Eigen::VectorXd all(band.size() + border.size());
+    all << band, border;
+    whole_->solve(all);
+    band = all.head(band.size());
+    border = all.tail(border.size());
+    return;
+  }
   factor_.solve(band);
   if (border.size() == 0) return;
   for (const BorderedSystem::Entry& entry : rows_) border[entry.row] -= entry.value * band[entry.column];

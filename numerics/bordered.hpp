@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -42,11 +43,21 @@ class BorderedSystem {
   void reset(int n, int m);
 };
 
-/// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides.
+class Klu;
+
+/// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides. Where K with its anchors is
+/// singular although the whole is not, KLU factorises the whole.
 class BorderedSolver {
  public:
-  /// False when K with its anchors, or the Schur complement, is singular.
+  BorderedSolver();
+  ~BorderedSolver();
+  BorderedSolver(BorderedSolver&&) noexcept;
+  BorderedSolver& operator=(BorderedSolver&&) noexcept;
+
+  /// False when the whole system is singular.
   [[nodiscard]] bool factorize(const BorderedSystem& system);
+  /// Whether the block factorisation holds; inertia, determinant and solved columns are known only then.
+  [[nodiscard]] bool blockwise() const noexcept { return whole_ == nullptr; }
 
   /// Solves with right-hand sides (b_q, b_b), each given negated residuals or any other load; in place.
   void solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const;
@@ -61,7 +72,10 @@ class BorderedSolver {
 
  private:
 
+  [[nodiscard]] bool factorize_blocks(const BorderedSystem& system);
+
   BandLdlt factor_;
+  std::unique_ptr<Klu> whole_;
   double stiffness_ = 0.0;             // added at the anchors
   Eigen::MatrixXd solved_;             // K^-1 [anchor columns, dense columns]
   std::vector<int> column_of_;         // border unknown of each column of solved_

@@ -13,6 +13,8 @@ namespace snare::test {
 template <class Rod>
 class TipLoadedRod {
  public:
+  static constexpr int dimension = Rod::dimension;
+  static constexpr int block = Rod::block;
   using Force = Eigen::Matrix<double, Rod::dimension, 1>;
 
   TipLoadedRod(Rod rod, const Force& force) : rod_(std::move(rod)), force_(force) {}

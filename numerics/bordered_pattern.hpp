@@ -1,0 +1,47 @@
+#pragma once
+
+#include "numerics/bordered.hpp"
+#include "numerics/sparse_matrix.hpp"
+
+#include <vector>
+
+namespace snare::numerics {
+
+/// The whole matrix [K C; D E] of a bordered system with a pattern that is found once: each entry knows its slot, and
+/// a refill searches and sorts nothing.
+///
+/// The pattern, of order n + m, has the entries that are not zero in the system it was made from. `to_sparse` makes
+/// the same matrix anew and keeps zeros inside the band.
+class BorderedPattern {
+ public:
+  explicit BorderedPattern(const BorderedSystem& system);
+
+  /// A matrix with the pattern, values zero.
+  [[nodiscard]] const SparseMatrix& pattern() const noexcept { return pattern_; }
+
+  /// Writes the values of `system` into `matrix`, which has the pattern. False, with `matrix` unusable, when the
+  /// system has other sizes, other rows, or a value that is not zero outside the pattern: make a new pattern then.
+  [[nodiscard]] bool refill(const BorderedSystem& system, SparseMatrix& matrix) const;
+
+ private:
+  struct Slot {
+    int row;
+    int column;
+    int slot;  // -1: outside the pattern
+  };
+  [[nodiscard]] bool same_structure(const BorderedSystem& system) const;
+
+  int n_ = 0;
+  int m_ = 0;
+  int b_ = 0;
+  SparseMatrix pattern_;
+  std::vector<int> lower_;      // of the band, stored column by column as in SymmetricBandMatrix
+  std::vector<int> upper_;      // of the mirrored entries
+  std::vector<Slot> rows_;      // D
+  std::vector<Slot> anchors_;   // columns of C that are -e_i
+  std::vector<Slot> columns_;   // dense columns of C: their entries one column after the other
+  std::vector<int> borders_;    // border unknown of each dense column
+  std::vector<int> corner_;     // E, row by row
+};
+
+}  // namespace snare::numerics

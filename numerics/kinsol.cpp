@@ -1,0 +1,95 @@
+#include "numerics/kinsol.hpp"
+
+#include "numerics/sundials.hpp"
+
+#include <kinsol/kinsol.h>
+#include <sunlinsol/sunlinsol_klu.h>
+
+#include <cstdlib>
+#include <exception>
+
+namespace snare::numerics {
+
+namespace {
+
+struct KinsolDeleter {
+  void operator()(void* memory) const noexcept { KINFree(&memory); }
+};
+
+/// What the C callbacks reach through their user pointer; an exception waits here until KINSOL has returned.
+struct Call {
+  const NonlinearSystem& system;
+  SparseMatrix jacobian;
+  std::exception_ptr failure;
+};
+
+Eigen::Map<Eigen::VectorXd> map(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+
+template <class Work>
+int guarded(Call& call, const Work& work) {
+  try {
+    return work() ? 0 : 1;
+  } catch (...) {
+    call.failure = std::current_exception();
+    return -1;
+  }
+}
+
+extern "C" int kinsol_residual(N_Vector u, N_Vector f, void* data) {
+  Call& call = *static_cast<Call*>(data);
+  return guarded(call, [&] {
+    Eigen::VectorXd residual;
+    call.system.residual(map(u), residual);
+    map(f) = residual;
+    return residual.allFinite();
+  });
+}
+
+extern "C" int kinsol_jacobian(N_Vector u, N_Vector, SUNMatrix matrix, void* data, N_Vector, N_Vector) {
+  Call& call = *static_cast<Call*>(data);
+  return guarded(call, [&] {
+    call.system.jacobian(map(u), call.jacobian);
+    copy(call.jacobian, matrix);
+    return true;
+  });
+}
+
+}  // namespace
+
+SolveReport solve_kinsol(const NonlinearSystem& system, Eigen::VectorXd& u, const KinsolOptions& options) {
+  const sundials::Context context;
+  Call call{system, system.pattern, nullptr};
+  Eigen::VectorXd ones = Eigen::VectorXd::Ones(u.size());
+  const SunVector unknowns = view(u, context);
+  const SunVector scale = view(ones, context);
+  const SunMatrix matrix = make_matrix(system.pattern, context);
+  const SunLinearSolver linear(made(SUNLinSol_KLU(unknowns.get(), matrix.get(), context), "SUNLinSol_KLU"));
+  const std::unique_ptr<void, KinsolDeleter> memory(made(KINCreate(context), "KINCreate"));
+  void* kin = memory.get();
+  check(KINSetErrHandlerFn(kin, [](int, const char*, const char*, char*, void*) {}, nullptr), "KINSetErrHandlerFn");
+  check(KINInit(kin, kinsol_residual, unknowns.get()), "KINInit");
+  check(KINSetUserData(kin, &call), "KINSetUserData");
+  check(KINSetFuncNormTol(kin, options.residual_tolerance), "KINSetFuncNormTol");
+  check(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
+  check(KINSetNumMaxIters(kin, options.max_iterations), "KINSetNumMaxIters");
+  check(KINSetMaxSetupCalls(kin, 1), "KINSetMaxSetupCalls");
+  check(KINSetLinearSolver(kin, linear.get(), matrix.get()), "KINSetLinearSolver");
+  check(KINSetJacFn(kin, kinsol_jacobian), "KINSetJacFn");
+  const int code = KINSol(kin, unknowns.get(), KIN_LINESEARCH, scale.get(), scale.get());
+  if (call.failure) std::rethrow_exception(call.failure);
+
+  SolveReport report;
+  long iterations = 0;
+  KINGetNumNonlinSolvIters(kin, &iterations);
+  KINGetFuncNorm(kin, &report.residual_norm);
+  report.iterations = static_cast<int>(iterations);
+  if (code >= 0) return report;
+  report.termination = code == KIN_MAXITER_REACHED ? Termination::iteration_limit : Termination::step_too_small;
+  if (code == KIN_LSETUP_FAIL || code == KIN_LSOLVE_FAIL) report.termination = Termination::singular_matrix;
+  char* name = KINGetReturnFlagName(code);
+  report.message = std::string("KINSOL stopped with ") + name;
+  std::free(name);
+  return report;
+}
+
+}  // namespace snare::numerics

@@ -1,0 +1,101 @@
+#include "numerics/sparse_matrix.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace snare::numerics {
+
+int SparseMatrix::slot(int i, int j) const {
+  const auto first = row.begin() + column_start[static_cast<std::size_t>(j)];
+  const auto last = row.begin() + column_start[static_cast<std::size_t>(j) + 1];
+  const auto found = std::lower_bound(first, last, i);
+  return found != last && *found == i ? static_cast<int>(found - row.begin()) : -1;
+}
+
+Eigen::VectorXd SparseMatrix::operator*(const Eigen::VectorXd& x) const {
+  assert(x.size() == order);
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(order);
+  for (int j = 0; j < order; ++j) {
+    for (int k = column_start[static_cast<std::size_t>(j)]; k < column_start[static_cast<std::size_t>(j) + 1]; ++k) {
+      y[row[static_cast<std::size_t>(k)]] += value[static_cast<std::size_t>(k)] * x[j];
+    }
+  }
+  return y;
+}
+
+SparseMatrix make_pattern(int order, std::vector<std::pair<int, int>> entries) {
+  std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second < b.second : a.first < b.first;
+  });
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  SparseMatrix result;
+  result.order = order;
+  result.column_start.assign(static_cast<std::size_t>(order) + 1, 0);
+  for (const auto& [i, j] : entries) {
+    assert(i >= 0 && i < order && j >= 0 && j < order);
+    ++result.column_start[static_cast<std::size_t>(j) + 1];
+    result.row.push_back(i);
+  }
+  for (std::size_t j = 0; j < static_cast<std::size_t>(order); ++j) {
+    result.column_start[j + 1] += result.column_start[j];
+  }
+  result.value.assign(result.row.size(), 0.0);
+  return result;
+}
+
+namespace {
+
+struct Triplet {
+  int row, column;
+  double value;
+};
+
+SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {
+  std::vector<std::pair<int, int>> pattern;
+  pattern.reserve(triplets.size());
+  for (const Triplet& t : triplets) pattern.emplace_back(t.row, t.column);
+  SparseMatrix result = make_pattern(order, std::move(pattern));
+  for (const Triplet& t : triplets) result.value[static_cast<std::size_t>(result.slot(t.row, t.column))] += t.value;
+  return result;
+}
+
+void append_band(const SymmetricBandMatrix& matrix, Triangle triangle, std::vector<Triplet>& triplets) {
+  const int n = matrix.order();
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i <= std::min(n - 1, j + matrix.half_bandwidth()); ++i) {
+      const double value = matrix.lower(i, j);
+      triplets.push_back({i, j, value});
+      if (i != j && triangle == Triangle::both) triplets.push_back({j, i, value});
+    }
+  }
+}
+
+}  // namespace
+
+SparseMatrix to_sparse(const SymmetricBandMatrix& matrix, Triangle triangle) {
+  std::vector<Triplet> triplets;
+  append_band(matrix, triangle, triplets);
+  return from_triplets(matrix.order(), triplets);
+}
+
+SparseMatrix to_sparse(const BorderedSystem& system) {
+  const int n = system.matrix.order();
+  const auto m = static_cast<int>(system.corner.rows());
+  std::vector<Triplet> triplets;
+  append_band(system.matrix, Triangle::both, triplets);
+  for (const BorderedSystem::Anchor& a : system.anchors) triplets.push_back({a.band, n + a.border, -1.0});
+  for (const auto& [border, values] : system.columns) {
+    for (int i = 0; i < n; ++i) {
+      if ((*values)[i] != 0.0) triplets.push_back({i, n + border, (*values)[i]});
+    }
+  }
+  for (const BorderedSystem::Entry& entry : system.rows) triplets.push_back({n + entry.row, entry.column, entry.value});
+  for (int i = 0; i < m; ++i) {
+    for (int j = 0; j < m; ++j) {
+      if (system.corner(i, j) != 0.0) triplets.push_back({n + i, n + j, system.corner(i, j)});
+    }
+  }
+  return from_triplets(n + m, triplets);
+}
+
+}  // namespace snare::numerics

@@ -1,0 +1,183 @@
+// The command as its users see it: exit status, messages, files.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace snare::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const experiment_text = R"(schema = "snare-experiment/1"
+title = "test"
+source = "none"
+[wire]
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 180.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+[mount]
+kind = "clamped"
+span_mm = 175.0
+[pusher]
+shape = "cylinder"
+radius_mm = 6.0
+friction = 0.0
+direction = "outward"
+[solver]
+elements = 32
+[[series]]
+name = "s40"
+contact_position_mm = 40.0
+travel_mm = 2.0
+points = 5
+[[series]]
+name = "s90"
+contact_position_mm = 90.0
+travel_mm = 2.0
+points = 5
+)";
+
+struct Result {
+  int status;
+  std::string out;
+  std::string err;
+};
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "snare_command_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    write("x.toml", experiment_text);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  [[nodiscard]] static std::string read(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+  [[nodiscard]] Result run(const std::string& arguments) const {
+    const std::string line = "cd '" + folder_.string() + "' && '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"), read(folder_ / "err.txt")};
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Command, HelpOfEveryVerbHasAnExample) {
+  EXPECT_EQ(run("--help").status, 0);
+  for (const std::string verb : {"push", "reproduce", "validate"}) {
+    const Result result = run(verb + " --help");
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.out.find("Example: snare " + verb), std::string::npos) << result.out;
+    for (const char* option : {"--out", "--threads", "--set", "--quiet", "--json"}) {
+      EXPECT_NE(result.out.find(option), std::string::npos) << verb << " " << option;
+    }
+  }
+}
+
+TEST_F(Command, WrongUseIsStatusTwo) {
+  EXPECT_EQ(run("").status, 2);
+  EXPECT_EQ(run("jump").status, 2);
+  EXPECT_EQ(run("push").status, 2);
+  EXPECT_EQ(run("push x.toml --colour red").status, 2);
+  EXPECT_EQ(run("push x.toml --threads -1").status, 2);
+}
+
+TEST_F(Command, WrongInputNamesFileLineKeyAndWritesNothing) {
+  std::string text = experiment_text;
+  text.replace(text.find("diameter_mm = 1.5"), 17, "diameter_mm = -15");
+  write("bad.toml", text);
+  const Result result = run("push bad.toml --out here");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.err.rfind("bad.toml:6: wire.diameter_mm = -15, must be > 0", 0), 0u) << result.err;
+  EXPECT_FALSE(fs::exists(folder_ / "here"));
+  EXPECT_EQ(run("push missing.toml").status, 2);
+  EXPECT_EQ(run("push . ").status, 2);
+  EXPECT_EQ(run("push x.toml --set nonsense").status, 2);
+  EXPECT_EQ(run("push x.toml --set wire.length_mm=100").status, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Command, PushWritesTheCurves) {
+  const Result result = run("push x.toml --out here --quiet");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err, "");
+  const std::string csv = read(folder_ / "here" / "curves.csv");
+  EXPECT_EQ(csv.rfind("series,displacement_mm,force_N,tension_left_N,tension_right_N,contact_arc_mm,iterations,converged", 0), 0u);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
+  EXPECT_EQ(csv.find("nan"), std::string::npos);
+  EXPECT_EQ(csv.find("inf"), std::string::npos);
+}
+
+TEST_F(Command, JsonAloneOnStandardOutputAndOverridesApply) {
+  const Result plain = run("push x.toml --json");
+  const Result heavier = run("push x.toml --json --set wire.youngs_modulus_GPa=386 --set series[s40].points=3");
+  ASSERT_EQ(plain.status, 0) << plain.err;
+  ASSERT_EQ(heavier.status, 0) << heavier.err;
+  const nlohmann::json a = nlohmann::json::parse(plain.out);
+  const nlohmann::json b = nlohmann::json::parse(heavier.out);
+  EXPECT_EQ(b["series"][0]["points"], 3);
+  // Twice the modulus, the same shape: twice the force.
+  EXPECT_NEAR(b["series"][1]["largest_force_N"].get<double>(), 2.0 * a["series"][1]["largest_force_N"].get<double>(), 1e-4);
+}
+
+TEST_F(Command, SameFilesForAnyNumberOfThreads) {
+  ASSERT_EQ(run("push x.toml --out one --threads 1").status, 0);
+  ASSERT_EQ(run("push x.toml --out two --threads 2").status, 0);
+  EXPECT_EQ(read(folder_ / "one" / "curves.csv"), read(folder_ / "two" / "curves.csv"));
+}
+
+TEST_F(Command, WireThatCannotBeSolvedKeepsWhatItReached) {
+  // A tilted pin is computed for contact at a point: the soft wire begins to wrap it on the way.
+  const Result result = run(
+      "push x.toml --out here --set pusher.tilt_deg=2 --set wire.bending_stiffness_Nm2=0.0005 "
+      "--set wire.axial_stiffness_N=114000 --set series[s90].travel_mm=6 --set series[s90].points=25");
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.err.find("series s90: the wire begins to wrap"), std::string::npos) << result.err;
+  const std::string csv = read(folder_ / "here" / "curves.csv");
+  EXPECT_NE(csv.find("\ns90,1,"), std::string::npos) << "the points before must be there";
+  EXPECT_EQ(csv.find("\ns90,6,"), std::string::npos);
+}
+
+TEST_F(Command, UnwritableFolderIsAFailure) {
+  write("file", "in the way");
+  const Result result = run("push x.toml --out file/below");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("file"), std::string::npos) << result.err;
+}
+
+TEST_F(Command, ReproduceWritesCurvesJsonAndPage) {
+  const Result result = run("reproduce --out here --quiet --set solver.elements=32");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(read(folder_ / "here" / "reproduce.json"));
+  EXPECT_EQ(json["schema"], "snare-reproduce/1");
+  EXPECT_EQ(json["series"].size(), 3u);
+  ASSERT_EQ(json["models"].size(), 2u);
+  // The declared model is far off, the fitted one is not: both are said.
+  EXPECT_GT(json["models"][0]["rmse_N"].get<double>(), 100.0);
+  EXPECT_LT(json["models"][1]["rmse_N"].get<double>(), 1.0);
+  const std::string csv = read(folder_ / "here" / "curves.csv");
+  EXPECT_NE(csv.substr(0, csv.find('\n')).find("measured_N,base_N,final_N"), std::string::npos);
+  EXPECT_NE(read(folder_ / "here" / "report.html").find("</html>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace snare::app
