@@ -1,179 +1,182 @@
-// The push on the declared wire: error beside time, and what a Newton iteration costs beside bare factorisations.
-//
-// The curve: 20 points outward at the material mid-point to +1.5 mm, with the buckled initial state, one core.
+// The 20-point outward curve, error beside time; one equilibrium by our Newton's method and by KINSOL; the cost of a
+// Newton iteration against the number of elements.
 
-#include "coupling/push_setup.hpp"
+#include "benchmarks/declared_push.hpp"
 #include "coupling/push_solver.hpp"
-#include "numerics/cholmod.hpp"
+#include "numerics/bordered_pattern.hpp"
 #include "numerics/kinsol.hpp"
-#include "numerics/klu.hpp"
-#include "numerics/path.hpp"
+#include "wire/equilibrium.hpp"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <vector>
 
+namespace snare::benchmarks {
 namespace {
 
-using namespace snare;
-
 constexpr double mm = 1e-3;
-/// Planar extensible elastica by multiple shooting (validation/elastica_push.hpp), travel 1.5 mm [N].
-constexpr double reference_force = 232.98287479;
 
-coupling::PushTest declared_wire() {
-  coupling::PushTest test;
-  test.wire.diameter = 1.5 * mm;
-  test.wire.length = 180.0 * mm;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
-  test.mount.span = 175.0 * mm;
-  test.contact_position = 87.5 * mm;
-  for (int i = 1; i <= 20; ++i) test.travel.push_back(1.5 * mm * i / 20);
-  return test;
+// Median over all points but the first, whose iterations include those of the buckled initial state.
+double iterations_per_point(const coupling::PushCurve& curve) {
+  std::vector<int> iterations;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) iterations.push_back(curve.points[i].iterations);
+  if (iterations.empty()) return 0.0;
+  std::nth_element(iterations.begin(), iterations.begin() + static_cast<std::ptrdiff_t>(iterations.size() / 2),
+                   iterations.end());
+  return iterations[iterations.size() / 2];
 }
 
-void extrapolated_curve(benchmark::State& state) {
-  const coupling::PushTest test = declared_wire();
+void report(benchmark::State& state, const coupling::PushCurve& curve, int meshes) {
+  if (!curve.report.usable() || curve.points.size() != declared_push().travel.size()) {
+    state.SkipWithError("the curve was not reached");
+    return;
+  }
+  const double error = std::abs(curve.points.back().force / reference_force - 1.0);
+  const double iterations = curve.newton_iterations;
+  state.counters["force_error"] = error;
+  state.counters["iterations"] = iterations;
+  state.counters["iterations_per_point_and_mesh"] = iterations_per_point(curve) / meshes;
+  state.counters["seconds_per_iteration"] = benchmark::Counter(
+      iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes, extrapolated.
+void OutwardCurveExtrapolated(benchmark::State& state) {
+  const coupling::PushTest test = declared_push();
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
   coupling::ExtrapolatedCurve result;
-  for (auto _ : state) result = coupling::solve_push_extrapolated(test, options);
-  state.counters["relative_error"] = std::abs(result.curve.points.back().force / reference_force - 1.0);
-  state.counters["newton_per_point"] = static_cast<double>(result.curve.newton_iterations) / 20.0;
+  for (auto _ : state) {
+    result = coupling::solve_push_extrapolated(test, options);
+    benchmark::DoNotOptimize(result.curve.points.data());
+  }
+  report(state, result.curve, 3);
 }
-BENCHMARK(extrapolated_curve)->Arg(64)->Arg(128)->Arg(192)->Arg(256)->Arg(512)->Unit(benchmark::kMillisecond);
 
-void single_mesh_curve(benchmark::State& state) {
-  const coupling::PushTest test = declared_wire();
+/// The same on one mesh.
+void OutwardCurve(benchmark::State& state) {
+  const coupling::PushTest test = declared_push();
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
-  coupling::PushCurve result;
-  for (auto _ : state) result = coupling::solve_push(test, options);
-  state.counters["relative_error"] = std::abs(result.points.back().force / reference_force - 1.0);
-  state.counters["newton_per_point"] = static_cast<double>(result.newton_iterations) / 20.0;
+  coupling::PushCurve curve;
+  for (auto _ : state) {
+    curve = coupling::solve_push(test, options);
+    benchmark::DoNotOptimize(curve.points.data());
+  }
+  report(state, curve, 1);
 }
-BENCHMARK(single_mesh_curve)->Arg(64)->Arg(128)->Arg(256)->Arg(512)->Unit(benchmark::kMillisecond);
 
-/// The pressed wire at 1 mm, ready for Newton iterations.
-struct Pressed {
-  coupling::PushSetup setup;
-  numerics::PathPoint point;
+/// One step of 0.075 mm from 0.75 mm, no predictor, by our Newton's method.
+void EquilibriumOwnNewton(benchmark::State& state) {
+  PressedWire wire = pressed_wire(static_cast<int>(state.range(0)), 0.75 * mm);
+  wire.point.parameter = 0.825 * mm;
   numerics::PathWorkspace workspace;
-
-  explicit Pressed(int edges) : setup(coupling::prepare_push(declared_wire(), edges, 0.0, 1)) {
-    setup.system->guided[0].status = coupling::ContactStatus::slip;
-    point = setup.start;
-    for (int k = 1; k <= 10; ++k) {
-      point.parameter = 0.1 * mm * k;
-      (void)numerics::correct(*setup.system, point, workspace, 50);
-    }
-    setup.system->assemble(point, workspace.system, workspace.by_parameter);
-  }
-};
-
-/// Assembly, factorisation and solution: one Newton iteration. Linear in the edges.
-void newton_iteration(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
+  numerics::SolveReport report;
+  numerics::PathPoint point;
   for (auto _ : state) {
-    p.setup.system->assemble(p.point, p.workspace.system, p.workspace.by_parameter);
-    benchmark::DoNotOptimize(p.workspace.solver.factorize(p.workspace.system));
-    p.workspace.band_step = -p.workspace.system.band_residual;
-    p.workspace.border_step = -p.workspace.system.border_residual;
-    p.workspace.solver.solve(p.workspace.system, p.workspace.band_step, p.workspace.border_step);
+    point = wire.point;
+    report = numerics::correct(*wire.system, point, workspace, 20);
+    benchmark::DoNotOptimize(point.band.data());
   }
-  state.counters["ns_per_edge"] = benchmark::Counter(static_cast<double>(state.range(0)) * static_cast<double>(state.iterations()),
-                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  if (!report.usable()) state.SkipWithError("not converged");
+  state.counters["iterations"] = report.iterations;
+  state.counters["force_N"] = point.border[1];
 }
 
-/// The yardstick: KLU refactors and solves the same bordered matrix, already assembled.
-void bare_klu(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
-  const numerics::SparseMatrix matrix = numerics::to_sparse(p.workspace.system);
-  numerics::Klu klu(matrix);
-  (void)klu.factorize(matrix);
-  Eigen::VectorXd x(matrix.order);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(klu.factorize(matrix));
-    x.setOnes();
-    klu.solve(x);
-  }
-}
+/// The same step by KINSOL with KLU: analytic Jacobian refilled through its slots, tolerances as in ours; with the
+/// set-up of the solver and the analysis of the pattern in every solution, as `solve_kinsol` does.
+void EquilibriumKinsol(benchmark::State& state) {
+  PressedWire wire = pressed_wire(static_cast<int>(state.range(0)), 0.75 * mm);
+  wire.point.parameter = 0.825 * mm;
+  coupling::PushSystem& system = *wire.system;
+  const auto n = wire.point.band.size();
+  const auto m = wire.point.border.size();
 
-/// CHOLMOD, simplicial, natural order, of the band matrix alone.
-void bare_cholmod(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
-  const numerics::SparseMatrix lower = numerics::to_sparse(p.workspace.system.matrix, numerics::Triangle::lower);
-  numerics::Cholmod cholmod(lower, numerics::Cholmod::Ordering::natural);
-  Eigen::VectorXd x(lower.order);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(cholmod.factorize(lower));
-    x.setOnes();
-    cholmod.solve(x);
+  // Residuals in units of what our error() allows, so that both stop at the same accuracy.
+  const wire::PlanarRodProperties& p = wire.rod->properties();
+  double shortest = 1.0;
+  const wire::Controls controls = system.state(wire.point).controls;
+  for (int e = 0; e < wire.rod->mesh().edges(); ++e) {
+    shortest = std::min(shortest, wire.rod->mesh().rest_length(e, controls));
   }
-}
+  const double length = controls[2] - controls[0];
+  const double force = wire::force_tolerance(1e-10, p.bending_stiffness, p.axial_stiffness, length, shortest,
+                                             wire.point.border.head<2>().norm());
+  Eigen::VectorXd scale = Eigen::VectorXd::Constant(n + m, 1.0 / force);
+  for (const int row : {0, 1, 3}) scale[n + row] = 1.0 / (1e-12 * length);  // positions; row 2: sliding, a force
 
-/// The own band factorisation of the same matrix.
-void bare_band(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
-  numerics::BandLdlt factor;
-  Eigen::VectorXd x(p.workspace.system.matrix.order());
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(factor.factorize(p.workspace.system.matrix));
-    x.setOnes();
-    factor.solve(x);
-  }
-}
-
-/// From the state at 1 mm to that at 1.05 mm: own Newton with the border ...
-void step_by_newton(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
-  int iterations = 0;
-  for (auto _ : state) {
-    numerics::PathPoint next = p.point;
-    next.parameter = 1.05 * mm;
-    iterations = numerics::correct(*p.setup.system, next, p.workspace, 50).iterations;
-  }
-  state.counters["iterations"] = iterations;
-}
-
-/// ... and KINSOL with KLU on the same equations.
-void step_by_kinsol(benchmark::State& state) {
-  Pressed p(static_cast<int>(state.range(0)));
-  const auto n = p.point.band.size();
-  const auto m = p.point.border.size();
-  numerics::NonlinearSystem system;
-  system.pattern = numerics::to_sparse(p.workspace.system);
-  const auto at = [&](const Eigen::VectorXd& u) { return numerics::PathPoint{u.head(n), u.tail(m), 1.05 * mm}; };
-  system.residual = [&](const Eigen::VectorXd& u, Eigen::VectorXd& f) {
-    p.setup.system->assemble(at(u), p.workspace.system, p.workspace.by_parameter);
-    f.resize(n + m);
-    f << p.workspace.system.band_residual, p.workspace.system.border_residual;
+  numerics::BorderedSystem bordered;
+  Eigen::VectorXd by_parameter;
+  const auto assemble = [&](const Eigen::VectorXd& u) {
+    system.assemble({u.head(n), u.tail(m), wire.point.parameter}, bordered, by_parameter);
   };
-  system.jacobian = [&](const Eigen::VectorXd& u, numerics::SparseMatrix& j) {
-    p.setup.system->assemble(at(u), p.workspace.system, p.workspace.by_parameter);
-    j.value = numerics::to_sparse(p.workspace.system).value;
-  };
-  int iterations = 0;
   Eigen::VectorXd start(n + m);
-  start << p.point.band, p.point.border;
+  start << wire.point.band, wire.point.border;
+  assemble(start);
+  const numerics::BorderedPattern pattern(bordered, numerics::BorderedPattern::Zeros::kept);
+  numerics::NonlinearSystem nonlinear;
+  nonlinear.pattern = pattern.pattern();
+  nonlinear.residual = [&](const Eigen::VectorXd& u, Eigen::VectorXd& residual) {
+    assemble(u);
+    residual.resize(n + m);
+    residual << bordered.band_residual, bordered.border_residual;
+    residual.array() *= scale.array();
+  };
+  nonlinear.jacobian = [&](const Eigen::VectorXd& u, numerics::SparseMatrix& jacobian) {
+    assemble(u);
+    if (!pattern.refill(bordered, jacobian)) throw std::runtime_error("the pattern has changed");
+    for (std::size_t k = 0; k < jacobian.value.size(); ++k) jacobian.value[k] *= scale[jacobian.row[k]];
+  };
   numerics::KinsolOptions options;
-  options.residual_tolerance = 1e-6;
+  options.residual_tolerance = 1.0;
+
+  numerics::SolveReport report;
+  Eigen::VectorXd u;
   for (auto _ : state) {
-    Eigen::VectorXd u = start;
-    iterations = numerics::solve_kinsol(system, u, options).iterations;
+    u = start;
+    report = numerics::solve_kinsol(nonlinear, u, options);
+    benchmark::DoNotOptimize(u.data());
   }
-  state.counters["iterations"] = iterations;
+  if (!report.usable()) state.SkipWithError(report.message.c_str());
+  state.counters["iterations"] = report.iterations;
+  state.counters["force_N"] = u[n + 1];
 }
 
-BENCHMARK(newton_iteration)->RangeMultiplier(10)->Range(100, 100'000)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
-BENCHMARK(bare_klu)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
-BENCHMARK(bare_cholmod)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
-BENCHMARK(bare_band)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
-BENCHMARK(step_by_newton)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
-BENCHMARK(step_by_kinsol)->Arg(128)->Arg(256)->Unit(benchmark::kMicrosecond);
+/// Assembly, check, factorisation and solution at a fixed state.
+void NewtonIteration(benchmark::State& state) {
+  const auto elements = static_cast<int>(state.range(0));
+  PressedWire wire = buckled_shape(elements);
+  numerics::PathWorkspace workspace;
+  for (auto _ : state) {
+    newton_iteration(*wire.system, wire.point, workspace);
+    benchmark::DoNotOptimize(workspace.band_step.data());
+  }
+  state.counters["seconds_per_element"] =
+      benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["pivot_ratio"] = workspace.solver.pivot_ratio();
+  state.counters["blockwise"] = workspace.solver.blockwise() ? 1 : 0;
+  state.SetComplexityN(elements);
+}
+
+BENCHMARK(OutwardCurveExtrapolated)->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond);
+BENCHMARK(OutwardCurve)->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond);
+BENCHMARK(EquilibriumOwnNewton)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
+BENCHMARK(EquilibriumKinsol)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
+BENCHMARK(NewtonIteration)
+    ->Arg(100)
+    ->Arg(300)
+    ->Arg(1000)
+    ->Arg(3000)
+    ->Arg(10000)
+    ->Arg(30000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity(benchmark::oN);
 
 }  // namespace
+}  // namespace snare::benchmarks
 
 BENCHMARK_MAIN();

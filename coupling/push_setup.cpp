@@ -109,9 +109,23 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
     return setup;
   }
 
-  const wire::Controls controls{0.0, fraction * length, length};
-  const wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+  wire::Controls controls{0.0, fraction * length, length};
+  wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
   setup.iterations = loose.report.iterations;
+  if (test.bulge.mode > 1 && loose.report.usable()) {
+    // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method does not
+    // wander off to another shape.
+    for (int i = 0; i < mesh.edges(); ++i) {
+      const double x0 = wire::vertex(loose.state, i).x();
+      const double x1 = wire::vertex(loose.state, i + 1).x();
+      if (x0 > test.contact_position || x1 < test.contact_position) continue;
+      const double part = (test.contact_position - x0) / (x1 - x0);
+      controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
+                    part * mesh.coordinate(i + 1, loose.state.controls);
+    }
+    loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+    setup.iterations += loose.report.iterations;
+  }
   setup.report = loose.report;
   if (!loose.report.usable()) return setup;
 

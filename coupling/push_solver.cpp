@@ -303,7 +303,7 @@ bool PushFollower::advance(double target) {
     const numerics::SolveReport report = step_to(travel);
     // Friction changes or the wire leaves inside the step: go to just where it happens first.
     const std::optional<double> at = memory_.event_fraction();
-    if (at && *at < 0.99 && *at * std::abs(length) > 10.0 * options_.smallest_step) {
+    if (at && *at < 0.99999 && *at * std::abs(length) > 10.0 * options_.smallest_step) {
       system_.restore(saved);
       step = *at * length;
       stretch = 1.000001;  // to just there
@@ -567,12 +567,12 @@ ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOption
     const PushPoint& q = quarter.points[k];
     p.iterations += h.iterations + q.iterations;
     if (!same_state(p, h) || !same_state(p, q)) continue;
-    const double fourth_order = (4.0 * p.force - h.force) / 3.0;
+    const double third_order = (32.0 * p.force - 12.0 * h.force + q.force) / 21.0;
     for (double PushPoint::*value : {&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
                                      &PushPoint::tension_right, &PushPoint::contact_coordinate}) {
       p.*value = extrapolated(p.*value, h.*value, q.*value);
     }
-    result.discretisation_error[i] = std::abs(p.force - fourth_order);
+    result.discretisation_error[i] = 2.0 * std::abs(p.force - third_order);
   }
   return result;
 }

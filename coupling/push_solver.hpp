@@ -79,7 +79,8 @@ struct PushCurve {
 
 /// The same from this mesh and from those of a half and a quarter of its edges, combined to cancel the errors in
 /// h^2 and h^4 (Richardson 1911): F = (64 F_h - 20 F_2h + F_4h)/45.                  theory.md (W.11)
-/// `discretisation_error` bounds what is left: its difference to (4 F_h - F_2h)/3. Points at which the meshes
+/// `discretisation_error` estimates what is left: twice the difference to (32 F_h - 12 F_2h + F_4h)/21, which cancels h^2
+/// and h^3 (the half cells at clamps leave a little of h^3). Points at which the meshes
 /// differ in their state of contact keep the finest mesh's values.
 struct ExtrapolatedCurve {
   PushCurve curve;                           ///< of the finest mesh, extrapolated

@@ -78,8 +78,11 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0.0;
   negative_ = 0;
+  share_ = 1.0;
   for (int j = 0; j < n; ++j) {
     const double pivot = *l_.column(j);
+    const double diagonal = *a.column(j);
+    share_ = std::min(share_, std::abs(pivot) / std::max(std::abs(diagonal), std::abs(diagonal - pivot)));
     negative_ += pivot < 0.0 ? 1 : 0;
     smallest = std::min(smallest, std::abs(pivot));
     largest = std::max(largest, std::abs(pivot));

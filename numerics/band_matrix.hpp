@@ -58,15 +58,19 @@ class SymmetricBandMatrix {
 /// A = L D L^T of a symmetric band matrix without pivoting; n b^2 operations.
 ///
 /// By Sylvester's law the signs of D are the signs of the eigenvalues of A, which decides stability. Without
-/// pivoting the factorisation is accurate while no leading minor is nearly singular; `pivot_ratio()` tells.
+/// pivoting the factorisation is accurate while no leading minor is nearly singular; `pivot_share()` tells.
 class BandLdlt {
  public:
   /// Factorises a. Returns false, and leaves the factor unusable, when a pivot is zero or not finite.
   [[nodiscard]] bool factorize(const SymmetricBandMatrix& a);
 
   [[nodiscard]] int negative_pivots() const noexcept { return negative_; }
-  /// Smallest over largest |pivot| [-]; below about 1e-14 the solution has no correct digit.
+  /// Smallest over largest |pivot| [-]. Depends on the units of the unknowns and on the mesh.
   [[nodiscard]] double pivot_ratio() const noexcept { return ratio_; }
+  /// Smallest share of its diagonal entry that a pivot keeps, |d_j| / max(|a_jj|, |a_jj - d_j|) [-]: what elimination
+  /// cancels. Does not depend on units. Below about 1e-14 the sign of that pivot is not known; near 1e-16 it is
+  /// round-off, which spoils the solution unless A is definite (a cantilever of n edges keeps about 1/n^3).
+  [[nodiscard]] double pivot_share() const noexcept { return share_; }
 
   /// Solves A X = B in place; b has n rows, every column one right-hand side.
   void solve(Eigen::Ref<Eigen::MatrixXd> b) const;
@@ -76,6 +80,7 @@ class BandLdlt {
   std::vector<double> inverse_;  // 1 / D
   int negative_ = 0;
   double ratio_ = 0.0;
+  double share_ = 0.0;
 };
 
 }  // namespace snare::numerics

@@ -17,11 +17,11 @@ bool put(SparseMatrix& matrix, int slot, double value) {
 
 }  // namespace
 
-BorderedPattern::BorderedPattern(const BorderedSystem& system)
+BorderedPattern::BorderedPattern(const BorderedSystem& system, Zeros zeros)
     : n_(system.matrix.order()), m_(static_cast<int>(system.corner.rows())), b_(system.matrix.half_bandwidth()) {
   std::vector<std::pair<int, int>> entries;
-  const auto want = [&entries](int i, int j, double value) {
-    if (value != 0.0) entries.emplace_back(i, j);
+  const auto want = [&entries, zeros](int i, int j, double value) {
+    if (zeros == Zeros::kept || value != 0.0) entries.emplace_back(i, j);
   };
   for (int j = 0; j < n_; ++j) {
     for (int i = j; i <= std::min(n_ - 1, j + b_); ++i) {

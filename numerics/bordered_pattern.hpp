@@ -10,17 +10,22 @@ namespace snare::numerics {
 /// The whole matrix [K C; D E] of a bordered system with a pattern that is found once: each entry knows its slot, and
 /// a refill searches and sorts nothing.
 ///
-/// The pattern, of order n + m, has the entries that are not zero in the system it was made from. `to_sparse` makes
-/// the same matrix anew and keeps zeros inside the band.
+/// `to_sparse` makes the same matrix anew each time.
 class BorderedPattern {
  public:
-  explicit BorderedPattern(const BorderedSystem& system);
+  enum class Zeros {
+    kept,    ///< the whole band, whole dense columns and E: fits every system of the same structure
+    dropped  ///< only what is not zero in the system at hand: the smallest matrix, for one state
+  };
 
-  /// A matrix with the pattern, values zero.
+  BorderedPattern(const BorderedSystem& system, Zeros zeros);
+
+  /// A matrix of order n + m with the pattern, values zero.
   [[nodiscard]] const SparseMatrix& pattern() const noexcept { return pattern_; }
 
   /// Writes the values of `system` into `matrix`, which has the pattern. False, with `matrix` unusable, when the
-  /// system has other sizes, other rows, or a value that is not zero outside the pattern: make a new pattern then.
+  /// system has other sizes, rows, anchors or columns, or a value that is not zero outside the pattern: make a new
+  /// pattern then.
   [[nodiscard]] bool refill(const BorderedSystem& system, SparseMatrix& matrix) const;
 
  private:

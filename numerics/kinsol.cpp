@@ -35,6 +35,26 @@ int guarded(Call& call, const Work& work) {
   }
 }
 
+/// How the iteration ended. Throws LibraryError for what is wrong with the call rather than with the problem.
+Termination meaning(int code) {
+  switch (code) {
+    case KIN_SUCCESS:
+    case KIN_INITIAL_GUESS_OK:
+    case KIN_STEP_LT_STPTOL: return Termination::converged;
+    case KIN_MAXITER_REACHED: return Termination::iteration_limit;
+    case KIN_LSETUP_FAIL:
+    case KIN_LSOLVE_FAIL:
+    case KIN_LINSOLV_NO_RECOVERY: return Termination::singular_matrix;
+    case KIN_FIRST_SYSFUNC_ERR:
+    case KIN_REPTD_SYSFUNC_ERR:
+    case KIN_SYSFUNC_FAIL: return Termination::not_finite;
+    case KIN_LINESEARCH_NONCONV:
+    case KIN_LINESEARCH_BCFAIL:
+    case KIN_MXNEWT_5X_EXCEEDED: return Termination::step_too_small;
+    default: check(code, "KINSol"); return Termination::step_too_small;
+  }
+}
+
 extern "C" int kinsol_residual(N_Vector u, N_Vector f, void* data) {
   Call& call = *static_cast<Call*>(data);
   return guarded(call, [&] {
@@ -78,17 +98,22 @@ SolveReport solve_kinsol(const NonlinearSystem& system, Eigen::VectorXd& u, cons
   const int code = KINSol(kin, unknowns.get(), KIN_LINESEARCH, scale.get(), scale.get());
   if (call.failure) std::rethrow_exception(call.failure);
 
+  const Termination termination = meaning(code);  // throws where it is no failure of the iteration
+
   SolveReport report;
   long iterations = 0;
-  KINGetNumNonlinSolvIters(kin, &iterations);
-  KINGetFuncNorm(kin, &report.residual_norm);
+  check(KINGetNumNonlinSolvIters(kin, &iterations), "KINGetNumNonlinSolvIters");
   report.iterations = static_cast<int>(iterations);
-  if (code >= 0) return report;
-  report.termination = code == KIN_MAXITER_REACHED ? Termination::iteration_limit : Termination::step_too_small;
-  if (code == KIN_LSETUP_FAIL || code == KIN_LSOLVE_FAIL) report.termination = Termination::singular_matrix;
-  char* name = KINGetReturnFlagName(code);
-  report.message = std::string("KINSOL stopped with ") + name;
-  std::free(name);
+  Eigen::VectorXd residual;
+  system.residual(u, residual);
+  report.residual_norm = residual.lpNorm<Eigen::Infinity>() / options.residual_tolerance;
+  report.termination = termination;
+  // The shortest step ends KINSOL too, wherever that is.
+  if (code == KIN_STEP_LT_STPTOL && !(report.residual_norm <= 1.0)) report.termination = Termination::step_too_small;
+  if (!report.usable()) {
+    const std::unique_ptr<char, decltype(&std::free)> name(KINGetReturnFlagName(code), &std::free);
+    report.message = std::string("KINSOL stopped with ") + name.get();
+  }
   return report;
 }
 

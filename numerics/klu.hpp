@@ -12,18 +12,22 @@ namespace snare::numerics {
 /// first factorisation while that stays accurate, and factorised anew otherwise (Davis and Natarajan 2010).
 class Klu {
  public:
-  /// Analyses the pattern. Throws LibraryError when KLU refuses it.
+  /// Analyses the pattern. A pattern that makes every matrix singular is no error: `factorize` then is false. Throws
+  /// LibraryError when the pattern is invalid or memory runs out.
   explicit Klu(const SparseMatrix& pattern);
   ~Klu();
   Klu(Klu&&) noexcept;
   Klu& operator=(Klu&&) noexcept;
 
-  /// Factorises values of the analysed pattern; false when the matrix is singular.
+  /// Factorises values of the analysed pattern; false when the matrix is singular. Throws LibraryError when memory
+  /// runs out.
   [[nodiscard]] bool factorize(const SparseMatrix& matrix);
   /// Solves A x = b in place.
   void solve(Eigen::Ref<Eigen::VectorXd> b) const;
   /// Reciprocal condition estimate of the pivots, min |u| / max |u| [-].
   [[nodiscard]] double reciprocal_condition() const;
+  /// Sign of the determinant of the matrix that was factorised: +1 or -1.
+  [[nodiscard]] int determinant_sign() const;
 
  private:
   struct Handles;

@@ -38,6 +38,11 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       return report;
     }
     worse = report.residual_norm < best ? 0 : worse + 1;
+    // Round-off may keep the residual at some times its tolerance: no iteration lowers it then.
+    if (worse > 0 && best <= 16.0 && report.residual_norm <= 16.0) {
+      report.termination = Termination::converged;
+      return report;
+    }
     best = std::min(best, report.residual_norm);
     if (report.iterations == max_iterations || worse >= 3) {
       report.termination = Termination::iteration_limit;

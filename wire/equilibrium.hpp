@@ -30,13 +30,13 @@ struct EquilibriumReport : numerics::SolveReport {
 /// Force below which a residual of the rod is round-off or of no account [N].
 ///
 /// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the shortest
-/// edge, eps L (4 EA/h + 16 EI/h^3): no iteration can do better than that.
+/// edge, eps L (EA/2h + 2 EI/h^3): an iteration may stall at some times that.
 inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness,
                               double length, double shortest_edge, double largest_force) {
   const double scale = bending_stiffness / (length * length) + largest_force;
   const double h = shortest_edge;
   const double round_off = std::numeric_limits<double>::epsilon() * length *
-                           (4.0 * axial_stiffness / h + 16.0 * bending_stiffness / (h * h * h));
+                           (0.5 * axial_stiffness / h + 2.0 * bending_stiffness / (h * h * h));
   return std::max(tolerance * scale, round_off);
 }
 
@@ -59,9 +59,10 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
   const double ea = rod.properties().axial_stiffness;
   const double ei = rod.properties().bending_stiffness;
   double shift = 0.0;
+  double previous = std::numeric_limits<double>::max();
 
   // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times an
-  // edge, and they do not limit the step.
+  // edge.
   const auto is_angle = [](Eigen::Index i) { return i % Rod::block >= Rod::dimension; };
   const auto evaluate = [&](const State& at) {
     rod.assemble(at, no_controls, assembly);
@@ -86,7 +87,10 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     bool factored = factor.factorize(assembly.hessian);
     report.negative_pivots = factored ? factor.negative_pivots() : -1;
     report.pivot_ratio = factored ? factor.pivot_ratio() : 0.0;
-    if (residual <= allowed && (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
+    // Round-off may hold the residual at some times its tolerance.
+    const bool stalled = residual <= 16.0 * allowed && residual >= 0.5 * previous;
+    previous = residual;
+    if ((residual <= allowed || stalled) && (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
       report.termination = numerics::Termination::converged;
       return report;
     }
@@ -111,10 +115,10 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     }
     Eigen::VectorXd step = -assembly.gradient;
     factor.solve(step);
-    // No vertex moves more than a tenth of the length at once.
+    // No vertex moves more than a tenth of the length at once, no edge turns more than 0.1 rad.
     double far = 0.0;
     for (Eigen::Index i = 0; i < step.size(); ++i) {
-      if (!is_angle(i)) far = std::max(far, std::abs(step[i]) / (0.1 * length));
+      far = std::max(far, std::abs(step[i]) / (is_angle(i) ? 0.1 : 0.1 * length));
     }
     if (far > 1.0) step /= far;
 

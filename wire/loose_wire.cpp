@@ -89,6 +89,11 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
           p.left.position + chord * ((mesh.coordinate(i, controls) - controls[0]) / length);
     }
   }
+  // What is left of the gap to the right mount is shared out along the wire.
+  const Eigen::Vector2d gap = p.right.position - vertex(result.state, n);
+  for (int i = 1; i < n; ++i) {
+    result.state.q.segment<2>(2 * i) += (mesh.coordinate(i, controls) - controls[0]) / length * gap;
+  }
   result.state.q.segment<2>(2 * n) = p.right.position;
 
   EquilibriumOptions options;

@@ -18,7 +18,8 @@ double last_force(const PushCurve& curve) { return curve.points.empty() ? std::n
 
 TEST(PushAccuracy, ForceConvergesAtSecondOrder) {
   for (const double radius : {0.0, 6.0 * mm}) {
-    for (const double position : {87.5 * mm, 40.0 * mm}) {
+    // A quarter and a half of the span: the meshes of 64, 128 and 256 edges are nested.
+    for (const double position : {87.5 * mm, 43.75 * mm}) {
       PushTest test = declared_wire(position, radius);
       test.travel = {0.5 * mm, 1.0 * mm};
       const double reference = validation::push(test::elastica_of(test), 1.0 * mm).force;

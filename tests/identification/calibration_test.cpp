@@ -28,10 +28,10 @@ Series series_of(const coupling::PushTest& test, double offset, double sigma, un
   }
   const std::vector<validation::ElasticaState> states = validation::push_path(test::elastica_of(test), travel);
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, sigma);
+  std::normal_distribution<double> noise(0.0, 1.0);
   readings.force.assign(readings.displacement.size() - travel.size(), 0.0);
   for (const validation::ElasticaState& s : states) readings.force.push_back(s.force);
-  for (double& f : readings.force) f += noise(random);
+  for (double& f : readings.force) f += sigma * noise(random);
   series.readings = readings;
   return series;
 }

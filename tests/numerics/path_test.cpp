@@ -7,7 +7,9 @@
 
 #include <Eigen/Dense>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 namespace snare::numerics {
 namespace {
@@ -114,6 +116,62 @@ TEST(Path, NewtonConvergesQuadraticallyAndReportsFailure) {
   const SolveReport failed = correct(problem, none, workspace, 3);
   EXPECT_FALSE(failed.usable());
   EXPECT_FALSE(failed.message.empty());
+}
+
+TEST(Path, NewtonConvergesAtSecondOrder) {
+  Cubic problem;
+  PathWorkspace workspace;
+  std::vector<double> errors;
+  for (int iterations = 1; iterations <= 4; ++iterations) {
+    PathPoint point{Eigen::VectorXd::Constant(1, 2.6), Eigen::VectorXd::Zero(1), 6.0};
+    (void)correct(problem, point, workspace, iterations);
+    errors.push_back(std::abs(point.band[0] - 2.0));
+  }
+  // e' = e^2 f''/(2 f') = 12/22 e^2 in the limit; the orders approach 2 from below 0.02 apart.
+  for (std::size_t k = 2; k < errors.size(); ++k) {
+    const double order = std::log(errors[k] / errors[k - 1]) / std::log(errors[k - 1] / errors[k - 2]);
+    EXPECT_NEAR(order, 2.0, 0.1) << "after " << k + 1 << " iterations";
+  }
+  EXPECT_NEAR(errors[3] / (errors[2] * errors[2]), 12.0 / 22.0, 0.01);
+}
+
+TEST(Path, TangentIsThatOfTheCurve) {
+  Cubic problem;
+  PathWorkspace workspace;
+  for (const double x : {-1.4, -0.7, 0.2, 0.9}) {
+    const double p = x * x * x - x;
+    const PathPoint point{Eigen::VectorXd::Constant(1, x), Eigen::VectorXd::Constant(1, p), p};
+    const double slope = 3.0 * x * x - 1.0;  // dp/dx
+    const PathTangent forward = tangent(problem, point, workspace, nullptr);
+    EXPECT_NEAR(forward.band[0] * slope, forward.parameter, 1e-14);
+    EXPECT_NEAR(forward.border[0], forward.parameter, 1e-14);  // the force is the parameter
+    EXPECT_NEAR(forward.band.squaredNorm() + forward.parameter * forward.parameter, 1.0, 1e-14);
+    EXPECT_GT(forward.parameter, 0.0);
+    PathTangent back = forward;
+    back.band = -back.band;
+    back.parameter = -back.parameter;
+    EXPECT_LT(tangent(problem, point, workspace, &back).parameter, 0.0);  // keeps the sense of travel
+  }
+}
+
+TEST(Path, ArcLengthCrossesTheFoldItself) {
+  // At x = 1/sqrt 3 the band matrix is zero and the system at fixed parameter singular; along the arc it is not.
+  Cubic problem;
+  PathWorkspace workspace;
+  const double x = 1.0 / std::sqrt(3.0);
+  const double p = x * x * x - x;
+  const PathPoint fold{Eigen::VectorXd::Constant(1, x), Eigen::VectorXd::Constant(1, p), p};
+  const PathTangent across{Eigen::VectorXd::Ones(1), Eigen::VectorXd::Zero(1), 0.0};
+  for (const double step : {-0.2, 0.2}) {
+    PathPoint next = fold;
+    const SolveReport report = correct_along(problem, next, fold, across, step, workspace, 20);
+    ASSERT_TRUE(report.usable()) << report.message;
+    EXPECT_NEAR(next.band[0], x + step, 1e-12);
+    EXPECT_NEAR(next.parameter, std::pow(x + step, 3) - x - step, 1e-12);
+  }
+  PathPoint stuck = fold;
+  stuck.parameter -= 1e-3;  // beyond the fold there is no solution nearby
+  EXPECT_FALSE(correct(problem, stuck, workspace, 3).usable());
 }
 
 TEST(Path, ArcLengthPassesBothFolds) {

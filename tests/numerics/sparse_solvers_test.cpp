@@ -9,8 +9,10 @@
 
 #include <Eigen/Dense>
 
+#include <cmath>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 namespace snare::numerics {
 namespace {
@@ -64,7 +66,57 @@ TEST(Klu, SingularMatrixIsReported) {
   matrix.value = {1.0, 2.0, 2.0, 4.0};
   Klu klu(matrix);
   EXPECT_FALSE(klu.factorize(matrix));
-  EXPECT_THROW(Klu(make_pattern(2, {{0, 0}})), LibraryError);  // an empty column
+  const SparseMatrix empty_column = make_pattern(2, {{0, 0}});
+  EXPECT_FALSE(Klu(empty_column).factorize(empty_column));
+}
+
+TEST(Klu, PivotsThatNoLongerSuitAreChosenAnew) {
+  SparseMatrix matrix = make_pattern(2, {{0, 0}, {0, 1}, {1, 0}, {1, 1}});
+  const auto values = [&matrix](double a00, double a10, double a01, double a11) { matrix.value = {a00, a10, a01, a11}; };
+  values(2.0, 1.0, 1.0, 2.0);
+  Klu klu(matrix);
+  ASSERT_TRUE(klu.factorize(matrix));
+  EXPECT_EQ(klu.determinant_sign(), 1);
+  // The first pivot of either order is 1e-14 of the rest now: elimination with it would lose 14 digits.
+  values(1e-14, 1.0, 1.0, 1e-14);
+  ASSERT_TRUE(klu.factorize(matrix));
+  EXPECT_EQ(klu.determinant_sign(), -1);
+  Eigen::VectorXd x(2);
+  x << 3.0, 5.0;
+  klu.solve(x);
+  EXPECT_NEAR(x[0], 5.0, 1e-13);  // condition 1; the off-diagonal solution but for 3e-14
+  EXPECT_NEAR(x[1], 3.0, 1e-13);
+}
+
+TEST(Klu, DeterminantSignIsThatOfDense) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::uniform_int_distribution<int> index(0, 11);
+  int negative = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<std::pair<int, int>> entries;
+    for (int i = 0; i < 12; ++i) entries.emplace_back(i, (5 * i + 3) % 12);  // a permutation: structurally regular
+    for (int k = 0; k < 30; ++k) entries.emplace_back(index(random), index(random));
+    SparseMatrix matrix = make_pattern(12, entries);
+    for (double& v : matrix.value) v = uniform(random);
+    Klu klu(matrix);
+    ASSERT_TRUE(klu.factorize(matrix));
+    const double determinant = dense(matrix).determinant();
+    EXPECT_EQ(klu.determinant_sign(), determinant > 0.0 ? 1 : -1) << "trial " << trial << ", " << determinant;
+    negative += determinant < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(negative, 5);  // both signs were met
+  EXPECT_LT(negative, 35);
+}
+
+TEST(Cholmod, VanishingPivotIsReported) {
+  SparseMatrix lower = make_pattern(2, {{0, 0}, {1, 0}, {1, 1}});
+  lower.value = {0.0, 1.0, 0.0};
+  Cholmod cholmod(lower, Cholmod::Ordering::natural);
+  EXPECT_FALSE(cholmod.factorize(lower));
+  lower.value = {2.0, 1.0, 0.0};  // the next values may be better
+  ASSERT_TRUE(cholmod.factorize(lower));
+  EXPECT_EQ(cholmod.negative_pivots(), 1);
 }
 
 TEST(Cholmod, SolvesAndTellsTheInertia) {
@@ -125,6 +177,69 @@ TEST(Kinsol, FailureIsReportedAndExceptionsPassThrough) {
   thrower.jacobian = [](const Eigen::VectorXd&, SparseMatrix&) { throw std::runtime_error("from the callback"); };
   u << 3.0, 1.0;
   EXPECT_THROW((void)solve_kinsol(thrower, u), std::runtime_error);
+
+  NonlinearSystem second = circle_and_line();
+  second.residual = [](const Eigen::VectorXd&, Eigen::VectorXd&) { throw std::out_of_range("from the residual"); };
+  EXPECT_THROW((void)solve_kinsol(second, u), std::out_of_range);
+}
+
+TEST(Kinsol, ReportsWhatStoppedIt) {
+  Eigen::VectorXd u(2);
+  u << 0.0, 0.0;  // the Jacobian (0, 0; 1, -1) is singular here
+  EXPECT_EQ(solve_kinsol(circle_and_line(), u).termination, Termination::singular_matrix);
+
+  u << 300.0, 100.0;
+  KinsolOptions two;
+  two.max_iterations = 2;
+  const SolveReport limited = solve_kinsol(circle_and_line(), u, two);
+  EXPECT_EQ(limited.termination, Termination::iteration_limit);
+  EXPECT_EQ(limited.iterations, 2);
+  EXPECT_GT(limited.residual_norm, 1.0);
+
+  NonlinearSystem undefined = circle_and_line();
+  undefined.residual = [](const Eigen::VectorXd&, Eigen::VectorXd& f) { f.setConstant(2, std::nan("")); };
+  EXPECT_EQ(solve_kinsol(undefined, u).termination, Termination::not_finite);
+}
+
+TEST(Kinsol, StopsWhereItStarts) {
+  Eigen::VectorXd u = Eigen::VectorXd::Constant(2, std::sqrt(2.0));
+  const SolveReport report = solve_kinsol(circle_and_line(), u);
+  EXPECT_TRUE(report.usable());
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_LE(report.residual_norm, 1.0);
+}
+
+TEST(Kinsol, AgreesWithPlainNewtonOnALargerSystem) {
+  // Chain -u'' + u^3 = 1 on 50 points: K u + h^2 (u^3 - 1) = 0.
+  constexpr int n = 50;
+  const double h2 = 1.0 / ((n + 1.0) * (n + 1.0));
+  SymmetricBandMatrix laplace(n, 1);
+  for (int i = 0; i < n; ++i) {
+    laplace.lower(i, i) = 2.0;
+    if (i + 1 < n) laplace.lower(i + 1, i) = -1.0;
+  }
+  const auto residual = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return laplace * x + h2 * (x.array().cube() - 1.0).matrix();
+  };
+  NonlinearSystem system;
+  system.pattern = to_sparse(laplace, Triangle::both);
+  system.residual = [&](const Eigen::VectorXd& x, Eigen::VectorXd& f) { f = residual(x); };
+  system.jacobian = [&](const Eigen::VectorXd& x, SparseMatrix& j) {
+    j.value = system.pattern.value;
+    for (int i = 0; i < n; ++i) j.value[static_cast<std::size_t>(j.slot(i, i))] += 3.0 * h2 * x[i] * x[i];
+  };
+  KinsolOptions options;
+  options.residual_tolerance = 1e-14;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+  ASSERT_TRUE(solve_kinsol(system, u, options).usable());
+
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (int k = 0; k < 8; ++k) {
+    Eigen::MatrixXd jacobian = dense(system.pattern);
+    jacobian.diagonal().array() += 3.0 * h2 * x.array().square();
+    x -= jacobian.lu().solve(residual(x));
+  }
+  EXPECT_LE((u - x).lpNorm<Eigen::Infinity>(), 1e-11);  // tolerance 1e-14 times the condition of about 1e3
 }
 
 }  // namespace
