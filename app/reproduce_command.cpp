@@ -202,7 +202,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   Model declared;
   declared.name = "declared";
   declared.label = "declared model";
-  declared.description = "the wire, mounts and pusher exactly as the experiment file declares them; nothing fitted";
+  declared.description = "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted";
   for (const char* key : {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm"}) {
     declared.parameters.push_back(identification::declared_parameter(experiment, key));
   }
@@ -223,7 +223,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
       Model best = declared;
       best.name = "best_fit";
       best.label = "best fit of the declared kind";
-      best.description = "the same kind of model with the listed numbers fitted to all positions together";
+      best.description = "The same kind of model with the listed numbers fitted to all positions together";
       best.parameters = calibration.parameters;
       best.free = static_cast<int>(calibration.parameters.size());
       std::vector<Series> fitted = experiment.series;

@@ -37,9 +37,9 @@ void report(benchmark::State& state, const coupling::PushCurve& curve, int meshe
   const double error = std::abs(curve.points.back().force / reference_force - 1.0);
   const double iterations = curve.newton_iterations;
   state.counters["force_error"] = error;
-  state.counters["iterations"] = iterations;
-  state.counters["iterations_per_point_and_mesh"] = iterations_per_point(curve) / meshes;
-  state.counters["seconds_per_iteration"] = benchmark::Counter(
+  state.counters["newton_iterations"] = iterations;
+  state.counters["newton_iterations_per_point_and_mesh"] = iterations_per_point(curve) / meshes;
+  state.counters["seconds_per_newton_iteration"] = benchmark::Counter(
       iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
@@ -82,7 +82,7 @@ void EquilibriumOwnNewton(benchmark::State& state) {
     benchmark::DoNotOptimize(point.band.data());
   }
   if (!report.usable()) state.SkipWithError("not converged");
-  state.counters["iterations"] = report.iterations;
+  state.counters["newton_iterations"] = report.iterations;
   state.counters["force_N"] = point.border[1];
 }
 
@@ -141,7 +141,7 @@ void EquilibriumKinsol(benchmark::State& state) {
     benchmark::DoNotOptimize(u.data());
   }
   if (!report.usable()) state.SkipWithError(report.message.c_str());
-  state.counters["iterations"] = report.iterations;
+  state.counters["newton_iterations"] = report.iterations;
   state.counters["force_N"] = u[n + 1];
 }
 

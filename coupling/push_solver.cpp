@@ -65,7 +65,9 @@ class PushFollower {
 };
 
 bool PushFollower::fail(numerics::Termination termination, const std::string& message) {
-  curve_.report.termination = termination;
+  // What stopped the push may have converged by itself and still be of no use.
+  curve_.report.termination =
+      termination == numerics::Termination::converged ? numerics::Termination::step_too_small : termination;
   curve_.report.message = fmt::format("{} at a travel of {:.6g} mm", message, 1e3 * point_.parameter);
   return false;
 }
