@@ -92,7 +92,7 @@ TEST(PushFriction, SlidingForceMeetsTheContinuousWire) {
   EXPECT_LE(nearest, 1e-5);
 }
 
-TEST(PushFriction, CapstanOnAWrappedPin) {
+TEST(SlowPushFriction, CapstanOnAWrappedPin) {
   // A soft wire pushed far off its middle slides over a thick pin on its whole arc.
   PushTest test = test::soft_wire(60.0 * mm, 20.0 * mm);
   test.wire.bending_stiffness_override = 5e-6;
