@@ -23,10 +23,6 @@ double force_floor(const PushSystem& system) {
                            system.mount_reactions()[0].norm() + system.mount_reactions()[1].norm());
 }
 
-Vector2d pusher_centre(const PushSystem& system, double parameter) {
-  return system.guided[0].centre + parameter * system.guided[0].motion;
-}
-
 /// Slip of the material over the pin since the last accepted state: dS + side R d angle [m].
 double slip_of(const GuidedContact& contact, const VertexTangent& v, double coordinate) {
   return coordinate - contact.last_coordinate +
@@ -72,7 +68,7 @@ bool settle_friction(GuidedContact& contact, const VertexTangent& v, const Vecto
 void begin_wrap(PushSystem& system, numerics::PathPoint& point, int first, int last) {
   GuidedContact& pusher = system.guided[0];
   const wire::PlanarState state = system.state(point);
-  const Vector2d centre = pusher_centre(system, point.parameter);
+  const Vector2d centre = system.pusher_centre(point);
   const Eigen::VectorXd old = point.border;
   const int old_mount = system.mount_row();
   pusher.last_coordinate = old[2];
@@ -150,7 +146,7 @@ void end_wrap(PushSystem& system, numerics::PathPoint& point, const wire::Planar
 bool settle_wrapped(PushSystem& system, numerics::PathPoint& point, ContactMemory& memory, double floor) {
   const GuidedContact& pusher = system.guided[0];
   const wire::PlanarState state = system.state(point);
-  const Vector2d centre = pusher_centre(system, point.parameter);
+  const Vector2d centre = system.pusher_centre(point);
   // Release vertices that are pulled; the others keep their forces.
   std::vector<RidingContact> kept;
   std::vector<Vector2d> forces;
@@ -308,7 +304,7 @@ bool settle_contact(PushSystem& system, numerics::PathPoint& point, ContactMemor
     if (settle_friction(contact, v, force, point.border[system.guided_row(k) + 2], floor, memory)) return true;
   }
   if (pusher.radius > 0.0 && pusher.node > 1 && pusher.node < system.rod().mesh().edges() - 1) {
-    const Vector2d centre = pusher_centre(system, point.parameter);
+    const Vector2d centre = system.pusher_centre(point);
     const double limit = pusher.radius - relative_gap * system.length_scale();
     const bool left = (wire::vertex(state, pusher.node - 1) - centre).norm() < limit;
     const bool right = (wire::vertex(state, pusher.node + 1) - centre).norm() < limit;
@@ -330,13 +326,14 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
     contact.last_force = point.border.segment<2>(system.guided_row(k));
     contact.last_gap = point.border[system.guided_row(k) + 3];
   }
-  const Vector2d centre = pusher_centre(system, point.parameter);
+  const Vector2d centre = system.pusher_centre(point);
   for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {
     RidingContact& contact = system.riding[static_cast<std::size_t>(k)];
     contact.last_radial = (wire::vertex(state, contact.node) - centre).normalized();
     contact.last_force = point.border.segment<2>(system.riding_row(k));
   }
   if (system.mount) system.mount->last_coordinate = point.border[system.mount_row()];
+  if (system.rod().has_memory()) system.sections = system.rod().remembered(state);
 }
 
 double friction_work(const PushSystem& system, const numerics::PathPoint& before, const numerics::PathPoint& now) {
@@ -352,7 +349,7 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
     // The pin drags the wire along +t while material passes it towards larger S.
     work += 0.5 * std::abs(last + force) * std::abs(slip_of(contact, v, now.border[row + 2]));
   }
-  const Vector2d centre = pusher_centre(system, now.parameter);
+  const Vector2d centre = system.pusher_centre(now);
   for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {
     const RidingContact& contact = system.riding[static_cast<std::size_t>(k)];
     if (contact.friction == 0.0 || contact.status != ContactStatus::slip) continue;
@@ -369,14 +366,6 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
   return work;
 }
 
-Vector2d pusher_force_on_wire(const PushSystem& system, const numerics::PathPoint& at) {
-  Vector2d force = at.border.segment<2>(0);
-  for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {
-    force += at.border.segment<2>(system.riding_row(k));
-  }
-  return force;
-}
-
 PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
   const GuidedContact& pusher = system.guided[0];
   PusherForces sum;
@@ -387,7 +376,7 @@ PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& st
     sum.friction = p.tangential;
     return sum;
   }
-  const Vector2d centre = pusher_centre(system, at.parameter);
+  const Vector2d centre = system.pusher_centre(at);
   sum.slipping = pusher.friction > 0.0;
   for (int k = 0; k < static_cast<int>(system.riding.size()); ++k) {
     const RidingContact& r = system.riding[static_cast<std::size_t>(k)];
@@ -430,7 +419,7 @@ ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& 
 }
 
 bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::PathWorkspace& workspace) {
-  const Vector2d centre = pusher_centre(system, point.parameter);
+  const Vector2d centre = system.pusher_centre(point);
   const wire::PlanarState state = system.state(point);
   int nearest = 1;
   for (int i = 2; i < system.rod().mesh().edges(); ++i) {

@@ -44,9 +44,6 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point);
 [[nodiscard]] double friction_work(const PushSystem& system, const numerics::PathPoint& before,
                                    const numerics::PathPoint& now);
 
-/// Force of the pusher on the wire [N].
-[[nodiscard]] Eigen::Vector2d pusher_force_on_wire(const PushSystem& system, const numerics::PathPoint& at);
-
 /// Sums of the pusher's normal forces and of its friction forces (along the wire's tangent) [N].
 struct PusherForces {
   double normal = 0.0;

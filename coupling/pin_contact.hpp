@@ -30,7 +30,7 @@ struct VertexTangent {
 /// How a guided contact stands.
 enum class ContactStatus {
   open,      ///< the gap is positive, no force
-  touching,  ///< gap and force are zero; the pusher's travel to get there is the unknown
+  touching,  ///< gap and force are zero; how far the pusher comes towards the wire is the unknown
   stick,     ///< pressed, the material point does not move over the pusher
   slip,      ///< pressed, sliding; frictionless contact always slips
   wrapped    ///< the wire lies on the pusher over an arc: see RidingContact
@@ -56,6 +56,9 @@ struct GuidedContact {
   Eigen::Vector2d last_tangent = Eigen::Vector2d::UnitX();  ///< t at the last accepted state
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();     ///< on the wire at the last accepted state [N]
   double last_gap = 0.0;                                    ///< at the last accepted state [m]
+
+  /// Unit vector from the pin towards the wire, normal to the chord: how it comes to the first touch.
+  [[nodiscard]] Eigen::Vector2d approach() const { return side * Eigen::Vector2d::UnitY(); }
 };
 
 /// A material vertex that lies on the pusher when the wire wraps it.                 theory.md (C.7)

@@ -42,24 +42,9 @@ GuidedContact make_pusher(const PushTest& test, int node) {
 }
 
 // Wire resting on two supports, the pusher touching it from the other side; straight, without force.
-void rest_on_supports(const PushTest& test, PushSetup& setup, const wire::Controls& controls) {
+void rest_on_supports(PushSetup& setup, const wire::Controls& controls) {
   PushSystem& system = *setup.system;
   const wire::MaterialMesh& mesh = setup.rod->mesh();
-  GuidedContact pusher = make_pusher(test, mesh.contact_vertex());
-  pusher.centre -= pusher.side * pusher.radius * Vector2d::UnitY();
-  pusher.holds_material = true;
-  pusher.last_coordinate = controls[1];
-  system.guided = {pusher};
-  for (const int end : {0, 2}) {
-    GuidedContact support;
-    support.node = end == 0 ? 0 : mesh.edges();
-    support.control = end;
-    support.side = -pusher.side;
-    support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
-    support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
-    support.last_coordinate = controls[static_cast<std::size_t>(end)];
-    system.guided.push_back(support);
-  }
   setup.start.band.resize(setup.rod->unknowns());
   for (int i = 0; i <= mesh.edges(); ++i) {
     setup.start.band.segment<2>(2 * i) = Vector2d(mesh.coordinate(i, controls) - controls[0], 0.0);
@@ -72,6 +57,62 @@ void rest_on_supports(const PushTest& test, PushSetup& setup, const wire::Contro
 }
 
 }  // namespace
+
+wire::PlanarRodProperties rod_properties(const PushTest& test) {
+  wire::PlanarRodProperties properties;
+  properties.bending_stiffness = test.wire.bending_stiffness();
+  properties.axial_stiffness = test.wire.axial_stiffness();
+  // The bulge goes to +y, where a wire running along +x turns right at its top.
+  properties.natural_curvature = -test.wire.natural_curvature;
+  properties.weight = test.wire.mass_per_length() * Vector2d(test.gravity[0], test.gravity[1]);
+  properties.left = make_end(test, 0.0);
+  properties.right = make_end(test, test.mount.span);
+  properties.bending_profile = test.wire.bending_profile;
+  if (test.wire.yielding) {
+    constexpr double hardening = wire::Yielding::hardening_ratio;
+    const double yield_strain = test.wire.yielding->yield_stress / test.wire.youngs_modulus;
+    properties.bending_sliders =
+        wire::yielding_section(properties.bending_stiffness, test.wire.diameter, yield_strain, hardening);
+    properties.axial_sliders = {{(1.0 - hardening) * properties.axial_stiffness, yield_strain}};
+    properties.bending_stiffness *= hardening;
+    properties.axial_stiffness *= hardening;
+  }
+  if (test.wire.strand_friction) {
+    properties.bending_sliders.push_back(
+        {test.wire.strand_friction->extra_stiffness, test.wire.strand_friction->slip_curvature});
+  }
+  return properties;
+}
+
+wire::Controls initial_controls(const PushTest& test) {
+  const double length = test.wire.length;
+  if (test.mount.kind == wire::MountKind::supports) {
+    const double overhang = 0.5 * (length - test.mount.span);
+    return {overhang, overhang + test.contact_position, overhang + test.mount.span};
+  }
+  return {0.0, test.contact_position / test.mount.span * length, length};
+}
+
+std::vector<GuidedContact> make_contacts(const PushTest& test, const wire::MaterialMesh& mesh,
+                                         const wire::Controls& controls) {
+  GuidedContact pusher = make_pusher(test, mesh.contact_vertex());
+  if (test.mount.kind != wire::MountKind::supports) return {pusher};
+  pusher.centre -= pusher.side * pusher.radius * Vector2d::UnitY();
+  pusher.holds_material = true;
+  pusher.last_coordinate = controls[1];
+  std::vector<GuidedContact> contacts{pusher};
+  for (const int end : {0, 2}) {
+    GuidedContact support;
+    support.node = end == 0 ? 0 : mesh.edges();
+    support.control = end;
+    support.side = -pusher.side;
+    support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
+    support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
+    support.last_coordinate = controls[static_cast<std::size_t>(end)];
+    contacts.push_back(support);
+  }
+  return contacts;
+}
 
 PushSetup prepare_push(const PushTest& test, int edges, double grading, int coarsening) {
   const double length = test.wire.length;
@@ -90,17 +131,8 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
   mesh = wire::make_mesh(edges, fraction, grading);
   if (coarsening > 1) mesh = mesh.coarsened(coarsening);
 
-  wire::PlanarRodProperties properties;
-  properties.bending_stiffness = ei;
-  properties.axial_stiffness = ea;
-  // The bulge goes to +y, where a wire running along +x turns right at its top.
-  properties.natural_curvature = -test.wire.natural_curvature;
-  properties.weight = test.wire.mass_per_length() * Vector2d(test.gravity[0], test.gravity[1]);
-  properties.left = make_end(test, 0.0);
-  properties.right = make_end(test, test.mount.span);
-
   PushSetup setup;
-  setup.rod = std::make_unique<wire::PlanarRod>(mesh, properties);
+  setup.rod = std::make_unique<wire::PlanarRod>(mesh, rod_properties(test));
   if (test.mount.kind == wire::MountKind::supports) {
     if (test.wire.natural_curvature != 0.0) {
       // It would touch the supports in a shape and a roll of its own.
@@ -108,14 +140,15 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
       setup.report.message = "a naturally curved wire on supports is not computed";
       return setup;
     }
-    const double overhang = 0.5 * (length - test.mount.span);
-    const wire::Controls controls{overhang, overhang + test.contact_position, overhang + test.mount.span};
+    const wire::Controls controls = initial_controls(test);
     setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
-    rest_on_supports(test, setup, controls);
+    setup.system->guided = make_contacts(test, mesh, controls);
+    setup.system->compliance = test.pusher.compliance;
+    rest_on_supports(setup, controls);
     return setup;
   }
 
-  wire::Controls controls{0.0, fraction * length, length};
+  wire::Controls controls = initial_controls(test);
   wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
   setup.iterations = loose.report.iterations;
   if (test.bulge.mode > 1 && loose.report.usable()) {
@@ -137,11 +170,11 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
 
   setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
   PushSystem& system = *setup.system;
-  GuidedContact pusher = make_pusher(test, mesh.contact_vertex());
-  const Vector2d at_contact = wire::vertex(loose.state, mesh.contact_vertex());
-  pusher.centre = Vector2d(test.contact_position, at_contact.y() - pusher.side * pusher.radius);
+  system.guided = make_contacts(test, mesh, controls);
+  GuidedContact& pusher = system.guided.front();
+  pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
   pusher.status = ContactStatus::touching;
-  system.guided = {pusher};
+  system.compliance = test.pusher.compliance;
   if (test.mount.slip_tension) system.mount = SlippingMount{*test.mount.slip_tension, false, 0.0, 0.0};
 
   setup.start.band = loose.state.q;
@@ -155,7 +188,7 @@ PushSetup prepare_push(const PushTest& test, int edges, double grading, int coar
     setup.report.message = "the pusher does not touch the wire in its initial shape";
     return setup;
   }
-  system.guided[0].centre += setup.start.border[3] * pusher.motion;
+  pusher.centre += setup.start.border[3] * pusher.approach();
   setup.start.border[3] = 0.0;
   setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
   return setup;

@@ -18,6 +18,15 @@ struct PushSetup {
   numerics::SolveReport report;        ///< start is only meaningful when usable
 };
 
+/// The rod of a push test on a mesh, and the material coordinates of mounts and contact to begin with.
+[[nodiscard]] wire::PlanarRodProperties rod_properties(const PushTest& test);
+[[nodiscard]] wire::Controls initial_controls(const PushTest& test);
+
+/// The pusher (and the supports) with the constants of the test, not in contact yet: the pusher's axis at the height of
+/// the chord, or on the straight wire that rests on supports.
+[[nodiscard]] std::vector<GuidedContact> make_contacts(const PushTest& test, const wire::MaterialMesh& mesh,
+                                                       const wire::Controls& controls);
+
 /// edges: a multiple of 4, >= 16; coarsening 1, 2 or 4: only every so manieth vertex of that mesh is used.
 /// grading < 0: chosen from the boundary layer sqrt(EI/T) at a strain of 0.5 %.
 [[nodiscard]] PushSetup prepare_push(const PushTest& test, int edges, double grading, int coarsening);

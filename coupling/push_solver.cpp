@@ -24,9 +24,14 @@ constexpr int history_length = 4;  // points behind the predictor: a cubic
 /// Follows one push from first touch through the asked travels.
 class PushFollower {
  public:
-  PushFollower(PushSetup setup, const PushOptions& options, double torsional_stiffness)
+  PushFollower(PushSetup setup, const PushTest& test, const PushOptions& options)
       : setup_(std::move(setup)), system_(*setup_.system), options_(options),
-        torsional_stiffness_(torsional_stiffness), point_(setup_.start) {}
+        torsional_stiffness_(test.wire.torsional_stiffness()), point_(setup_.start) {
+    if (!options.variations.empty() && differentiable(test)) {
+      sensitivity_.emplace(test, setup_.rod->mesh(), options.variations);
+      remembers_ = test.pusher.friction > 0.0 || test.mount.slip_tension.has_value();
+    }
+  }
 
   PushCurve run(const std::vector<double>& travel);
 
@@ -42,6 +47,8 @@ class PushFollower {
   void accept(const ContactStates& before);
   [[nodiscard]] bool lift_off(const ContactStates& before);
   void record(double travel);
+  void differentiate(const numerics::PathPoint& at);
+  [[nodiscard]] double viscous_stiffness();
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
   void keep_shape(double travel);
   [[nodiscard]] int count_unstable_modes();
@@ -54,6 +61,9 @@ class PushFollower {
   numerics::PathPoint point_;            // last accepted
   std::deque<numerics::PathPoint> past_; // accepted ones with the same contact, newest last
   numerics::PathWorkspace workspace_;
+  std::optional<PushSensitivity> sensitivity_;
+  bool remembers_ = false;               // friction or a slipping mount: derivatives go from point to point
+  std::optional<double> differentiated_at_;
   ContactMemory memory_;
   PushCurve curve_;
   numerics::PathPoint trial_;
@@ -151,6 +161,7 @@ void PushFollower::accept(const ContactStates& states_before) {
   const double before = point_.parameter;
   const std::vector<PushEvent::Kind> events = contact_events(states_before, system_);
   dissipated_ += friction_work(system_, point_, trial_);
+  if (sensitivity_ && remembers_) differentiate(trial_);
   const bool same_contact = !memory_.changed() && trial_.border.size() == point_.border.size();
   const bool turned = !past_.empty() && past_.size() >= 2 &&
                       (trial_.parameter - before) * (before - past_[past_.size() - 2].parameter) < 0.0;
@@ -414,11 +425,36 @@ bool PushFollower::follow_arc(double target) {
   return fail(numerics::Termination::iteration_limit, "the path does not come back to the asked travel");
 }
 
+void PushFollower::differentiate(const numerics::PathPoint& at) {
+  sensitivity_->advance(system_, at, workspace_);
+  differentiated_at_ = at.parameter;
+}
+
+// Form of the rates dq/d travel, the contact staying as it is.
+double PushFollower::viscous_stiffness() {
+  if (system_.guided[0].status == ContactStatus::open) return 0.0;
+  numerics::PathTangent along = numerics::tangent(system_, point_, workspace_, nullptr);
+  if (along.band.size() == 0) return 0.0;
+  const wire::PlanarState now = system_.state(point_);
+  const wire::PlanarState ahead = system_.state({along.band, along.border, 0.0});
+  wire::PlanarState rate{along.band / along.parameter, {}, nullptr};
+  for (const GuidedContact& contact : system_.guided) {
+    const auto k = static_cast<std::size_t>(contact.control);
+    rate.controls[k] = ahead.controls[k] / along.parameter;
+  }
+  if (system_.mount) rate.controls[0] = ahead.controls[0] / along.parameter;
+  return system_.rod().rate_form(now, rate);
+}
+
 void PushFollower::record(double travel) {
+  if (sensitivity_) {
+    if (differentiated_at_ != point_.parameter || !remembers_) differentiate(point_);
+    assembled_at_.reset();
+  }
   const GuidedContact& pusher = system_.guided[0];
   PushPoint p;
   p.travel = travel;
-  const Vector2d force = pusher_force_on_wire(system_, point_);
+  const Vector2d force = system_.pusher_force(point_);
   p.force = force.dot(pusher.motion);
   p.transverse_force = pusher.motion.y() * force.x() - pusher.motion.x() * force.y();
   const wire::PlanarState state = system_.state(point_);
@@ -438,6 +474,8 @@ void PushFollower::record(double travel) {
   p.contact_coordinate = extent.coordinate;
   p.wrapped_length = extent.length;
   p.energy = system_.rod().energy(state);
+  if (sensitivity_) p.force_by = sensitivity_->force_by();
+  if (options_.examine_rates) p.viscous_stiffness = viscous_stiffness();
   p.dissipated = dissipated_;
   p.unstable_modes = unstable_;
   if (options_.examine_out_of_plane) {
@@ -460,7 +498,7 @@ void PushFollower::keep_shape(double travel) {
   const int last = system_.rod().mesh().edges();
   PushShape shape;
   shape.travel = travel;
-  shape.pusher_centre = system_.guided[0].centre + travel * system_.guided[0].motion;
+  shape.pusher_centre = system_.pusher_centre(point_);
   for (int i = 0; i <= last; ++i) {
     const Vector2d x = wire::vertex(state, i);
     shape.x.push_back(x.x());
@@ -477,6 +515,7 @@ PushCurve PushFollower::run(const std::vector<double>& travel) {
   curve_.touch_height = setup_.start.parameter + system_.guided[0].centre.y();
   iterations_ = setup_.iterations;
   GuidedContact& pusher = system_.guided[0];
+  if (sensitivity_) sensitivity_->begin(system_, point_, workspace_);
   pusher.status = pusher.friction > 0.0 && !pusher.holds_material ? ContactStatus::stick : ContactStatus::slip;
   remember_contact(system_, point_);
   past_.push_back(point_);
@@ -501,10 +540,14 @@ PushCurve solve_on_mesh(const PushTest& test, const PushOptions& options, int co
     curve.report = setup.report;
     return curve;
   }
-  return PushFollower(std::move(setup), options, test.wire.torsional_stiffness()).run(test.travel);
+  return PushFollower(std::move(setup), test, options).run(test.travel);
 }
 
 }  // namespace
+
+bool differentiable(const PushTest& test) {
+  return !needs_space(test) && !test.wire.yielding && !test.wire.strand_friction;
+}
 
 std::string to_string(PushEvent::Kind kind) {
   switch (kind) {
@@ -535,6 +578,8 @@ ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOption
   coarse_options.shapes_at.clear();
   coarse_options.progress = nullptr;
   coarse_options.examine_out_of_plane = false;
+  coarse_options.examine_rates = false;
+  coarse_options.variations.clear();
   const PushCurve half = solve_on_mesh(test, coarse_options, 2);
   const PushCurve quarter = solve_on_mesh(test, coarse_options, 4);
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/push_sensitivity.hpp"
 #include "coupling/push_system.hpp"
 #include "coupling/push_test.hpp"
 
@@ -41,6 +42,8 @@ struct PushPoint {
   int unstable_modes = 0;      ///< negative eigenvalues of the constrained tangent: 0 is stable
   bool in_contact = true;
   bool slipping = false;       ///< friction only: the contact slides
+  double viscous_stiffness = 0.0;  ///< rate form of the wire by the travel, when asked for [N/m]: theory.md (W.14)
+  std::vector<double> force_by;    ///< d force / d number of every variation asked for
   int iterations = 0;          ///< Newton iterations since the point before
   bool converged = true;
 };
@@ -59,6 +62,8 @@ struct PushOptions {
   int max_iterations = 12;      ///< Newton iterations a step
   double smallest_step = 1e-9;  ///< of the travel [m]
   bool examine_out_of_plane = false;  ///< count the modes that leave the plane (a spatial factorisation a point)
+  bool examine_rates = false;     ///< fill viscous_stiffness (planar pushes)
+  std::vector<PushVariation> variations;  ///< numbers by which the force is differentiated: see differentiable()
   std::vector<double> shapes_at;  ///< travels at which to keep the shape [m]
   std::function<bool(double travel)> progress;  ///< called after every point; false stops the run
 };
@@ -76,6 +81,9 @@ struct PushCurve {
 /// Force-displacement curve of one push by the discrete rod on one mesh.        theory.md (C.2)-(C.9)
 /// The test must be admissible (see identification::read_experiment); travel may go up and down.
 [[nodiscard]] PushCurve solve_push(const PushTest& test, const PushOptions& options);
+
+/// Whether PushOptions::variations can be answered: planar pushes of wires whose sections do not remember.
+[[nodiscard]] bool differentiable(const PushTest& test);
 
 /// The same from this mesh and from those of a half and a quarter of its edges, combined to cancel the errors in
 /// h^2 and h^4 (Richardson 1911): F = (64 F_h - 20 F_2h + F_4h)/45.                  theory.md (W.11)

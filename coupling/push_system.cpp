@@ -39,7 +39,30 @@ wire::PlanarState PushSystem::state(const numerics::PathPoint& at) const {
     result.controls[static_cast<std::size_t>(guided[k].control)] = at.border[guided_row(static_cast<int>(k)) + 2];
   }
   if (mount) result.controls[0] = at.border[mount_row()];
+  if (!sections.bending.empty() || !sections.axial.empty()) result.memory = &sections;
   return result;
+}
+
+Vector2d PushSystem::pusher_force(const numerics::PathPoint& at) const {
+  Vector2d force = at.border.segment<2>(0);
+  for (int k = 0; k < static_cast<int>(riding.size()); ++k) force += at.border.segment<2>(riding_row(k));
+  return force;
+}
+
+Vector2d PushSystem::pusher_centre(const numerics::PathPoint& at) const {
+  const GuidedContact& pusher = guided.front();
+  return pusher.centre + (at.parameter - compliance * pusher_force(at).dot(pusher.motion)) * pusher.motion;
+}
+
+// Adds to a border equation that contains by_centre . (pusher's centre) its derivatives by the pusher's forces.
+void PushSystem::add_compliance(int row, const Vector2d& by_centre, numerics::BorderedSystem& system) const {
+  if (compliance == 0.0) return;
+  const Vector2d& m = guided.front().motion;
+  const double factor = -compliance * by_centre.dot(m);
+  system.corner.block<1, 2>(row, 0) += factor * m.transpose();
+  for (int k = 0; k < static_cast<int>(riding.size()); ++k) {
+    system.corner.block<1, 2>(row, riding_row(k)) += factor * m.transpose();
+  }
 }
 
 VertexTangent PushSystem::tangent_at(const GuidedContact& contact, const wire::PlanarState& s) const {
@@ -117,7 +140,8 @@ void PushSystem::assemble_guided(int index, const wire::PlanarState& s, const nu
   const double reach = contact.radius + (touching ? 0.0 : gap);
   const Vector2d n = contact.side * v.normal;
   const Vector2d dn = -contact.side * v.t;  // dn / d angle
-  const Vector2d centre = contact.centre + (at.parameter + (touching ? gap : 0.0)) * contact.motion;
+  Vector2d centre = index == 0 ? pusher_centre(at) : Vector2d(contact.centre + at.parameter * contact.motion);
+  if (touching) centre += gap * contact.approach();
 
   // d angle / d unknowns: through u of the edges before and after, and through their rest lengths.
   const RowVector2d by_u = v.angle_by_u();
@@ -149,8 +173,9 @@ void PushSystem::assemble_guided(int index, const wire::PlanarState& s, const nu
   for (int a = 0; a < 2; ++a) {
     system.rows.push_back({base + a, 2 * i + a, 1.0});
     add_angle(base + a, -reach * dn[a]);
-    corner(base + a, base + 3) = touching ? -contact.motion[a] : -n[a];
+    corner(base + a, base + 3) = touching ? -contact.approach()[a] : -n[a];
     by_parameter[base + a] = -contact.motion[a];
+    if (index == 0) add_compliance(base + a, -Vector2d::Unit(a), system);
   }
   if (!pressed) {
     residual.segment<2>(base + 2) = force;
@@ -189,7 +214,7 @@ void PushSystem::assemble_riding(int index, const wire::PlanarState& s, const nu
   system.anchors.push_back({2 * i, base});
   system.anchors.push_back({2 * i + 1, base + 1});
 
-  const Vector2d arm = wire::vertex(s, i) - pusher.centre - at.parameter * pusher.motion;
+  const Vector2d arm = wire::vertex(s, i) - pusher_centre(at);
   const double distance = arm.norm();
   const Vector2d n = arm / distance;
   const Vector2d tau(-n.y(), n.x());  // of increasing angle about the centre
@@ -211,6 +236,8 @@ void PushSystem::assemble_riding(int index, const wire::PlanarState& s, const nu
   }
   system.border_residual[base + 1] = residual;
   by_parameter[base + 1] = -by_angle * tau.dot(pusher.motion) / distance;
+  add_compliance(base, -n, system);
+  add_compliance(base + 1, -by_angle / distance * tau, system);
   for (int a = 0; a < 2; ++a) {
     system.rows.push_back({base, 2 * i + a, n[a]});
     system.rows.push_back({base + 1, 2 * i + a, by_angle * tau[a] / distance});

@@ -22,6 +22,7 @@ struct ContactStates {
   std::vector<GuidedContact> guided;  ///< the pusher first, then the supports
   std::vector<RidingContact> riding;
   std::optional<SlippingMount> mount;
+  wire::SectionMemory sections;  ///< of a wire with sliders
 };
 
 /// Equilibrium of a planar rod with the pins that guide it, as a path problem in the pusher's travel.
@@ -35,6 +36,8 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
 
   PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls);
 
+  double compliance = 0.0;  ///< of the pusher along its motion [m/N], >= 0
+
   [[nodiscard]] const ContactStates& contact_states() const { return *this; }
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
 
@@ -44,6 +47,10 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] int mount_row() const { return riding_row(static_cast<int>(riding.size())); }
 
   [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
+  /// Place of the pusher's axis: centre + (parameter - compliance F) motion, F its force along the motion.
+  [[nodiscard]] Eigen::Vector2d pusher_centre(const numerics::PathPoint& at) const;
+  /// Force of the pusher on the wire [N].
+  [[nodiscard]] Eigen::Vector2d pusher_force(const numerics::PathPoint& at) const;
   /// The rod's state at a point of the path.
   [[nodiscard]] wire::PlanarState state(const numerics::PathPoint& at) const;
   [[nodiscard]] VertexTangent tangent_at(const GuidedContact& contact, const wire::PlanarState& state) const;
@@ -63,6 +70,7 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
                        numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void assemble_riding(int index, const wire::PlanarState& state, const numerics::PathPoint& at,
                        numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
+  void add_compliance(int row, const Eigen::Vector2d& by_centre, numerics::BorderedSystem& system) const;
   void assemble_mount(const wire::PlanarState& state, numerics::BorderedSystem& system) const;
 
   const wire::PlanarRod* rod_;

@@ -16,6 +16,7 @@ enum class PushDirection {
 struct PusherSpecification {
   double radius = 0.0;    ///< [m], >= 0; 0 is a knife edge, a line that meets the wire's centreline
   double friction = 0.0;  ///< Coulomb coefficient [-], >= 0
+  double compliance = 0.0;  ///< by which the machine gives way along the push [m/N], >= 0
   PushDirection direction = PushDirection::outward;
   double tilt = 0.0;          ///< the axis leans in the plane of chord and axis, about the push direction [rad]
   double misalignment = 0.0;  ///< the push direction turned in the plane of the wire, towards +x [rad]

@@ -339,6 +339,13 @@ PushCurve SpatialFollower::run() {
 bool needs_space(const PushTest& test) { return test.pusher.tilt != 0.0 || test.gravity[2] != 0.0; }
 
 PushCurve solve_spatial_push(const PushTest& test, const PushOptions& options, int coarsening) {
+  const bool remembers = test.wire.yielding || test.wire.strand_friction;
+  if (remembers || test.pusher.compliance > 0.0) {
+    PushCurve curve;
+    curve.report.termination = numerics::Termination::step_too_small;
+    curve.report.message = "a tilted pusher is computed for elastic wires and a rigid machine";
+    return curve;
+  }
   if (test.mount.kind == wire::MountKind::supports || test.mount.slip_tension) {
     PushCurve curve;
     curve.report.termination = numerics::Termination::step_too_small;

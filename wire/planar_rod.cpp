@@ -1,5 +1,6 @@
 #include "wire/planar_rod.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -34,26 +35,70 @@ Edge make_edge(double ex, double ey, double rest) {
   return {ex * inv, ey * inv, length, rest, -ey * inv * inv, ex * inv * inv};
 }
 
-/// E = 1/2 k (kappa - kappa_nat l)^2, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives.
-Cell bend(const Edge& before, const Edge& after, double cell_length, const PlanarRodProperties& p,
-          double mount_flexibility) {
+/// Integrated curvature 2 tan(phi/2).
+double integrated_curvature(const Edge& before, const Edge& after) {
   const double cross = before.tx * after.ty - before.ty * after.tx;
   const double dot = before.tx * after.tx + before.ty * after.ty;
-  const double kappa = 2.0 * cross / (1.0 + dot);
-  const double k = 1.0 / (cell_length / p.bending_stiffness + mount_flexibility);
-  const double strain = kappa - p.natural_curvature * cell_length;
+  return 2.0 * cross / (1.0 + dot);
+}
+
+/// What the bending of one vertex depends on beside its edges.
+struct CellLaw {
+  double length;             // l_i
+  double factor;             // of EI here
+  double mount_flexibility;  // of a clamp that gives [rad/(N m)]
+  const double* slipped;     // of the sliders; null: virgin
+};
+
+/// E = 1/2 k (kappa - kappa_nat l)^2, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives.
+Cell bend_elastic(double kappa, double ei, const CellLaw& law, double natural_curvature) {
+  const double k = 1.0 / (law.length / ei + law.mount_flexibility);
+  const double strain = kappa - natural_curvature * law.length;
   const double slope = 1.0 + 0.25 * kappa * kappa;  // d kappa / d phi
-  const double k1 = -k * k / p.bending_stiffness;   // dk/dl
-  const double k2 = -2.0 * k * k1 / p.bending_stiffness;
+  const double k1 = -k * k / ei;                    // dk/dl
+  const double k2 = -2.0 * k * k1 / ei;
   Cell cell;
   cell.energy = 0.5 * k * strain * strain;
   cell.moment = k * strain * slope;
   cell.stiffness = k * (slope * slope + 0.5 * strain * kappa * slope);
-  cell.by_length = 0.5 * k1 * strain * strain - k * p.natural_curvature * strain;
-  cell.moment_by_length = (k1 * strain - k * p.natural_curvature) * slope;
-  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * p.natural_curvature * strain +
-                         k * p.natural_curvature * p.natural_curvature;
+  cell.by_length = 0.5 * k1 * strain * strain - k * natural_curvature * strain;
+  cell.moment_by_length = (k1 * strain - k * natural_curvature) * slope;
+  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain +
+                         k * natural_curvature * natural_curvature;
   return cell;
+}
+
+/// E = l W(c - kappa_nat) with c = kappa/l and W, M = W', M' of the section with its sliders.
+Cell bend_with_sliders(double kappa, double ei, const CellLaw& law, const PlanarRodProperties& p) {
+  const double l = law.length;
+  const double c = kappa / l;
+  const SectionResponse r = respond(ei, p.bending_sliders, c - p.natural_curvature, law.slipped);
+  const double slope = 1.0 + 0.25 * kappa * kappa;
+  Cell cell;
+  cell.energy = l * r.energy;
+  cell.moment = r.resultant * slope;
+  cell.stiffness = r.tangent / l * slope * slope + 0.5 * r.resultant * kappa * slope;
+  cell.by_length = r.energy - c * r.resultant;
+  cell.moment_by_length = -r.tangent * c / l * slope;
+  cell.by_length_twice = c * c * r.tangent / l;
+  return cell;
+}
+
+double total_stiffness(double elastic, const std::vector<SliderElement>& sliders) {
+  for (const SliderElement& s : sliders) elastic += s.stiffness;
+  return elastic;
+}
+
+Cell bend(const Edge& before, const Edge& after, const CellLaw& law, const PlanarRodProperties& p) {
+  const double kappa = integrated_curvature(before, after);
+  if (p.bending_sliders.empty()) {
+    return bend_elastic(kappa, law.factor * p.bending_stiffness, law, p.natural_curvature);
+  }
+  if (law.mount_flexibility > 0.0) {
+    return bend_elastic(kappa, total_stiffness(law.factor * p.bending_stiffness, p.bending_sliders), law,
+                        p.natural_curvature);
+  }
+  return bend_with_sliders(kappa, law.factor * p.bending_stiffness, law, p);
 }
 
 Edge direction_of(const PlanarEnd& end) {
@@ -62,20 +107,64 @@ Edge direction_of(const PlanarEnd& end) {
 
 double flexibility(const PlanarEnd& end) { return 1.0 / end.rotational_stiffness; }
 
-/// Bending of vertex i between edges i-1 and i; a mount's direction stands for the edge outside.
-Cell bend_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p) {
+/// Factor of EI at a material coordinate.
+double profile_at(const std::vector<double>& profile, double coordinate, const Controls& controls) {
+  if (profile.empty()) return 1.0;
+  const double at = (coordinate - controls[0]) / (controls[2] - controls[0]) * static_cast<double>(profile.size() - 1);
+  const double cell = std::clamp(std::floor(at), 0.0, static_cast<double>(profile.size()) - 2.0);
+  const auto j = static_cast<std::size_t>(cell);
+  return profile[j] + (at - cell) * (profile[j + 1] - profile[j]);
+}
+
+/// The edges on either side of vertex i; a clamp's direction stands for the edge outside.
+struct Corner {
+  Edge before, after;
+  double length;
+  double mount_flexibility;
+  bool bends;
+};
+
+Corner corner_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p) {
   const int last = static_cast<int>(edges.size());
   if (i == 0) {
-    if (p.left.kind != PlanarEnd::Kind::clamp) return {};
-    return bend(direction_of(p.left), edges.front(), 0.5 * edges.front().rest, p, flexibility(p.left));
+    const Edge& after = edges.front();
+    return {direction_of(p.left), after, 0.5 * after.rest, flexibility(p.left), p.left.kind == PlanarEnd::Kind::clamp};
   }
   if (i == last) {
-    if (p.right.kind != PlanarEnd::Kind::clamp) return {};
-    return bend(edges.back(), direction_of(p.right), 0.5 * edges.back().rest, p, flexibility(p.right));
+    const Edge& before = edges.back();
+    return {before, direction_of(p.right), 0.5 * before.rest, flexibility(p.right),
+            p.right.kind == PlanarEnd::Kind::clamp};
   }
   const Edge& before = edges[static_cast<std::size_t>(i - 1)];
   const Edge& after = edges[static_cast<std::size_t>(i)];
-  return bend(before, after, 0.5 * (before.rest + after.rest), p, 0.0);
+  return {before, after, 0.5 * (before.rest + after.rest), 0.0, true};
+}
+
+/// Bending of vertex i between edges i-1 and i.
+Cell bend_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p, const MaterialMesh& mesh,
+             const PlanarState& state) {
+  const Corner corner = corner_at(i, edges, p);
+  if (!corner.bends) return {};
+  const double factor = p.bending_profile.empty()
+                            ? 1.0
+                            : profile_at(p.bending_profile, mesh.coordinate(i, state.controls), state.controls);
+  const double* slipped = nullptr;
+  if (state.memory != nullptr && !p.bending_sliders.empty()) {
+    slipped = state.memory->bending.data() + static_cast<std::size_t>(i) * p.bending_sliders.size();
+  }
+  return bend(corner.before, corner.after, {corner.length, factor, corner.mount_flexibility, slipped}, p);
+}
+
+/// Axial force, its tangent and energy of edge e at a strain.
+SectionResponse stretch_at(int e, double strain, const PlanarRodProperties& p, const PlanarState& state) {
+  if (p.axial_sliders.empty()) {
+    const double force = p.axial_stiffness * strain;
+    return {force, p.axial_stiffness, 0.5 * force * strain};
+  }
+  const double* slipped =
+      state.memory == nullptr ? nullptr
+                              : state.memory->axial.data() + static_cast<std::size_t>(e) * p.axial_sliders.size();
+  return respond(p.axial_stiffness, p.axial_sliders, strain, slipped);
 }
 
 void fill_edges(const MaterialMesh& mesh, const PlanarState& state, std::vector<Edge>& edges) {
@@ -102,10 +191,10 @@ double PlanarRod::energy(const PlanarState& state) const {
   for (int e = 0; e < mesh_.edges(); ++e) {
     const Edge& edge = edges[static_cast<std::size_t>(e)];
     const double strain = edge.length / edge.rest - 1.0;
-    sum += 0.5 * properties_.axial_stiffness * strain * strain * edge.rest;
+    sum += stretch_at(e, strain, properties_, state).energy * edge.rest;
     sum -= 0.5 * edge.rest * properties_.weight.dot(vertex(state, e) + vertex(state, e + 1));
   }
-  for (int i = 0; i <= mesh_.edges(); ++i) sum += bend_at(i, edges, properties_).energy;
+  for (int i = 0; i <= mesh_.edges(); ++i) sum += bend_at(i, edges, properties_, mesh_, state).energy;
   const auto spring = [](const PlanarEnd& end, double x) {
     if (end.kind == PlanarEnd::Kind::free || std::isinf(end.translational_stiffness)) return 0.0;
     const double give = x - end.position.x();
@@ -121,7 +210,7 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
   const int unknown_count = unknowns();
   fill_edges(mesh_, state, edges);
   cells.resize(static_cast<std::size_t>(n + 1));
-  for (int i = 0; i <= n; ++i) cells[static_cast<std::size_t>(i)] = bend_at(i, edges, properties_);
+  for (int i = 0; i <= n; ++i) cells[static_cast<std::size_t>(i)] = bend_at(i, edges, properties_, mesh_, state);
 
   out.gradient.setZero(unknown_count);
   if (out.hessian.order() != unknown_count) {
@@ -136,7 +225,6 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
   out.control_hessian.setZero();
   out.energy = 0.0;
 
-  const double ea = properties_.axial_stiffness;
   const double wx = properties_.weight.x();
   const double wy = properties_.weight.y();
   for (int e = 0; e < n; ++e) {
@@ -144,7 +232,8 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     const Cell& left = cells[static_cast<std::size_t>(e)];
     const Cell& right = cells[static_cast<std::size_t>(e + 1)];
     const double stretch = edge.length / edge.rest;
-    const double tension = ea * (stretch - 1.0);
+    const SectionResponse section = stretch_at(e, stretch - 1.0, properties_, state);
+    const double tension = section.resultant;
     // The edge turns with alpha: it is the outgoing edge of its left vertex, the incoming of its right one.
     const double turn = left.moment - right.moment;
     const double gx = tension * edge.tx + turn * edge.ax;
@@ -157,7 +246,7 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     g[3] += gy - half * wy;
 
     // d2l/de2 = (I - t t^T)/l,  d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4.
-    const double axial = ea / edge.rest;
+    const double axial = section.tangent / edge.rest;
     const double lateral = tension / edge.length;
     const double bxx = (axial - lateral) * edge.tx * edge.tx + lateral;
     const double bxy = (axial - lateral) * edge.tx * edge.ty;
@@ -185,8 +274,8 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     const double middle_x = 0.5 * (state.q[2 * e] + state.q[2 * e + 2]);
     const double middle_y = 0.5 * (state.q[2 * e + 1] + state.q[2 * e + 3]);
     const double weight_work = wx * middle_x + wy * middle_y;
-    out.energy += 0.5 * ea * (stretch - 1.0) * (stretch - 1.0) * edge.rest - edge.rest * weight_work;
-    const double by_rest = -0.5 * ea * (stretch * stretch - 1.0) - weight_work +
+    out.energy += section.energy * edge.rest - edge.rest * weight_work;
+    const double by_rest = section.energy - stretch * tension - weight_work +
                            0.5 * (left.by_length + right.by_length);
     for (int k = 0; k < 3; ++k) {
       const double share = mesh_.rest_length_derivative(e, k);
@@ -294,7 +383,7 @@ Eigen::VectorXd PlanarRod::moments(const PlanarState& state) const {
   std::vector<Edge> edges;
   fill_edges(mesh_, state, edges);
   Eigen::VectorXd result(mesh_.vertices());
-  for (int i = 0; i < mesh_.vertices(); ++i) result[i] = bend_at(i, edges, properties_).moment;
+  for (int i = 0; i < mesh_.vertices(); ++i) result[i] = bend_at(i, edges, properties_, mesh_, state).moment;
   return result;
 }
 
@@ -304,7 +393,76 @@ Eigen::VectorXd PlanarRod::tensions(const PlanarState& state) const {
   Eigen::VectorXd result(mesh_.edges());
   for (int e = 0; e < mesh_.edges(); ++e) {
     const Edge& edge = edges[static_cast<std::size_t>(e)];
-    result[e] = properties_.axial_stiffness * (edge.length / edge.rest - 1.0);
+    result[e] = stretch_at(e, edge.length / edge.rest - 1.0, properties_, state).resultant;
+  }
+  return result;
+}
+
+double PlanarRod::rate_form(const PlanarState& state, const PlanarState& rate) const {
+  // Central differences of strain and curvature along the rate: exact to the square of a step that moves the wire by a
+  // millionth of its length.
+  const double largest = std::max(rate.q.lpNorm<Eigen::Infinity>(), 1e-300);
+  const double h = 1e-6 * (state.controls[2] - state.controls[0]) / largest;
+  std::array<std::vector<Edge>, 2> edges;
+  for (const int side : {0, 1}) {
+    PlanarState moved = state;
+    const double sign = side == 0 ? -h : h;
+    moved.q += sign * rate.q;
+    for (std::size_t k = 0; k < 3; ++k) moved.controls[k] += sign * rate.controls[k];
+    fill_edges(mesh_, moved, edges[static_cast<std::size_t>(side)]);
+  }
+  double sum = 0.0;
+  for (int e = 0; e < mesh_.edges(); ++e) {
+    const Edge& low = edges[0][static_cast<std::size_t>(e)];
+    const Edge& high = edges[1][static_cast<std::size_t>(e)];
+    const double strain_rate = (high.length / high.rest - low.length / low.rest) / (2.0 * h);
+    sum += properties_.axial_stiffness * strain_rate * strain_rate * mesh_.rest_length(e, state.controls);
+  }
+  for (int i = 0; i <= mesh_.edges(); ++i) {
+    const Corner low = corner_at(i, edges[0], properties_);
+    if (!low.bends) continue;
+    const Corner high = corner_at(i, edges[1], properties_);
+    const double length = 0.5 * (low.length + high.length);
+    const double curvature_rate = (integrated_curvature(high.before, high.after) / high.length -
+                                   integrated_curvature(low.before, low.after) / low.length) / (2.0 * h);
+    sum += properties_.bending_stiffness * curvature_rate * curvature_rate * length;
+  }
+  return sum;
+}
+
+SectionMemory PlanarRod::remembered(const PlanarState& state) const {
+  const PlanarRodProperties& p = properties_;
+  std::vector<Edge> edges;
+  fill_edges(mesh_, state, edges);
+  SectionMemory result;
+  result.controls = state.controls;
+  if (state.memory != nullptr) {
+    result.bending = state.memory->bending;
+    result.axial = state.memory->axial;
+  }
+  const std::size_t bending = p.bending_sliders.size();
+  const std::size_t axial = p.axial_sliders.size();
+  result.bending.resize(bending * static_cast<std::size_t>(mesh_.vertices()), 0.0);
+  result.axial.resize(axial * static_cast<std::size_t>(mesh_.edges()), 0.0);
+  for (int i = 0; i <= mesh_.edges() && bending > 0; ++i) {
+    const Corner corner = corner_at(i, edges, p);
+    if (!corner.bends || corner.mount_flexibility > 0.0) continue;
+    slide(p.bending_sliders, integrated_curvature(corner.before, corner.after) / corner.length - p.natural_curvature,
+          result.bending.data() + static_cast<std::size_t>(i) * bending);
+  }
+  for (int e = 0; e < mesh_.edges() && axial > 0; ++e) {
+    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    slide(p.axial_sliders, edge.length / edge.rest - 1.0, result.axial.data() + static_cast<std::size_t>(e) * axial);
+  }
+  // Within the step the sliders went along with the vertices; what had slipped before belongs to the material.
+  if (state.memory != nullptr && state.memory->controls != state.controls) {
+    const auto carry = [&](const std::vector<double>& old, std::vector<double>& now, std::size_t elements, bool of_edges) {
+      const std::vector<double> carried = carried_over(mesh_, old, static_cast<int>(elements), of_edges,
+                                                       state.memory->controls, state.controls);
+      for (std::size_t i = 0; i < now.size(); ++i) now[i] += carried[i] - old[i];
+    };
+    carry(state.memory->bending, result.bending, bending, false);
+    carry(state.memory->axial, result.axial, axial, true);
   }
   return result;
 }

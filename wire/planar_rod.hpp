@@ -2,11 +2,13 @@
 
 #include "numerics/band_matrix.hpp"
 #include "wire/mesh.hpp"
+#include "wire/section_law.hpp"
 
 #include <Eigen/Core>
 
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace snare::wire {
 
@@ -26,10 +28,15 @@ struct PlanarEnd {
   double translational_stiffness = std::numeric_limits<double>::infinity();
 };
 
-/// Constants of a uniform planar rod.
+/// Constants of a planar rod.
 struct PlanarRodProperties {
-  double bending_stiffness = 0.0;  ///< EI [N m^2], > 0
-  double axial_stiffness = 0.0;    ///< EA [N], > 0
+  double bending_stiffness = 0.0;  ///< EI [N m^2], > 0; beside `bending_sliders` the part that is elastic for good
+  double axial_stiffness = 0.0;    ///< EA [N], > 0; likewise
+  std::vector<SliderElement> bending_sliders;  ///< on curvature less the natural one
+  std::vector<SliderElement> axial_sliders;    ///< on the axial strain
+  /// Factor of EI along the wire: at stations evenly spread over the material between the mounts, linear between;
+  /// empty: uniform. Each > 0.
+  std::vector<double> bending_profile;
   double natural_curvature = 0.0;  ///< [1/m], positive for turning left along the wire
   Eigen::Vector2d weight = Eigen::Vector2d::Zero();  ///< force per unstretched length [N/m]
   PlanarEnd left;
@@ -40,6 +47,7 @@ struct PlanarRodProperties {
 struct PlanarState {
   Eigen::VectorXd q;
   Controls controls{};
+  const SectionMemory* memory = nullptr;  ///< of the sliders; null: virgin
 };
 
 /// Energy and derivatives at one state. `hessian` is by q; `control_columns[k]` = d gradient / d control k is
@@ -60,7 +68,8 @@ struct RodAssembly {
 /// with the integrated curvature kappa_i = 2 tan(phi_i/2) of the turning angle phi_i, l_i half of the two rest
 /// lengths beside the vertex, k_i = EI/l_i. A clamp is the vertex at the mount with the mount's direction as its
 /// outer edge and half a cell, l_0/2, so that force and moment converge at second order; a clamp that gives
-/// has k_0 in series with its rotational stiffness.
+/// has k_0 in series with its rotational stiffness. With sliders the energies are those of respond(), strain
+/// kappa_i / l_i - kappa_nat at vertices (sliders do not slip in the half cell of a clamp that gives) and l/l0 - 1 at edges.
 class PlanarRod {
  public:
   static constexpr int dimension = 2;
@@ -92,6 +101,15 @@ class PlanarRod {
   [[nodiscard]] Eigen::VectorXd moments(const PlanarState& state) const;
   /// Axial force of every edge [N], tension positive.
   [[nodiscard]] Eigen::VectorXd tensions(const PlanarState& state) const;
+  /// Bending stiffness times integrated curvature rates and axial stiffness times strain rates: for a rate dq/dt of the
+  /// state the quadratic form sum EA (de)^2 l0 + sum k_i (dkappa_i)^2 of the elastic springs [J/s^2].  theory.md (W.14)
+  [[nodiscard]] double rate_form(const PlanarState& state, const PlanarState& rate) const;
+
+  [[nodiscard]] bool has_memory() const noexcept {
+    return !properties_.bending_sliders.empty() || !properties_.axial_sliders.empty();
+  }
+  /// The memory after the sliders have followed to this state.
+  [[nodiscard]] SectionMemory remembered(const PlanarState& state) const;
 
  private:
   MaterialMesh mesh_;

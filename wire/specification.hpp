@@ -1,10 +1,25 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 namespace snare::wire {
 
 enum class Construction { solid, strand };
+
+/// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands, a
+/// stiffness that acts until the curvature has changed by slip_curvature and slides then.       theory.md (W.13)
+struct StrandFriction {
+  double extra_stiffness = 0.0;  ///< [N m^2], > 0
+  double slip_curvature = 0.0;   ///< [1/m], > 0
+};
+
+/// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by fibre in
+/// bending, all at once in tension, the two without regard to each other.             theory.md (W.13)
+struct Yielding {
+  double yield_stress = 0.0;  ///< [Pa], > 0
+  static constexpr double hardening_ratio = 0.02;  ///< cold-drawn wire: 1 to 4 % (assumed)
+};
 
 /// A uniform round wire as it is declared. SI units.
 struct WireSpecification {
@@ -18,6 +33,10 @@ struct WireSpecification {
   std::optional<double> axial_stiffness_override;      ///< EA [N], > 0
   std::optional<double> torsional_stiffness_override;  ///< GJ [N m^2], > 0
   double natural_curvature = 0.0;  ///< in the plane of the bulge, positive with the bulge [1/m]
+  std::optional<StrandFriction> strand_friction;
+  std::optional<Yielding> yielding;
+  /// Factor of EI at stations evenly spread over the wire between the mounts, each > 0; empty: uniform.
+  std::vector<double> bending_profile;
 
   /// EI [N m^2]: as declared, else of the solid round section, E pi d^4 / 64.
   [[nodiscard]] double bending_stiffness() const;
