@@ -19,6 +19,12 @@ namespace snare::app {
 [[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
                                        Console& console);
 
+/// Calibrates the declared model's free numbers: fit.json, curves.csv.
+[[nodiscard]] ExitStatus run_fit(const std::filesystem::path& experiment, const CommonOptions& options, Console& console);
+
+/// Finds what the declared model lacks: trace.json, curves.csv, report.html.
+[[nodiscard]] ExitStatus run_trace(const std::filesystem::path& experiment, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

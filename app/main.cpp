@@ -38,6 +38,20 @@ int run(int argc, char** argv) {
   add_common(*push, push_options, "out/push");
   push->footer("Example: snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2");
 
+  CommonOptions fit_options;
+  std::filesystem::path fit_file;
+  CLI::App* fit = app.add_subcommand("fit", "calibrate the declared model's free numbers");
+  fit->add_option("EXPERIMENT.toml", fit_file, "experiment file")->required();
+  add_common(*fit, fit_options, "out/fit");
+  fit->footer("Example: snare fit data/experiments/published_static.toml --out out/fit");
+
+  CommonOptions trace_options;
+  std::filesystem::path trace_file;
+  CLI::App* trace = app.add_subcommand("trace", "find the effect that the declared model lacks");
+  trace->add_option("EXPERIMENT.toml", trace_file, "experiment file")->required();
+  add_common(*trace, trace_options, "out/trace");
+  trace->footer("Example: snare trace data/experiments/published_static.toml --out out/trace");
+
   CommonOptions reproduce_options;
   std::filesystem::path reproduce_file;
   CLI::App* reproduce =
@@ -81,6 +95,10 @@ int run(int argc, char** argv) {
     status = call(reproduce_options, [&](snare::app::Console& c) {
       return snare::app::run_reproduce(reproduce_file, reproduce_options, c);
     });
+  } else if (fit->parsed()) {
+    status = call(fit_options, [&](snare::app::Console& c) { return snare::app::run_fit(fit_file, fit_options, c); });
+  } else if (trace->parsed()) {
+    status = call(trace_options, [&](snare::app::Console& c) { return snare::app::run_trace(trace_file, trace_options, c); });
   } else if (validate->parsed()) {
     status = call(validate_options, [&](snare::app::Console& c) { return snare::app::run_validate(validate_options, c); });
   }

@@ -47,6 +47,7 @@ PushSensitivity::PushSensitivity(const PushTest& test, const wire::MaterialMesh&
     Varied varied;
     varied.step = variation.step;
     varied.travel = variation.travel;
+    varied.mount_compliance = variation.mount_compliance;
     for (const int k : {0, 1}) {
       Side& side = varied.sides[static_cast<std::size_t>(k)];
       side.amount = k == 0 ? -variation.step : variation.step;
@@ -56,6 +57,7 @@ PushSensitivity::PushSensitivity(const PushTest& test, const wire::MaterialMesh&
       const wire::Controls controls = initial_controls(changed);
       side.system = std::make_unique<PushSystem>(*side.rod, controls);
       side.contacts = make_contacts(changed, mesh, controls);
+      side.controls = controls;
       side.system->compliance = changed.pusher.compliance;
       side.slip_limit = changed.mount.slip_tension.value_or(0.0);
     }
@@ -93,6 +95,19 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
     const auto known = memory.radial.find(contact.node);
     if (known != memory.radial.end()) contact.last_radial = turned(contact.last_radial, side.amount * known->second);
   }
+  const auto shift = [&side](std::vector<double>& values, const std::vector<double>& rates) {
+    for (std::size_t i = 0; i < rates.size() && i < values.size(); ++i) values[i] += side.amount * rates[i];
+  };
+  shift(states.sections.bending, memory.bending);
+  shift(states.sections.axial, memory.axial);
+  // The material that the sliders were remembered of.
+  wire::Controls& controls = states.sections.controls;
+  controls[2] += 0.5 * (side.amount > 0.0 ? 1.0 : -1.0) * (varied.sides[1].controls[2] - varied.sides[0].controls[2]);
+  if (states.guided.size() > 1) controls[2] = system.sections.controls[2];  // supports: a contact's coordinate, below
+  for (std::size_t k = 0; k < states.guided.size(); ++k) {
+    controls[static_cast<std::size_t>(states.guided[k].control)] += side.amount * memory.coordinate[k];
+  }
+  controls[0] += side.amount * memory.mount;
   if (states.mount) {
     states.mount->limit = side.slip_limit;
     states.mount->last_coordinate += side.amount * memory.mount;
@@ -102,6 +117,12 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
 numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numerics::PathPoint& at,
                                            numerics::PathWorkspace& workspace, Varied& varied) {
   numerics::PathPoint change{varied.held, Eigen::VectorXd::Zero(at.border.size()), varied.travel};
+  if (varied.mount_compliance != 0.0) {
+    // A spring of stiffness 1/c under the gradient g of the wire's energy: q = x - c g.
+    const auto& reactions = system.mount_reactions();
+    change.band[0] -= varied.mount_compliance * reactions[0].x();
+    change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
+  }
   Eigen::VectorXd band = Eigen::VectorXd::Zero(at.band.size());
   Eigen::VectorXd border = Eigen::VectorXd::Zero(at.border.size());
   for (Side& side : varied.sides) {
@@ -173,6 +194,17 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
     varied.memory.radial[contact.node] = angle_between(from, to) / (2.0 * varied.step);
   }
   if (system.mount) varied.memory.mount = change.border[system.mount_row()];
+  if (!system.rod().has_memory()) return;
+  // The sliders follow the moved states; a kink between the two is as rare as a reading that falls on it.
+  const wire::SectionMemory before = minus.rod().remembered(low_state);
+  const wire::SectionMemory after = plus.rod().remembered(high_state);
+  const auto rates = [&varied](const std::vector<double>& from, const std::vector<double>& to) {
+    std::vector<double> result(to.size());
+    for (std::size_t i = 0; i < to.size(); ++i) result[i] = (to[i] - from[i]) / (2.0 * varied.step);
+    return result;
+  };
+  varied.memory.bending = rates(before.bending, after.bending);
+  varied.memory.axial = rates(before.axial, after.axial);
 }
 
 }  // namespace snare::coupling

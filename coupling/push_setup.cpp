@@ -106,6 +106,8 @@ std::vector<GuidedContact> make_contacts(const PushTest& test, const wire::Mater
     support.node = end == 0 ? 0 : mesh.edges();
     support.control = end;
     support.side = -pusher.side;
+    support.friction = test.pusher.friction;
+    support.status = support.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
     support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
     support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
     support.last_coordinate = controls[static_cast<std::size_t>(end)];

@@ -29,7 +29,7 @@ class PushFollower {
         torsional_stiffness_(test.wire.torsional_stiffness()), point_(setup_.start) {
     if (!options.variations.empty() && differentiable(test)) {
       sensitivity_.emplace(test, setup_.rod->mesh(), options.variations);
-      remembers_ = test.pusher.friction > 0.0 || test.mount.slip_tension.has_value();
+      remembers_ = test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
     }
   }
 
@@ -546,7 +546,7 @@ PushCurve solve_on_mesh(const PushTest& test, const PushOptions& options, int co
 }  // namespace
 
 bool differentiable(const PushTest& test) {
-  return !needs_space(test) && !test.wire.yielding && !test.wire.strand_friction;
+  return !needs_space(test);
 }
 
 std::string to_string(PushEvent::Kind kind) {

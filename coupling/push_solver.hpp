@@ -82,7 +82,7 @@ struct PushCurve {
 /// The test must be admissible (see identification::read_experiment); travel may go up and down.
 [[nodiscard]] PushCurve solve_push(const PushTest& test, const PushOptions& options);
 
-/// Whether PushOptions::variations can be answered: planar pushes of wires whose sections do not remember.
+/// Whether PushOptions::variations can be answered: planar pushes.
 [[nodiscard]] bool differentiable(const PushTest& test);
 
 /// The same from this mesh and from those of a half and a quarter of its edges, combined to cancel the errors in

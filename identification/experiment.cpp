@@ -1,5 +1,6 @@
 #include "identification/experiment.hpp"
 
+#include "identification/parameter.hpp"
 #include "numerics/csv.hpp"
 #include "numerics/toml_reader.hpp"
 
@@ -43,30 +44,12 @@ constexpr std::size_t most_travels = 10'000'000;  // points of a path
 constexpr int default_law_points = 41;
 constexpr std::size_t fewest_rows = 3;
 
-/// Numeric keys that a calibration may change.
-const std::vector<std::string> free_keys{
-    "wire.diameter_mm",
-    "wire.length_mm",
-    "wire.youngs_modulus_GPa",
-    "wire.poisson_ratio",
-    "wire.density_kg_m3",
-    "wire.bending_stiffness_Nm2",
-    "wire.axial_stiffness_N",
-    "wire.torsional_stiffness_Nm2",
-    "wire.natural_curvature_1_m",
-    "mount.span_mm",
-    "mount.support_radius_mm",
-    "mount.translational_stiffness_N_m",
-    "mount.rotational_stiffness_Nm_rad",
-    "mount.slip_tension_N",
-    "pusher.radius_mm",
-    "pusher.friction",
-    "pusher.tilt_deg",
-    "pusher.misalignment_deg",
-    "reading.displacement_offset_mm",
-    "reading.force_offset_N",
-    "reading.force_gain",
-};
+/// Numbers that a fit may change.
+std::vector<std::string> free_keys() {
+  std::vector<std::string> keys;
+  for (const Parameter& p : all_parameters()) keys.push_back(p.key);
+  return keys;
+}
 
 /// Length for a message, in mm without rounding noise.
 std::string in_mm(double metres) {
@@ -423,7 +406,11 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
   if (tables.empty()) static_cast<void>(read_test(base));  // what else is wrong
 
   const TomlTable fit = root.table("fit");
-  experiment.free = read_names(fit, "free", free_keys, "a numeric key of wire, mount, pusher or reading");
+  std::vector<std::string> keys = free_keys();
+  for (const std::string& name : names) {
+    for (const Parameter& p : all_parameters()) keys.push_back("series[" + name + "]." + p.key);
+  }
+  experiment.free = read_names(fit, "free", keys, "a number that can be fitted (docs/experiment_file.md), of all series or as series[NAME].KEY of one");
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
   if (!names.empty() && distinct.size() >= names.size())

@@ -121,6 +121,40 @@ TEST(PushSensitivity, GoAlongWithASlippingMount) {
   expect_derivatives(test, all, 1e-3);
 }
 
+TEST(PushSensitivity, GoAlongWithSlidersOfTheSections) {
+  PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
+  test.wire.length = 175.5 * mm;
+  test.wire.strand_friction = wire::StrandFriction{0.02, 1.5};
+  test.wire.yielding = wire::Yielding{300e6};
+  test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
+  std::vector<Number> all = numbers(test);
+  all.push_back({"yield", {[](PushTest& t, double a) { t.wire.yielding->yield_stress += a; }, 1e3, 0.0}, 1e4});
+  all.push_back({"extra", {[](PushTest& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
+  all.push_back({"slip", {[](PushTest& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
+  // Vertex by vertex the sliders switch between two curves of the differences.
+  for (Number& n : all) n.difference *= 0.1;
+  expect_derivatives(test, all, 1e-3);
+}
+
+TEST(PushSensitivity, OfRigidMountsByTheirCompliance) {
+  PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
+  test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 4);
+  PushOptions options;
+  options.elements = 64;
+  options.grading = 1.0;
+  options.variations = {{nullptr, 1e-12, 0.0, 1.0}};
+  const PushCurve rigid = solve_push(test, options);
+  options.variations.clear();
+  test.mount.translational_stiffness = 1e9;
+  const PushCurve giving = solve_push(test, options);
+  ASSERT_TRUE(giving.report.usable());
+  for (std::size_t i = 0; i < rigid.points.size(); ++i) {
+    const double change = (giving.points[i].force - rigid.points[i].force) / 1e-9;
+    // Second order in a compliance that lets go of 1e-3 of the wire's own stretch.
+    EXPECT_NEAR(rigid.points[i].force_by[0], change, 1e-2 * std::abs(change) + 1e4);
+  }
+}
+
 TEST(PushSensitivity, OfAWireThatWrapsThePusher) {
   PushTest test = test::soft_wire(65.0 * mm, 6.0 * mm);
   test.travel = forth_and_back(0.5 * mm, 2.0 * mm, 6);

@@ -1,0 +1,220 @@
+#include "app/trace_json.hpp"
+
+#include "app/commands.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::app {
+
+namespace {
+
+using identification::Candidate;
+using identification::FittedNumber;
+using identification::ModelError;
+using identification::Round;
+using identification::Trace;
+using nlohmann::json;
+
+json finite(double value) { return std::isfinite(value) ? json(value) : json(); }
+json finite(const std::optional<double>& value) { return value ? finite(*value) : json(); }
+
+json error_json(const Trace& trace, const ModelError& error) {
+  json series = json::object();
+  for (std::size_t k = 0; k < error.series_rmse.size(); ++k) series[trace.series[k].name] = finite(error.series_rmse[k]);
+  return {{"rmse_N", finite(error.rmse)},
+          {"nrmse", finite(error.nrmse)},
+          {"chi2_dof", finite(error.chi2_dof)},
+          {"series_rmse_N", series},
+          {"parameters", numbers_json(error.numbers)}};
+}
+
+json tests_json(const identification::ResidualTests& tests) {
+  return {{"runs_p", tests.runs}, {"ljung_box_p", tests.ljung_box}, {"lack_of_fit_p", tests.lack_of_fit}};
+}
+
+json candidate_json(const Candidate& c) {
+  json values = json::object();
+  json intervals = json::object();
+  for (const FittedNumber& n : c.numbers) {
+    values[n.key] = finite(n.value);
+    intervals[n.key] = {finite(n.lower), finite(n.upper)};
+  }
+  const identification::Effect& effect = *c.score.effect;
+  return {{"effect", effect.name},
+          {"channel", to_string(effect.channel)},
+          {"meaning", effect.meaning},
+          {"observable", c.score.unobservable.empty()},
+          {"why_unobservable", c.score.unobservable.empty() ? json() : json(c.score.unobservable)},
+          {"score_z", finite(c.score.z)},
+          {"score_p", finite(c.score.p)},
+          {"score_p_holm", finite(c.score.adjusted_p)},
+          {"refitted", c.refitted},
+          {"rmse_N", c.refitted ? finite(c.rmse) : json()},
+          {"delta_bic", c.refitted ? finite(c.delta_bic) : json()},
+          {"value", values},
+          {"interval95", intervals},
+          {"plausible", c.plausible},
+          {"why_implausible", c.why_implausible.empty() ? json() : json(c.why_implausible)},
+          {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
+          {"detectable", {{"key", effect.numbers.front().key}, {"size", finite(c.score.detectable)}}},
+          {"class", c.class_index}};
+}
+
+json round_json(const Round& round) {
+  json candidates = json::array();
+  for (const Candidate& c : round.candidates) candidates.push_back(candidate_json(c));
+  return {{"candidates", candidates},
+          {"classes", round.classes},
+          {"added", round.added.empty() ? json() : json(round.added)},
+          {"reason", round.reason}};
+}
+
+json function_json(const identification::ChannelFunction& f) {
+  return {{"channel", to_string(f.channel)}, {"argument", f.argument},
+          {"effect", f.effect},              {"at", f.at},
+          {"value", f.value},                {"deviation", f.deviation},
+          {"carried_over", finite(f.carried_over)}, {"explained", finite(f.explained)},
+          {"chi2_dof", finite(f.chi2_dof)},  {"accepted", f.accepted},
+          {"shape", f.shape}};
+}
+
+json series_json(const Trace& trace, std::size_t k) {
+  const identification::Series& s = trace.series[k];
+  std::vector<double> displacement = s.readings->displacement;
+  for (double& d : displacement) d *= 1e3;
+  json result{{"name", s.name},
+              {"contact_position_mm", 1e3 * s.test.contact_position},
+              {"span_mm", 1e3 * s.test.mount.span},
+              {"heldout", static_cast<bool>(trace.heldout[k])},
+              {"displacement_mm", displacement},
+              {"measured_N", s.readings->force},
+              {"time_s", s.readings->time},
+              {"drawn", s.law.has_value()}};
+  const auto model = [&](const char* name, const std::vector<identification::Prediction>& predictions) {
+    result[name] = predictions.size() > k ? predictions[k].force : std::vector<double>();
+  };
+  model("declared_N", trace.declared_predictions);
+  model("base_N", trace.base_predictions);
+  model("final_N", trace.final_predictions);
+  if (s.law) {
+    std::vector<double> law;
+    for (const double d : s.readings->displacement) law.push_back(s.law->force(d));
+    const auto rms = [&](const std::vector<identification::Prediction>& predictions) {
+      return predictions.size() > k ? finite(identification::misfit(law, predictions[k].force).rmse) : json();
+    };
+    result["law"] = {{"A_N_m2", s.law->a},        {"B_N_m", s.law->b},
+                     {"C_N", s.law->c},           {"R2", s.law->r_squared},
+                     {"scatter_N", s.law->scatter()}, {"declared_rmse_N", rms(trace.declared_predictions)},
+                     {"base_rmse_N", rms(trace.base_predictions)}, {"final_rmse_N", rms(trace.final_predictions)}};
+  }
+  return result;
+}
+
+}  // namespace
+
+json numbers_json(const std::vector<FittedNumber>& numbers) {
+  json result = json::object();
+  for (const FittedNumber& n : numbers) {
+    result[n.key] = {{"value", finite(n.value)},         {"stderr", finite(n.standard_error)}, {"declared", finite(n.declared)},
+                     {"unit", n.unit},                   {"lower95", finite(n.lower)},
+                     {"upper95", finite(n.upper)},       {"profiled", n.profiled}};
+  }
+  return result;
+}
+
+std::string verdict(const Trace& t) {
+  if (t.explained && t.selected.empty()) {
+    return fmt::format("The base model explains the readings to the noise (rmse {:.3g} N); no effect is missing.", t.base.rmse);
+  }
+  if (t.explained) {
+    std::string text;
+    for (std::size_t k = 0; k < t.selected.size(); ++k) {
+      const std::vector<std::string>& members = t.selected_classes[k];
+      const identification::Effect& e = *identification::find_effect(t.selected[k]);
+      if (members.size() == 1) {
+        text += fmt::format("{}: {}. ", e.name, e.meaning);
+      } else {
+        text += fmt::format("One of {}, which these readings cannot tell apart (carried on as {}). ", fmt::join(members, ", "), e.name);
+      }
+    }
+    return fmt::format("Explained. {}The error falls from {:.3g} N to {:.3g} N.", text, t.base.rmse, t.final.rmse);
+  }
+  std::string text = fmt::format("Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
+  if (!t.functions.empty()) {
+    const identification::ChannelFunction& f = t.functions.front();
+    if (f.accepted) {
+      text += fmt::format(" The residual comes through the {}: a function of {} that {} carries over from series to series ({:.0f} % of the excess); it is {}.",
+                          to_string(f.channel), f.argument, f.effect, 100.0 * f.carried_over, f.shape);
+    } else {
+      text += fmt::format(" No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} %).",
+                          to_string(f.channel), 100.0 * std::max(0.0, f.carried_over));
+    }
+  }
+  return text;
+}
+
+json trace_json(const identification::Experiment& experiment, const Trace& trace) {
+  const bool any = !trace.rounds.empty();
+  json seconds = json::object();
+  for (const auto& [what, time] : trace.seconds) seconds[what] = time;
+  json functions = json::array();
+  for (const identification::ChannelFunction& f : trace.functions) functions.push_back(function_json(f));
+  json rounds = json::array();
+  for (const Round& round : trace.rounds) rounds.push_back(round_json(round));
+  json result{{"schema", "snare-trace/1"},
+              {"title", experiment.title},
+              {"source", experiment.source},
+              {"version", version()},
+              {"verdict", verdict(trace)},
+              {"interrupted", trace.interrupted},
+              {"noise",
+               {{"sigma_N", trace.noise.sigma.empty() ? json() : finite(trace.noise.mean_sigma([&] {
+                   std::vector<identification::Series> fitted;
+                   for (std::size_t k = 0; k < trace.series.size(); ++k) {
+                     if (!trace.heldout[k]) fitted.push_back(trace.series[k]);
+                   }
+                   return fitted;
+                 }()))},
+                {"source", trace.noise.source},
+                {"correlation", trace.noise.correlation},
+                {"drawn_about_published_laws", trace.drawn}}},
+              {"declared", error_json(trace, trace.declared)},
+              {"base", error_json(trace, trace.base)},
+              {"residual", {{"significant", trace.significant}, {"tests", tests_json(trace.base_tests)}, {"tests_after", tests_json(trace.final_tests)}}},
+              {"candidates", any ? round_json(trace.rounds.front())["candidates"] : json::array()},
+              {"classes", any ? json(trace.rounds.front().classes) : json::array()},
+              {"rounds", rounds},
+              {"selected", trace.selected},
+              {"selected_classes", trace.selected_classes},
+              {"partial", {{"effects", trace.partial}, {"rmse_N", trace.partial.empty() ? json() : finite(trace.partial_rmse)}}},
+              {"final", error_json(trace, trace.final)},
+              {"heldout",
+               {{"rmse_base_N", trace.heldout_rmse ? finite(trace.heldout_rmse->first) : json()},
+                {"rmse_final_N", trace.heldout_rmse ? finite(trace.heldout_rmse->second) : json()}}},
+              {"left_out",
+               {{"rmse_base_N", trace.left_out_rmse ? finite(trace.left_out_rmse->first) : json()},
+                {"rmse_final_N", trace.left_out_rmse ? finite(trace.left_out_rmse->second) : json()}}},
+              {"explained", trace.explained},
+              {"channel", trace.channel.empty() ? json() : json(trace.channel)},
+              {"functions", functions},
+              {"mesh_error_N", finite(trace.mesh_error)},
+              {"seconds", seconds},
+              {"series", json::array()}};
+  if (trace.next) {
+    result["next_experiment"] = {{"what", trace.next->what},
+                                 {"separates", trace.next->separates},
+                                 {"difference_N", finite(trace.next->difference)},
+                                 {"difference_sigma", finite(trace.next->sigmas)}};
+  } else {
+    result["next_experiment"] = {{"what", ""}, {"separates", json::array()}};
+  }
+  for (std::size_t k = 0; k < trace.series.size(); ++k) result["series"].push_back(series_json(trace, k));
+  return result;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,145 @@
+#include "identification/noise.hpp"
+
+#include "identification/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+bool same_test(const coupling::PushTest& a, const coupling::PushTest& b) {
+  return a.contact_position == b.contact_position && a.mount.kind == b.mount.kind && a.mount.span == b.mount.span &&
+         a.mount.support_radius == b.mount.support_radius && a.wire.length == b.wire.length &&
+         a.wire.diameter == b.wire.diameter && a.wire.bending_stiffness() == b.wire.bending_stiffness() &&
+         a.wire.axial_stiffness() == b.wire.axial_stiffness() && a.pusher.radius == b.pusher.radius &&
+         a.pusher.direction == b.pusher.direction && a.pusher.friction == b.pusher.friction;
+}
+
+double highest(const std::vector<double>& d) { return *std::max_element(d.begin(), d.end()); }
+
+/// Force of a record at a displacement of its first loading, by straight lines; the path's first pass counts.
+double force_at(const Readings& r, double displacement) {
+  for (std::size_t i = 1; i < r.displacement.size(); ++i) {
+    const double a = r.displacement[i - 1];
+    const double b = r.displacement[i];
+    if (b > a && a <= displacement && displacement <= b) {
+      return r.force[i - 1] + (r.force[i] - r.force[i - 1]) * (displacement - a) / (b - a);
+    }
+  }
+  return r.force.back();
+}
+
+}  // namespace
+
+Eigen::MatrixXd Noise::whiten(std::size_t series, const Eigen::MatrixXd& values) const {
+  Eigen::MatrixXd result = values / sigma[series];
+  const Eigen::Index n = values.rows();
+  if (correlation > 0.0 && n > 1) {
+    const Eigen::MatrixXd before = result.topRows(n - 1);
+    result.bottomRows(n - 1) -= correlation * before;
+    result.bottomRows(n - 1) /= std::sqrt(1.0 - correlation * correlation);
+  }
+  return result;
+}
+
+double Noise::mean_sigma(const std::vector<Series>& series) const {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const auto n = static_cast<double>(measured_displacement(series[k]).size());
+    sum += n * sigma[k] * sigma[k];
+    count += n;
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+std::vector<std::vector<std::size_t>> replicates(const std::vector<Series>& series) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    if (!series[k].readings) continue;
+    bool placed = false;
+    for (std::vector<std::size_t>& group : groups) {
+      if (!same_test(series[group.front()].test, series[k].test)) continue;
+      group.push_back(k);
+      placed = true;
+      break;
+    }
+    if (!placed) groups.push_back({k});
+  }
+  std::erase_if(groups, [](const std::vector<std::size_t>& g) { return g.size() < 2; });
+  return groups;
+}
+
+Noise known_noise(const std::vector<Series>& series) {
+  Noise noise;
+  const bool declared = std::all_of(series.begin(), series.end(),
+                                    [](const Series& s) { return s.force_sigma || s.law; });
+  if (declared && !series.empty()) {
+    noise.source = "declared";
+    for (const Series& s : series) noise.sigma.push_back(s.force_sigma ? *s.force_sigma : s.law->scatter());
+    return noise;
+  }
+  // Deviations of replicates from their mean at common displacements of the loading.
+  constexpr int points = 200;
+  double squares = 0.0;
+  double products = 0.0;
+  double count = 0.0;
+  for (const std::vector<std::size_t>& group : replicates(series)) {
+    double range = 1e300;
+    for (const std::size_t k : group) range = std::min(range, highest(series[k].readings->displacement));
+    std::vector<double> before(group.size(), 0.0);
+    for (int i = 0; i < points; ++i) {
+      const double d = range * (0.02 + 0.96 * i / (points - 1));
+      std::vector<double> force;
+      double mean = 0.0;
+      for (const std::size_t k : group) {
+        force.push_back(force_at(*series[k].readings, d));
+        mean += force.back() / static_cast<double>(group.size());
+      }
+      for (std::size_t j = 0; j < force.size(); ++j) {
+        const double deviation = force[j] - mean;
+        squares += deviation * deviation;
+        if (i > 0) products += deviation * before[j];
+        before[j] = deviation;
+      }
+      count += static_cast<double>(group.size() - 1);
+    }
+  }
+  if (count == 0.0 || squares == 0.0) return noise;
+  noise.source = "replicates";
+  noise.sigma.assign(series.size(), std::sqrt(squares / count));
+  // Correlation of neighbouring readings: that over a spacing of the common grid, brought to the mean spacing.
+  const double grid = std::clamp(products / squares, 0.0, 0.999);
+  double spacing = 0.0;
+  for (const Series& s : series) spacing += static_cast<double>(measured_displacement(s).size()) / static_cast<double>(series.size());
+  noise.correlation = grid > 0.0 ? std::min(0.995, std::pow(grid, points / std::max(spacing, 1.0))) : 0.0;
+  return noise;
+}
+
+Noise noise_from_residuals(const std::vector<Series>& series, const std::vector<Eigen::VectorXd>& residuals) {
+  double sum = 0.0;
+  double count = 0.0;
+  double low = 1e300;
+  double high = -1e300;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const Eigen::VectorXd& r = residuals[k];
+    for (Eigen::Index i = 1; i + 1 < r.size(); ++i) {
+      const double bend = r[i - 1] - 2.0 * r[i] + r[i + 1];
+      sum += bend * bend / 6.0;
+      count += 1.0;
+    }
+    for (const double f : measured_force(series[k])) {
+      low = std::min(low, f);
+      high = std::max(high, f);
+    }
+  }
+  Noise noise;
+  noise.source = "residual";
+  const double sigma = count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  noise.sigma.assign(series.size(), std::max(sigma, 1e-9 * (high - low)));
+  return noise;
+}
+
+}  // namespace snare::identification

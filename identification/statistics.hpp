@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace snare::identification {
+
+/// P(chi-square with `dof` degrees of freedom > x), x >= 0, dof > 0.
+[[nodiscard]] double chi_square_tail(double x, double dof);
+
+/// P(standard normal > z).
+[[nodiscard]] double normal_tail(double z);
+
+/// z with P(standard normal > z) = p, p in (0, 1).
+[[nodiscard]] double normal_quantile(double p);
+
+/// Two-sided p of the number of runs of one sign, series by series, added up as normal deviates (Wald and Wolfowitz
+/// 1940). 1 where every series has one sign only and fewer than 4 entries.
+[[nodiscard]] double runs_p(const std::vector<Eigen::VectorXd>& residuals);
+
+/// Ljung and Box (1978): Q = n (n + 2) sum_k rho_k^2 / (n - k) over up to `lags` lags, at most a quarter of the entries,
+/// added over the series; p by chi-square.
+[[nodiscard]] double ljung_box_p(const std::vector<Eigen::VectorXd>& residuals, int lags);
+
+/// Holm's (1979) adjusted p values, in the order given.
+[[nodiscard]] std::vector<double> holm(const std::vector<double>& p);
+
+}  // namespace snare::identification
