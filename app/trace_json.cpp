@@ -144,7 +144,11 @@ std::string verdict(const Trace& t) {
     }
     return fmt::format("Explained. {}The error falls from {:.3g} N to {:.3g} N.", text, t.base.rmse, t.final.rmse);
   }
-  std::string text = fmt::format("Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
+  std::string text =
+      t.rival_explanation
+          ? fmt::format("Not explained: several effects together ({}) would bring the error of {:.3g} N down to the noise, and so would a single cause that the catalogue does not have.",
+                        fmt::join(t.partial, ", "), t.base.rmse)
+          : fmt::format("Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
   if (!t.functions.empty()) {
     const identification::ChannelFunction& f = t.functions.front();
     if (f.accepted) {
@@ -191,7 +195,7 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
               {"rounds", rounds},
               {"selected", trace.selected},
               {"selected_classes", trace.selected_classes},
-              {"partial", {{"effects", trace.partial}, {"rmse_N", trace.partial.empty() ? json() : finite(trace.partial_rmse)}}},
+              {"partial", {{"effects", trace.partial}, {"rival_explanation", trace.rival_explanation}, {"rmse_N", trace.partial.empty() ? json() : finite(trace.partial_rmse)}}},
               {"final", error_json(trace, trace.final)},
               {"heldout",
                {{"rmse_base_N", trace.heldout_rmse ? finite(trace.heldout_rmse->first) : json()},

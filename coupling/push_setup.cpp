@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace snare::coupling {
 
@@ -70,10 +71,13 @@ wire::PlanarRodProperties rod_properties(const PushTest& test) {
   properties.bending_profile = test.wire.bending_profile;
   if (test.wire.yielding) {
     constexpr double hardening = wire::Yielding::hardening_ratio;
-    const double yield_strain = test.wire.yielding->yield_stress / test.wire.youngs_modulus;
-    properties.bending_sliders =
-        wire::yielding_section(properties.bending_stiffness, test.wire.diameter, yield_strain, hardening);
-    properties.axial_sliders = {{(1.0 - hardening) * properties.axial_stiffness, yield_strain}};
+    // The moduli that give the stiffnesses: E of a solid wire, less for a strand.
+    const double area = 0.25 * std::numbers::pi * test.wire.diameter * test.wire.diameter;
+    const double second_moment = area * test.wire.diameter * test.wire.diameter / 16.0;
+    const double stress = test.wire.yielding->yield_stress;
+    properties.bending_sliders = wire::yielding_section(properties.bending_stiffness, test.wire.diameter,
+                                                        stress * second_moment / properties.bending_stiffness, hardening);
+    properties.axial_sliders = {{(1.0 - hardening) * properties.axial_stiffness, stress * area / properties.axial_stiffness}};
     properties.bending_stiffness *= hardening;
     properties.axial_stiffness *= hardening;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace snare::identification {
 
@@ -9,8 +10,9 @@ namespace {
 
 std::vector<std::vector<double>> trial_stresses(const TrialContext& context) {
   const wire::WireSpecification& wire = context.model->series().front().test.wire;
-  const double highest = wire.youngs_modulus * std::max(0.5 * wire.diameter * context.highest_curvature,
-                                                        context.highest_tension / context.axial_stiffness);
+  const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+  const double bending = context.bending_stiffness * context.highest_curvature * 8.0 / (area * wire.diameter);
+  const double highest = std::max(bending, context.highest_tension / area);
   std::vector<std::vector<double>> result;
   for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95}) result.push_back({std::log(share * highest)});
   return result;

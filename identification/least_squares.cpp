@@ -177,8 +177,8 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   solve.linear_solver_type = ceres::DENSE_QR;
   solve.logging_type = ceres::SILENT;
   solve.max_num_iterations = options.max_iterations;
-  solve.function_tolerance = 1e-6;
-  solve.parameter_tolerance = 1e-8;
+  solve.function_tolerance = options.tolerance;
+  solve.parameter_tolerance = 0.01 * options.tolerance;
   solve.gradient_tolerance = 1e-12;
   solve.max_num_consecutive_invalid_steps = 12;
   Observer observer(options);

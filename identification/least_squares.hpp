@@ -40,6 +40,7 @@ struct Fit {
 
 struct FitOptions {
   int max_iterations = 50;
+  double tolerance = 1e-6;  ///< relative fall of chi2 below which the fit ends
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops the fit
 };
 

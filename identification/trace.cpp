@@ -21,7 +21,11 @@ using numerics::InputError;
 constexpr double collinear = 0.95;      // |cos| above which effects are one class
 constexpr double indistinct_bic = 6.0;  // difference of BIC below which the likelihood does not decide (Kass and Raftery 1995)
 constexpr double worthwhile_bic = 2.0;  // gain of BIC that an effect must bring
-constexpr std::size_t most_refits = 9;
+constexpr double one_cause = 0.9;       // share of an excess that a single function must carry over to rival several effects
+constexpr std::size_t most_refits = 6;
+// A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this share of the
+// best gain cannot lead and are not refitted.
+constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
 
 /// The step of a search: fewer edges than for results.
@@ -275,7 +279,8 @@ void Tracer::refit(const Fit& current, Candidate& candidate, std::vector<Fit>& f
       start.push_back({&parameter(candidate.score.effect->numbers[k].key), coordinates[k]});
     }
     FitOptions fitting;
-    fitting.max_iterations = 25;
+    fitting.max_iterations = 15;
+    fitting.tolerance = 1e-4;
     Fit one = fit(*model_, data_, start, {}, fitting);
     if (one.report.usable() && one.chi2 < best.chi2) best = std::move(one);
   }
@@ -401,14 +406,17 @@ Round Tracer::look(const Fit& current, Fit& better) {
   // Refit the significant ones and what is nearly in their direction.
   std::vector<Fit> fits(round.candidates.size());
   std::size_t refits = 0;
+  double best_gain = 0.0;
   for (std::size_t i = 0; i < round.candidates.size() && refits < most_refits; ++i) {
     Candidate& c = round.candidates[i];
     if (!c.score.unobservable.empty() || c.score.adjusted_p > near_significance) continue;
+    if (refits > 0 && c.score.z * c.score.z < refit_share * best_gain - 10.0) continue;
     if (!go_on(number + ": refit with " + c.score.effect->name)) break;
     std::vector<Fit> one;
     refit(current, c, one);
     fits[i] = std::move(one.front());
     judge(current, c, fits[i]);
+    if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.chi2 - fits[i].chi2);
     ++refits;
   }
   clock(number + ": refits");
@@ -441,6 +449,10 @@ Round Tracer::look(const Fit& current, Fit& better) {
     round.reason = fmt::format("its score has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
                                first->score.adjusted_p, -first->delta_bic);
     better = ranked_fits.front();
+    // To the bottom.
+    const std::vector<Setting> start(better.settings.begin(), better.settings.begin() + static_cast<std::ptrdiff_t>(better.free));
+    const Fit polished = fit(*model_, data_, start);
+    if (polished.report.usable() && polished.chi2 <= better.chi2) better = polished;
     std::vector<Fit> rivals;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < round.candidates.size(); ++i) {
@@ -518,6 +530,14 @@ Trace Tracer::run() {
   }
   result_.significant = !result_.base_tests.acceptable() || !added.empty();
   result_.explained = tests.acceptable();
+  if (result_.explained && added.size() > 1 && options_.attribute && go_on("one cause in place of several")) {
+    // Several effects at once, or one cause that the catalogue does not have? One that carries over is the simpler.
+    result_.functions = attribute(*model_, data_, base);
+    const bool one = !result_.functions.empty() && result_.functions.front().carried_over > one_cause;
+    if (one) result_.explained = false;
+    else result_.functions.clear();
+    result_.rival_explanation = one;
+  }
   Fit final_fit = base;
   if (result_.explained) {
     final_fit = current;
@@ -531,10 +551,10 @@ Trace Tracer::run() {
       for (const std::size_t k : data_.series) squares += (data_.measured[k] - current.evaluation.force[k]).squaredNorm();
       result_.partial_rmse = std::sqrt(squares / static_cast<double>(data_.rows()));
     }
-    if (options_.attribute && go_on("where the residual comes from")) {
+    if (options_.attribute && result_.functions.empty() && go_on("where the residual comes from")) {
       result_.functions = attribute(*model_, data_, base);
-      if (!result_.functions.empty()) result_.channel = to_string(result_.functions.front().channel);
     }
+    if (!result_.functions.empty()) result_.channel = to_string(result_.functions.front().channel);
     clock("channels");
   }
   result_.final_tests = test_residuals(data_, final_fit);

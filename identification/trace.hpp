@@ -84,6 +84,7 @@ struct Trace {
   std::vector<std::vector<std::string>> selected_classes;  ///< of each selected effect
   std::vector<std::string> partial;  ///< effects that were added but leave a residual: not selected
   double partial_rmse = 0.0;
+  bool rival_explanation = false;    ///< those effects together would do, and so would one function of one channel
   bool explained = false;
   std::string channel;         ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it

@@ -15,7 +15,8 @@ struct StrandFriction {
 };
 
 /// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by fibre in
-/// bending, all at once in tension, the two without regard to each other.             theory.md (W.13)
+/// bending, all at once in tension, the two without regard to each other; strains are stresses over the moduli that give
+/// EI and EA with the round section.                                                  theory.md (W.13)
 struct Yielding {
   double yield_stress = 0.0;  ///< [Pa], > 0
   static constexpr double hardening_ratio = 0.02;  ///< cold-drawn wire: 1 to 4 % (assumed)

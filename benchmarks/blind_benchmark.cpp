@@ -1,0 +1,169 @@
+// How often the tracing names the right class: blind sets of the continuous wire with an effect that the declared model
+// lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion matrix as JSON.
+//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE]
+
+#include "identification/statistics.hpp"
+#include "identification/trace.hpp"
+#include "validation/blind_set.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <mutex>
+
+using namespace snare;
+
+namespace {
+
+struct Case {
+  std::string effect;
+  double size = 0.0;
+  unsigned seed = 0;
+};
+
+struct Outcome {
+  bool right = false;       // the class holds the effect (nothing, where nothing is inside); see judge()
+  bool alarm = false;       // an effect was selected
+  bool channel = false;     // of an effect that is in no catalogue
+  int covered = 0;          // base numbers within their intervals, of two
+  double chi2_dof = 0.0;
+  std::string answer;
+  double class_size = 0.0;
+  double seconds = 0.0;
+  double made_size = 0.0;
+};
+
+Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
+  Outcome o;
+  o.alarm = !t.selected.empty();
+  o.made_size = set.size;
+  o.chi2_dof = t.final.chi2_dof;
+  for (const std::vector<std::string>& members : t.selected_classes) {
+    o.class_size += static_cast<double>(members.size()) / static_cast<double>(t.selected_classes.size());
+    o.right = o.right || std::find(members.begin(), members.end(), set.effect) != members.end();
+  }
+  // One effect was inside: a second one is an error.
+  if (t.selected.size() > 1) o.right = false;
+  // The numbers of the base model may take up an effect whole: then nothing else is to be named.
+  if (!t.rounds.empty()) {
+    for (const identification::Candidate& c : t.rounds.front().candidates) {
+      if (c.score.effect->name == set.effect && c.score.absorbed && t.selected.empty() && t.explained) o.right = true;
+    }
+  }
+  if (set.effect == "none") o.right = t.selected.empty() && t.explained;
+  const bool outside = set.effect == "damage" || set.effect == "drift";
+  if (outside) {
+    o.right = t.selected.empty() && !t.explained;
+    o.channel = o.right && t.channel == (set.effect == "damage" ? "wire" : "sensor");
+  }
+  o.answer = t.selected.empty() ? (t.explained ? "nothing" : "unexplained:" + t.channel) : fmt::format("{}", fmt::join(t.selected, "+"));
+  for (const identification::FittedNumber& n : t.final.numbers) {
+    const double truth = n.key == "wire.bending_stiffness_Nm2" ? set.bending_stiffness
+                         : n.key == "wire.axial_stiffness_N"   ? set.axial_stiffness
+                                                               : std::nan("");
+    if (n.lower && n.upper && *n.lower <= truth && truth <= *n.upper) ++o.covered;
+  }
+  return o;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"confusion matrix of the tracing on blind sets"};
+  unsigned seeds = 20;
+  unsigned first = 1;
+  std::vector<double> sizes{5.0, 10.0, 30.0};
+  std::vector<std::string> effects = validation::blind_effects();
+  std::string out;
+  app.add_option("--seeds", seeds);
+  app.add_option("--first", first);
+  app.add_option("--sizes", sizes)->delimiter(',');
+  app.add_option("--effects", effects)->delimiter(',');
+  app.add_option("--out", out);
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Case> cases;
+  for (unsigned s = first; s < first + seeds; ++s) {
+    cases.push_back({"none", 0.0, s});
+    for (const std::string& effect : effects) {
+      for (const double size : sizes) cases.push_back({effect, size, s});
+    }
+  }
+  std::vector<Outcome> outcomes(cases.size());
+  std::mutex mutex;
+  omp_set_max_active_levels(1);
+  const auto count = static_cast<std::ptrdiff_t>(cases.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const Case& c = cases[static_cast<std::size_t>(i)];
+    Outcome o;
+    try {
+      const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed);
+      const auto start = std::chrono::steady_clock::now();
+      identification::TraceOptions options;
+      options.intervals = false;
+      const identification::Trace t = identification::trace(set.experiment, options);
+      o = judge(set, t);
+      o.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    } catch (const std::exception& e) {
+      o.answer = std::string("error: ") + e.what();
+    }
+    outcomes[static_cast<std::size_t>(i)] = o;
+    const std::lock_guard lock(mutex);
+    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
+               c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, o.covered, o.seconds);
+    std::fflush(stdout);
+  }
+
+  nlohmann::json result{{"schema", "snare-blind/1"}, {"seeds", seeds}, {"first_seed", first}, {"matrix", nlohmann::json::object()}};
+  std::map<double, std::array<double, 7>> totals;  // n, right inside, n outside, silent, channel, covered, class
+  double quiet = 0.0, nothing = 0.0, seconds = 0.0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& c = cases[i];
+    const Outcome& o = outcomes[i];
+    seconds += o.seconds;
+    nlohmann::json& cell = result["matrix"][c.effect][fmt::format("{:g}", c.size)];
+    if (cell.is_null()) cell = {{"right", 0}, {"sets", 0}, {"answers", nlohmann::json::object()}};
+    cell["right"] = cell.value("right", 0) + (o.right ? 1 : 0);
+    cell["sets"] = cell.value("sets", 0) + 1;
+    cell["answers"][o.answer] = cell["answers"].value(o.answer, 0) + 1;
+    if (c.effect == "none") {
+      nothing += 1.0;
+      quiet += o.alarm ? 0.0 : 1.0;
+      continue;
+    }
+    std::array<double, 7>& t = totals[c.size];
+    if (c.effect == "damage" || c.effect == "drift") {
+      t[2] += 1.0;
+      t[3] += o.alarm ? 0.0 : 1.0;
+      t[4] += o.channel ? 1.0 : 0.0;
+    } else {
+      t[0] += 1.0;
+      t[1] += o.right ? 1.0 : 0.0;
+      t[5] += o.covered / 2.0;
+      t[6] += o.class_size;
+    }
+  }
+  result["false_alarms"] = nothing > 0.0 ? 1.0 - quiet / nothing : 0.0;
+  result["mean_seconds_a_trace"] = seconds / static_cast<double>(cases.size());
+  for (const auto& [size, t] : totals) {
+    nlohmann::json& s = result["sizes"][fmt::format("{:g}", size)];
+    if (t[0] > 0.0) {
+      s["right_class"] = t[1] / t[0];
+      s["base_numbers_covered"] = t[5] / t[0];
+      s["mean_class_size"] = t[6] / t[0];
+    }
+    if (t[2] > 0.0) {
+      s["outside_without_false_attribution"] = t[3] / t[2];
+      s["outside_right_channel"] = t[4] / t[2];
+    }
+  }
+  fmt::print("{}\n", result.dump(1));
+  if (!out.empty()) std::ofstream(out) << result.dump(1) << '\n';
+  return 0;
+}

@@ -1,0 +1,233 @@
+#include "validation/blind_set.hpp"
+
+#include <Eigen/QR>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+namespace snare::validation {
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr double sigma = 0.05;           // of a reading [N]
+constexpr int readings_a_leg = 20;
+constexpr double diameter = 1.5 * mm;
+constexpr double length = 176.0 * mm;
+constexpr double modulus = 193e9;        // [Pa]
+constexpr double density = 7930.0;       // [kg/m^3]
+constexpr double radius = 6.0 * mm;      // of the pusher
+
+struct Push {
+  double position, span, travel, speed;
+};
+// Slack 1 mm and 0.5 mm; pushed to where the wire is taut.
+constexpr Push pushes[] = {{40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm}, {65 * mm, 175 * mm, 2.4 * mm, 2.0 * mm},
+                           {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm}, {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
+                           {65 * mm, 175.5 * mm, 2.4 * mm, 0.2 * mm}, {90 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm}};
+
+/// The wire of one set and what a laboratory would not know of it.
+struct Hidden {
+  double declared_bending = 0.0, declared_axial = 0.0;
+  double bending = 0.0, axial = 0.0;
+  double sign = 1.0;          // of effects that go both ways
+  double place = 0.0;         // of a damaged stretch, as a share of the wire
+  double slip_curvature = 0.0;
+  double drift_shape = 0.0;
+  double clamp_compliance = 0.0;
+  double highest_stress = 0.0;  // about
+};
+
+
+std::vector<double> travel_of(const Push& p) {
+  std::vector<double> d;
+  for (int i = 1; i <= readings_a_leg; ++i) d.push_back(p.travel * i / readings_a_leg);
+  for (int i = readings_a_leg - 1; i >= 1; --i) d.push_back(p.travel * i / readings_a_leg);
+  return d;
+}
+
+std::vector<double> time_of(const Push& p) {
+  std::vector<double> t;
+  for (int i = 1; i < 2 * readings_a_leg; ++i) t.push_back(p.travel / p.speed * i / readings_a_leg);
+  return t;
+}
+
+BlindWire wire_of(const Push& p, const Hidden& h) {
+  BlindWire w;
+  w.length = length;
+  w.span = p.span;
+  w.bending_stiffness = h.bending;
+  w.axial_stiffness = h.axial;
+  w.diameter = diameter;
+  w.position = p.position;
+  w.radius = radius + 0.5 * diameter;
+  w.mount_rotational_compliance = h.clamp_compliance;
+  w.intervals = 60;
+  w.history_points = 600;
+  return w;
+}
+
+// Readings of one push with `a` of the effect, without noise.
+std::vector<double> read(const std::string& effect, const Push& p, const Hidden& h, double a, double highest_tension) {
+  BlindWire w = wire_of(p, h);
+  std::vector<double> travel = travel_of(p);
+  const std::vector<double> time = time_of(p);
+  double gain = 1.0;
+  double offset = 0.0;
+  const double s = h.sign * a;
+  const double area = 0.25 * std::numbers::pi * diameter * diameter;
+  if (effect == "wire_length") w.length += 0.3 * mm * s;
+  else if (effect == "span") w.span += 0.3 * mm * s;
+  else if (effect == "contact_position") w.position += 2.0 * mm * s;
+  else if (effect == "push_misalignment") w.misalignment = 0.1 * s;
+  else if (effect == "mount_slip") w.mount_slip_tension = highest_tension * std::max(0.05, 1.0 - 0.9 * a);
+  else if (effect == "mount_axial_compliance") w.mount_axial_compliance = 1e-6 * a;
+  else if (effect == "mount_rotational_compliance") w.mount_rotational_compliance += 2.0 * a;
+  else if (effect == "contact_friction") w.friction = 0.4 * a;
+  else if (effect == "pusher_compliance") w.pusher_compliance = 1e-6 * a;
+  else if (effect == "displacement_offset") for (double& d : travel) d -= 0.1 * mm * s;
+  else if (effect == "force_offset") offset = 5.0 * s;
+  else if (effect == "force_gain") gain += 0.2 * s;
+  else if (effect == "natural_curvature") w.natural_curvature = 5.0 * s;
+  else if (effect == "strand_hysteresis") {
+    w.strand_extra_stiffness = h.bending * a;
+    w.strand_slip_curvature = h.slip_curvature;
+  } else if (effect == "plasticity") w.yield_stress = h.highest_stress * std::max(0.05, 1.5 - 1.4 * a);
+  else if (effect == "gravity") w.weight = {0.0, 9.81 * density * area * s};
+  else if (effect == "rate_viscosity") w.relaxation_time = 0.1 * a;
+  else if (effect == "damage") {
+    w.damage_from = (h.place - 0.08) * length;
+    w.damage_to = (h.place + 0.08) * length;
+    w.damage_factor = 1.0 - 0.9 * std::min(a, 1.0);
+  }
+  std::vector<double> force;
+  for (const BlindReading& r : blind_push(w, travel, time)) force.push_back(gain * r.force + offset);
+  if (effect == "drift") {
+    // Warming up: towards a limit within some tens of seconds.
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += 3.0 * s * (1.0 - std::exp(-time[i] / h.drift_shape));
+  }
+  return force;
+}
+
+Eigen::VectorXd read_all(const std::string& effect, const Hidden& h, double a, double highest_tension) {
+  std::vector<double> all;
+  for (const Push& p : pushes) {
+    const std::vector<double> one = read(effect, p, h, a, highest_tension);
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+}  // namespace
+
+const std::vector<std::string>& blind_effects() {
+  static const std::vector<std::string> all{
+      "wire_length", "span", "contact_position", "push_misalignment", "mount_slip", "mount_axial_compliance",
+      "mount_rotational_compliance", "contact_friction", "pusher_compliance", "displacement_offset", "force_offset",
+      "force_gain", "natural_curvature", "strand_hysteresis", "plasticity", "gravity", "rate_viscosity", "damage", "drift"};
+  return all;
+}
+
+BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
+  const auto& known = blind_effects();
+  if (effect != "none" && std::find(known.begin(), known.end(), effect) == known.end()) {
+    throw std::invalid_argument("no blind effect " + effect);
+  }
+  std::mt19937 random(7919u * seed + 17u);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  Hidden h;
+  h.declared_bending = 0.5 * modulus * std::numbers::pi * std::pow(diameter, 4) / 64.0;
+  h.declared_axial = 0.5 * modulus * std::numbers::pi * diameter * diameter / 4.0;
+  h.bending = h.declared_bending * std::exp(0.1 * normal(random));
+  h.axial = h.declared_axial * std::exp(0.1 * normal(random));
+  h.sign = uniform(random) < 0.5 ? -1.0 : 1.0;
+  h.place = 0.3 + 0.4 * uniform(random);
+  h.slip_curvature = 0.1 + 0.4 * uniform(random);
+  h.drift_shape = 5.0 + 20.0 * uniform(random);
+  // A uniform natural curvature does nothing between rigid clamps.
+  h.clamp_compliance = effect == "natural_curvature" ? 0.5 : 0.0;
+
+  double highest_tension = 0.0;
+  for (const Push& p : pushes) {
+    for (const BlindReading& r : blind_push(wire_of(p, h), travel_of(p), time_of(p))) {
+      highest_tension = std::max(highest_tension, r.tension_left);
+    }
+  }
+  // Of tension, or of the buckled shape: amplitude 2 sqrt(slack / L) of the tangent, E of the strand.
+  const double slack = length - pushes[0].span;
+  h.highest_stress = std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
+                              0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
+  const Eigen::VectorXd plain = read_all("none", h, 0.0, highest_tension);
+  Eigen::VectorXd force = plain;
+  BlindSet set;
+  set.effect = effect;
+  set.bending_stiffness = h.bending;
+  set.axial_stiffness = h.axial;
+  if (effect != "none") {
+    Eigen::MatrixXd base(plain.size(), 2);
+    for (const int k : {0, 1}) {
+      Hidden other = h;
+      (k == 0 ? other.bending : other.axial) *= 1.001;
+      base.col(k) = read_all("none", other, 0.0, highest_tension) - plain;
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
+    const auto size_of = [&](const Eigen::VectorXd& changed) {
+      const Eigen::VectorXd change = changed - plain;
+      return (change - base * qr.solve(change)).norm() / sigma;
+    };
+    // The size rises steadily with the amount: proportional steps, held inside what is known to be too small and too large.
+    double low = 0.0;
+    double high = 1.0;
+    double a = 0.05;
+    for (int k = 0; k < 20; ++k) {
+      force = read_all(effect, h, a, highest_tension);
+      set.amount = a;
+      set.size = size_of(force);
+      if (std::abs(set.size / size - 1.0) < 0.05 || (a >= 1.0 && set.size < size)) break;
+      (set.size < size ? low : high) = a;
+      a *= std::clamp(size / std::max(set.size, 1e-9), 0.1, 10.0);
+      if (a <= low || a >= high) a = high < 1.0 || set.size > size ? 0.5 * (low + high) : 1.0;
+    }
+  }
+
+  identification::Experiment& experiment = set.experiment;
+  experiment.file = "blind.toml";
+  experiment.title = fmt::format("blind set {}", seed);
+  experiment.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
+  Eigen::Index row = 0;
+  int number = 0;
+  for (const Push& p : pushes) {
+    identification::Series series;
+    series.name = fmt::format("p{}", ++number);
+    coupling::PushTest& t = series.test;
+    t.wire.construction = wire::Construction::strand;
+    t.wire.diameter = diameter;
+    t.wire.length = length;
+    t.wire.youngs_modulus = modulus;
+    t.wire.poisson_ratio = 0.29;
+    t.wire.density = density;
+    t.wire.bending_stiffness_override = h.declared_bending;
+    t.wire.axial_stiffness_override = h.declared_axial;
+    t.mount.span = p.span;
+    if (h.clamp_compliance > 0.0) t.mount.rotational_stiffness = 1.0 / h.clamp_compliance;
+    t.pusher.radius = radius;
+    t.contact_position = p.position;
+    identification::Readings readings;
+    readings.displacement = travel_of(p);
+    readings.time = time_of(p);
+    for (std::size_t i = 0; i < readings.displacement.size(); ++i) readings.force.push_back(force[row++] + sigma * normal(random));
+    t.travel = readings.displacement;
+    series.readings = readings;
+    series.force_sigma = sigma;
+    experiment.series.push_back(std::move(series));
+  }
+  return set;
+}
+
+}  // namespace snare::validation
