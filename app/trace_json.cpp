@@ -185,7 +185,8 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
                    return fitted;
                  }()))},
                 {"source", trace.noise.source},
-                {"correlation", trace.noise.correlation},
+                {"smooth_share", trace.noise.smooth},
+                {"correlation_length_mm", 1e3 * trace.noise.length},
                 {"drawn_about_published_laws", trace.drawn}}},
               {"declared", error_json(trace, trace.declared)},
               {"base", error_json(trace, trace.base)},

@@ -36,6 +36,7 @@ struct Outcome {
   double class_size = 0.0;
   double seconds = 0.0;
   double made_size = 0.0;
+  bool reached = true;      // the effect could be made that large (weight cannot)
 };
 
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
@@ -104,6 +105,11 @@ int main(int argc, char** argv) {
     Outcome o;
     try {
       const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed);
+      const bool absorbed_whole = c.effect == "force_gain";  // scales with EI and EA: no size at all
+      if (c.effect != "none" && !absorbed_whole && set.size < 0.8 * c.size) {
+        outcomes[static_cast<std::size_t>(i)].reached = false;
+        continue;
+      }
       const auto start = std::chrono::steady_clock::now();
       identification::TraceOptions options;
       options.intervals = false;
@@ -120,13 +126,17 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
   }
 
-  nlohmann::json result{{"schema", "snare-blind/1"}, {"seeds", seeds}, {"first_seed", first}, {"matrix", nlohmann::json::object()}};
+  nlohmann::json result{{"schema", "snare-blind/1"}, {"seeds", seeds}, {"first_seed", first}, {"matrix", nlohmann::json::object()}, {"not_reached", nlohmann::json::object()}};
   std::map<double, std::array<double, 7>> totals;  // n, right inside, n outside, silent, channel, covered, class
   double quiet = 0.0, nothing = 0.0, seconds = 0.0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
     const Outcome& o = outcomes[i];
     seconds += o.seconds;
+    if (!o.reached) {
+      result["not_reached"][c.effect] = result["not_reached"].value(c.effect, 0) + 1;
+      continue;
+    }
     nlohmann::json& cell = result["matrix"][c.effect][fmt::format("{:g}", c.size)];
     if (cell.is_null()) cell = {{"right", 0}, {"sets", 0}, {"answers", nlohmann::json::object()}};
     cell["right"] = cell.value("right", 0) + (o.right ? 1 : 0);

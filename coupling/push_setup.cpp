@@ -70,7 +70,7 @@ wire::PlanarRodProperties rod_properties(const PushTest& test) {
   properties.right = make_end(test, test.mount.span);
   properties.bending_profile = test.wire.bending_profile;
   if (test.wire.yielding) {
-    constexpr double hardening = wire::Yielding::hardening_ratio;
+    const double hardening = test.wire.yielding->hardening_ratio;
     // The moduli that give the stiffnesses: E of a solid wire, less for a strand.
     const double area = 0.25 * std::numbers::pi * test.wire.diameter * test.wire.diameter;
     const double second_moment = area * test.wire.diameter * test.wire.diameter / 16.0;

@@ -2,8 +2,11 @@
 
 #include "identification/prediction.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace snare::identification {
 
@@ -34,14 +37,8 @@ double force_at(const Readings& r, double displacement) {
 }  // namespace
 
 Eigen::MatrixXd Noise::whiten(std::size_t series, const Eigen::MatrixXd& values) const {
-  Eigen::MatrixXd result = values / sigma[series];
-  const Eigen::Index n = values.rows();
-  if (correlation > 0.0 && n > 1) {
-    const Eigen::MatrixXd before = result.topRows(n - 1);
-    result.bottomRows(n - 1) -= correlation * before;
-    result.bottomRows(n - 1) /= std::sqrt(1.0 - correlation * correlation);
-  }
-  return result;
+  if (factor.empty()) return values / sigma[series];
+  return factor[series].triangularView<Eigen::Lower>().solve(values);
 }
 
 double Noise::mean_sigma(const std::vector<Series>& series) const {
@@ -84,37 +81,75 @@ Noise known_noise(const std::vector<Series>& series) {
   // Deviations of replicates from their mean at common displacements of the loading.
   constexpr int points = 200;
   double squares = 0.0;
-  double products = 0.0;
   double count = 0.0;
+  double longest = 0.0;
+  std::vector<double> products(points, 0.0);  // of deviations this many points apart
   for (const std::vector<std::size_t>& group : replicates(series)) {
     double range = 1e300;
     for (const std::size_t k : group) range = std::min(range, highest(series[k].readings->displacement));
-    std::vector<double> before(group.size(), 0.0);
+    longest = std::max(longest, range);
+    std::vector<std::vector<double>> deviations(group.size());
     for (int i = 0; i < points; ++i) {
       const double d = range * (0.02 + 0.96 * i / (points - 1));
-      std::vector<double> force;
       double mean = 0.0;
-      for (const std::size_t k : group) {
-        force.push_back(force_at(*series[k].readings, d));
-        mean += force.back() / static_cast<double>(group.size());
+      for (std::size_t j = 0; j < group.size(); ++j) {
+        deviations[j].push_back(force_at(*series[group[j]].readings, d));
+        mean += deviations[j].back() / static_cast<double>(group.size());
       }
-      for (std::size_t j = 0; j < force.size(); ++j) {
-        const double deviation = force[j] - mean;
-        squares += deviation * deviation;
-        if (i > 0) products += deviation * before[j];
-        before[j] = deviation;
+      for (std::vector<double>& one : deviations) {
+        one.back() -= mean;
+        squares += one.back() * one.back();
       }
       count += static_cast<double>(group.size() - 1);
+    }
+    for (const std::vector<double>& one : deviations) {
+      for (std::size_t lag = 1; lag < one.size(); ++lag) {
+        for (std::size_t i = lag; i < one.size(); ++i) {
+          products[lag] += one[i] * one[i - lag] / static_cast<double>(one.size() - lag) * points;
+        }
+      }
     }
   }
   if (count == 0.0 || squares == 0.0) return noise;
   noise.source = "replicates";
-  noise.sigma.assign(series.size(), std::sqrt(squares / count));
-  // Correlation of neighbouring readings: that over a spacing of the common grid, brought to the mean spacing.
-  const double grid = std::clamp(products / squares, 0.0, 0.999);
-  double spacing = 0.0;
-  for (const Series& s : series) spacing += static_cast<double>(measured_displacement(s).size()) / static_cast<double>(series.size());
-  noise.correlation = grid > 0.0 ? std::min(0.995, std::pow(grid, points / std::max(spacing, 1.0))) : 0.0;
+  const double variance = squares / count;
+  noise.sigma.assign(series.size(), std::sqrt(variance));
+  double white = 0.0;
+  double bends = 0.0;
+  double most = 0.0;
+  for (const Series& s : series) {
+    const std::vector<double>& f = s.readings->force;
+    most = std::max(most, static_cast<double>(f.size()));
+    for (std::size_t i = 1; i + 1 < f.size(); ++i) {
+      white += std::pow(f[i - 1] - 2.0 * f[i] + f[i + 1], 2) / 6.0;
+      bends += 1.0;
+    }
+  }
+  white = bends > 0.0 ? std::min(white / bends, variance) : variance;
+  noise.smooth = std::clamp(1.0 - white / variance, 0.0, 0.9999);
+  if (noise.smooth < 0.02 || most > 2000.0) {
+    noise.smooth = 0.0;
+    return noise;
+  }
+  std::size_t lag = 1;
+  while (lag + 1 < products.size() / 2 && products[lag] > products[1] / std::numbers::e) ++lag;
+  noise.length = longest * 0.96 * static_cast<double>(lag) / (points - 1);
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const std::vector<double>& d = measured_displacement(series[k]);
+    const auto n = static_cast<Eigen::Index>(d.size());
+    Eigen::VectorXd path = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index i = 1; i < n; ++i) {
+      path[i] = path[i - 1] + std::abs(d[static_cast<std::size_t>(i)] - d[static_cast<std::size_t>(i - 1)]);
+    }
+    Eigen::MatrixXd covariance(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        covariance(i, j) = variance * noise.smooth * std::exp(-std::abs(path[i] - path[j]) / noise.length);
+      }
+      covariance(i, i) += variance * (1.0 - noise.smooth);
+    }
+    noise.factor.push_back(covariance.llt().matrixL());
+  }
   return noise;
 }
 

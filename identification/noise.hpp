@@ -10,12 +10,17 @@
 namespace snare::identification {
 
 /// Noise of the readings, and the whitening that makes it independent of unit variance.  theory.md (I.3)
+///
+/// The covariance of two readings of a series is sigma^2 ((1 - smooth) [i = j] + smooth exp(-|path_i - path_j| / length)),
+/// the path being what the pusher has travelled: independent noise, and specimens that differ smoothly.
 struct Noise {
   std::vector<double> sigma;  ///< of one reading, one a series [N], > 0
-  double correlation = 0.0;   ///< of neighbouring readings along the path, in [0, 1): first-order autoregression
+  double smooth = 0.0;        ///< share of the variance that is correlated along the path, in [0, 1)
+  double length = 0.0;        ///< of the correlation [m], > 0 where smooth > 0
   std::string source;         ///< "declared", "replicates" or "residual"
+  std::vector<Eigen::MatrixXd> factor;  ///< Cholesky factor of the covariance, one a series; empty without correlation
 
-  /// (r_i - phi r_{i-1}) / (sigma sqrt(1 - phi^2)), the first r_0 / sigma. By columns.
+  /// L^-1 values, L L^T the covariance. By columns.
   [[nodiscard]] Eigen::MatrixXd whiten(std::size_t series, const Eigen::MatrixXd& values) const;
   /// Mean standard deviation over all readings [N].
   [[nodiscard]] double mean_sigma(const std::vector<Series>& series) const;
@@ -25,7 +30,8 @@ struct Noise {
 [[nodiscard]] std::vector<std::vector<std::size_t>> replicates(const std::vector<Series>& series);
 
 /// The noise that the file declares (every series has force_sigma_N or a law), else that of replicates about their
-/// mean, else (sigma empty) none is known before a fit.
+/// mean (independent part from second differences, the rest smooth, its length where the correlation has fallen to 1/e;
+/// records of more than 2000 readings count as independent), else (sigma empty) none is known before a fit.
 [[nodiscard]] Noise known_noise(const std::vector<Series>& series);
 
 /// Noise of records from the residuals of a fit, whatever smooth misfit they have: from second differences,

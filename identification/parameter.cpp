@@ -156,8 +156,19 @@ std::vector<Parameter> make_parameters() {
        [](const PushTest& t, const ReadingModel&) {
          return t.wire.yielding ? t.wire.yielding->yield_stress : std::numeric_limits<double>::infinity();
        },
-       [](PushTest& t, ReadingModel&, double v) { t.wire.yielding = wire::Yielding{v}; },
+       [](PushTest& t, ReadingModel&, double v) {
+         if (!t.wire.yielding) t.wire.yielding = wire::Yielding{};
+         t.wire.yielding->yield_stress = v;
+       },
        [](const PushTest&) { return 1e6; }, [](const PushTest& t) { return 0.5 * t.wire.youngs_modulus; }, 1e-3);
+  add("plasticity.hardening_ratio", "", 1.0, Motion::shift,
+       [](const PushTest& t, const ReadingModel&) {
+         return t.wire.yielding ? t.wire.yielding->hardening_ratio : wire::Yielding::usual_hardening;
+       },
+       [](PushTest& t, ReadingModel&, double v) {
+         if (t.wire.yielding) t.wire.yielding->hardening_ratio = v;
+       },
+       [](const PushTest&) { return 0.002; }, [](const PushTest&) { return 0.9; }, 1e-5);
   add("gravity.along_bulge_m_s2", "m/s^2", 1.0, Motion::shift,
        [](const PushTest& t, const ReadingModel&) { return t.gravity[1]; },
        [](PushTest& t, ReadingModel&, double v) { t.gravity[1] = v; }, [](const PushTest&) { return -100.0; },

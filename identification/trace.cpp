@@ -87,6 +87,7 @@ ResidualTests test_residuals(const Data& data, const Fit& fit) {
     row += data.measured[k].size();
   }
   ResidualTests tests;
+  tests.against_replicates = data.noise.source == "replicates";
   tests.runs = runs_p(pieces);
   tests.ljung_box = ljung_box_p(pieces, 10);
   if (data.noise.source == "residual") {
@@ -588,7 +589,10 @@ Trace Tracer::run() {
 
 }  // namespace
 
-bool ResidualTests::acceptable() const { return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > 0.01; }
+bool ResidualTests::acceptable() const {
+  if (against_replicates) return lack_of_fit > 0.01;
+  return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > 0.01;
+}
 
 std::vector<std::string> default_free(const Experiment& experiment) {
   const bool supports = experiment.series.front().test.mount.kind == wire::MountKind::supports;

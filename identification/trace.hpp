@@ -16,7 +16,9 @@ struct ResidualTests {
   double runs = 1.0;         ///< p of the number of runs of one sign
   double ljung_box = 1.0;    ///< p of the autocorrelations
   double lack_of_fit = 1.0;  ///< p of chi2 against the noise
-  [[nodiscard]] bool acceptable() const;  ///< all three together at 1 %
+  bool against_replicates = false;  ///< the noise is that of replicates, which differ smoothly themselves
+  /// All three together at 1 %; against replicates the lack of fit alone.
+  [[nodiscard]] bool acceptable() const;
 };
 
 /// A number of a fitted model, in its unit.

@@ -19,7 +19,8 @@ struct StrandFriction {
 /// EI and EA with the round section.                                                  theory.md (W.13)
 struct Yielding {
   double yield_stress = 0.0;  ///< [Pa], > 0
-  static constexpr double hardening_ratio = 0.02;  ///< cold-drawn wire: 1 to 4 % (assumed)
+  double hardening_ratio = usual_hardening;  ///< tangent over elastic modulus beyond it, in (0, 1)
+  static constexpr double usual_hardening = 0.02;  ///< cold-drawn wire: 1 to 4 % (assumed)
 };
 
 /// A uniform round wire as it is declared. SI units.

@@ -62,7 +62,7 @@ TEST(PushHysteresis, StrandsStickAndSlipInThreePointBending) {
 TEST(PushHysteresis, TautWireYieldsAndStaysLonger) {
   PushTest test = declared_wire(87.5 * mm, 0.0);
   test.wire.length = test.mount.span;
-  test.wire.yielding = wire::Yielding{400e6};
+  test.wire.yielding = wire::Yielding{400e6, 0.02};
   test.travel = test::there_and_back(8.0 * mm, 40);
   const PushCurve yielding = solve_push(test, {});
   ASSERT_TRUE(yielding.report.usable()) << yielding.report.message;

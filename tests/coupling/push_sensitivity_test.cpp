@@ -125,7 +125,7 @@ TEST(PushSensitivity, GoAlongWithSlidersOfTheSections) {
   PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
   test.wire.length = 175.5 * mm;
   test.wire.strand_friction = wire::StrandFriction{0.02, 1.5};
-  test.wire.yielding = wire::Yielding{300e6};
+  test.wire.yielding = wire::Yielding{300e6, 0.02};
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
   all.push_back({"yield", {[](PushTest& t, double a) { t.wire.yielding->yield_stress += a; }, 1e3, 0.0}, 1e4});
