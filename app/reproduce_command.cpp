@@ -1,7 +1,8 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/reproduce_report.hpp"
-#include "identification/calibration.hpp"
+#include "app/trace_json.hpp"
+#include "identification/trace.hpp"
 #include "numerics/files.hpp"
 #include "numerics/toml_tree.hpp"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <map>
 
@@ -24,11 +26,11 @@ using identification::Series;
 using nlohmann::json;
 
 /// A model of the wire beside the published curves.
-struct Model {
+struct ModelCurves {
   std::string name;
   std::string label;
   std::string description;
-  std::vector<identification::FreeParameter> parameters;
+  json parameters;
   int free = 0;
   std::vector<Prediction> predictions;
   std::vector<double> radius_mm;  // of the pusher, one a series
@@ -83,7 +85,7 @@ json series_model_json(const Series& series, const Prediction& prediction, doubl
   return result;
 }
 
-json series_json(const Series& series, const std::vector<Model>& models, std::size_t index) {
+json series_json(const Series& series, const std::vector<ModelCurves>& models, std::size_t index) {
   const std::vector<double>& displacement = identification::measured_displacement(series);
   json result{{"name", series.name},
               {"contact_position_mm", 1e3 * series.test.contact_position},
@@ -102,13 +104,13 @@ json series_json(const Series& series, const std::vector<Model>& models, std::si
         tangent_stiffness(displacement, identification::measured_force(series));
     if (series.force_sigma) result["published"] = {{"sigma_N", *series.force_sigma}};
   }
-  for (const Model& model : models) {
+  for (const ModelCurves& model : models) {
     result["models"][model.name] = series_model_json(series, model.predictions[index], model.radius_mm[index]);
   }
   return result;
 }
 
-json model_json(const Experiment& experiment, const Model& model) {
+json model_json(const Experiment& experiment, const ModelCurves& model) {
   std::vector<double> measured;
   std::vector<double> predicted;
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
@@ -119,14 +121,8 @@ json model_json(const Experiment& experiment, const Model& model) {
     predicted.insert(predicted.end(), computed.begin(), computed.begin() + static_cast<std::ptrdiff_t>(n));
   }
   const identification::Misfit misfit = identification::misfit(measured, predicted);
-  json parameters = json::object();
-  for (const identification::FreeParameter& p : model.parameters) {
-    parameters[p.key] = {{"value", p.value},
-                         {"stderr", p.standard_error ? json(*p.standard_error) : json()},
-                         {"unit", p.unit}};
-  }
   return {{"name", model.name},     {"label", model.label},   {"description", model.description},
-          {"parameters", parameters}, {"rmse_N", misfit.rmse}, {"nrmse", misfit.nrmse}, {"free", model.free}};
+          {"parameters", model.parameters}, {"rmse_N", misfit.rmse}, {"nrmse", misfit.nrmse}, {"free", model.free}};
 }
 
 std::vector<std::string> assumptions(const Experiment& experiment) {
@@ -154,20 +150,82 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
   return result;
 }
 
-std::vector<identification::PredictionOptions> with_shapes(const Experiment& experiment, double offset,
-                                                           Console& console, const std::string& label) {
-  std::vector<identification::PredictionOptions> result(experiment.series.size());
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const Series& series = experiment.series[k];
-    const std::vector<double>& d = identification::measured_displacement(series);
-    // Six shapes along the push, at displacements that are computed anyhow.
-    for (int i = 0; i <= 5; ++i) {
-      result[k].shapes_at.push_back(d[(d.size() - 1) * static_cast<std::size_t>(i) / 5] - offset);
-    }
-    result[k].progress = [&console, label, &series](double travel) {
-      console.progress(fmt::format("{}, {}: {:.3f} mm", label, series.name, 1e3 * travel));
-      return !interrupted();
-    };
+identification::PredictionOptions with_shapes(const Series& series, double offset, Console& console, const std::string& label) {
+  identification::PredictionOptions result;
+  const std::vector<double>& d = identification::measured_displacement(series);
+  // Six shapes along the push, at displacements that are computed anyhow.
+  for (int i = 0; i <= 5; ++i) {
+    result.shapes_at.push_back(d[(d.size() - 1) * static_cast<std::size_t>(i) / 5] - offset);
+  }
+  result.progress = [&console, label, &series](double travel) {
+    console.progress(fmt::format("{}, {}: {:.3f} mm", label, series.name, 1e3 * travel));
+    return !interrupted();
+  };
+  return result;
+}
+
+/// The curves of a model with these settings, with shapes.
+std::vector<Prediction> curves_of(const Experiment& experiment, const std::vector<identification::Setting>& settings,
+                                  Console& console, const std::string& label) {
+  const identification::Model::Applied applied =
+      identification::Model(experiment.series, experiment.solver, false).apply(settings);
+  std::vector<Prediction> result;
+  for (std::size_t k = 0; k < applied.series.size(); ++k) {
+    result.push_back(identification::predict(applied.series[k], experiment.solver, applied.reading[k],
+                                             with_shapes(experiment.series[k], applied.reading[k].displacement_offset,
+                                                         console, label)));
+  }
+  return result;
+}
+
+/// What the tracing says when the unprinted range of the fits is taken to be another one.
+json verdict_at(const Experiment& experiment, double to, const std::function<bool(const std::string&)>& progress) {
+  Experiment other = experiment;
+  for (Series& s : other.series) {
+    if (!s.law) continue;
+    const std::size_t points = s.test.travel.size();
+    s.law->to = to;
+    for (std::size_t i = 0; i < points; ++i) s.test.travel[i] = to * static_cast<double>(i) / static_cast<double>(points - 1);
+  }
+  json result{{"to_mm", 1e3 * to}};
+  identification::TraceOptions base;
+  base.most_effects = 0;
+  base.attribute = false;
+  base.intervals = false;
+  base.draw = false;
+  base.progress = progress;
+  const identification::Trace fitted = identification::trace(other, base);
+  json rms = json::object();
+  bool within = fitted.report.usable();
+  for (std::size_t k = 0; k < other.series.size() && fitted.report.usable(); ++k) {
+    const Series& s = other.series[k];
+    if (!s.law) continue;
+    rms[s.name] = {{"rmse_N", fitted.final.series_rmse[k]}, {"scatter_N", s.law->scatter()}};
+    within = within && fitted.final.series_rmse[k] <= s.law->scatter();
+  }
+  result["fit"] = rms;
+  result["numbers"] = experiment.free.size();
+  result["within_scatter"] = within;
+  identification::TraceOptions tracing;
+  tracing.intervals = false;
+  tracing.progress = progress;
+  const identification::Trace traced = identification::trace(other, tracing);
+  if (!traced.report.usable()) {
+    result["verdict"] = "not computed: " + traced.report.message;
+    return result;
+  }
+  result["verdict"] = verdict(traced);
+  result["selected"] = traced.selected;
+  result["explained"] = traced.explained;
+  result["chi2_dof"] = {{"base", traced.base.chi2_dof}, {"final", traced.final.chi2_dof}};
+  return result;
+}
+
+/// Fitted numbers as the page shows them.
+json parameters_json(const std::vector<identification::FittedNumber>& numbers) {
+  json result = json::object();
+  for (const identification::FittedNumber& n : numbers) {
+    result[n.key] = {{"value", n.value}, {"stderr", n.standard_error ? json(*n.standard_error) : json()}, {"unit", n.unit}};
   }
   return result;
 }
@@ -198,47 +256,70 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   }
   if (options.threads > 0) omp_set_num_threads(options.threads);
 
-  std::vector<Model> models;
-  Model declared;
+  std::vector<ModelCurves> models;
+  ModelCurves declared;
   declared.name = "declared";
   declared.label = "declared model";
   declared.description = "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted";
+  declared.parameters = json::object();
   for (const char* key : {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm"}) {
-    declared.parameters.push_back(identification::declared_parameter(experiment, key));
+    const identification::Parameter& p = identification::parameter(key);
+    declared.parameters[key] = {{"value", p.shown(p.get(experiment.series.front().test, {}), 0.0)}, {"stderr", nullptr}, {"unit", p.unit}};
   }
-  declared.predictions = identification::predict_all(experiment.series, experiment.solver, {},
-                                                     with_shapes(experiment, 0.0, console, "declared model"));
+  declared.predictions = curves_of(experiment, {}, console, "declared model");
   for (const Series& s : experiment.series) declared.radius_mm.push_back(1e3 * s.test.pusher.radius);
   models.push_back(declared);
 
   ExitStatus status = ExitStatus::done;
-  if (!experiment.free.empty() && !interrupted()) {
-    identification::CalibrationOptions fit;
-    fit.progress = [&console](int iteration, double rmse) {
-      console.progress(fmt::format("best fit: iteration {}, rmse {:.3f} N", iteration, rmse));
-      return !interrupted();
-    };
-    const identification::Calibration calibration = identification::calibrate(experiment, experiment.free, fit);
-    if (!calibration.predictions.empty()) {
-      Model best = declared;
-      best.name = "best_fit";
-      best.label = "best fit of the declared kind";
-      best.description = "The same kind of model with the listed numbers fitted to all positions together";
-      best.parameters = calibration.parameters;
-      best.free = static_cast<int>(calibration.parameters.size());
-      std::vector<Series> fitted = experiment.series;
-      identification::ReadingModel reading;
-      for (const identification::FreeParameter& p : calibration.parameters) {
-        identification::apply_parameter(p.key, p.value, fitted, reading);
-      }
-      best.predictions = identification::predict_all(
-          fitted, experiment.solver, reading,
-          with_shapes(experiment, reading.displacement_offset, console, "best fit"));
-      models.push_back(std::move(best));
-    }
-    if (!calibration.report.usable()) {
-      console.complain("best fit: " + calibration.report.message);
+  const auto progress = [&console](const std::string& stage) {
+    console.progress(stage);
+    return !interrupted();
+  };
+  json traced = nullptr;
+  json verdicts = json::array();
+  const auto add_model = [&](const identification::Trace& trace, const char* name, const char* label, const char* description) {
+    if (!trace.report.usable()) {
+      console.complain(fmt::format("{}: {}", label, trace.report.message));
       status = ExitStatus::solver_stopped;
+      return;
+    }
+    ModelCurves model = declared;
+    model.name = name;
+    model.label = label;
+    model.description = description;
+    model.parameters = parameters_json(trace.final.numbers);
+    model.free = static_cast<int>(trace.final.numbers.size());
+    model.predictions = curves_of(experiment, trace.final_settings, console, label);
+    models.push_back(std::move(model));
+  };
+  if (!interrupted()) {
+    // The published laws themselves, without noise: how near one wire can come.
+    identification::TraceOptions fitting;
+    fitting.most_effects = 0;
+    fitting.attribute = false;
+    fitting.intervals = false;
+    fitting.draw = false;
+    fitting.progress = progress;
+    add_model(identification::trace(experiment, fitting), "best_fit", "best fit of the declared kind",
+              "The same kind of model with the listed numbers fitted to all positions together");
+  }
+  if (!interrupted()) {
+    identification::TraceOptions tracing;
+    tracing.progress = progress;
+    const identification::Trace trace = identification::trace(experiment, tracing);
+    if (trace.report.usable()) {
+      traced = trace_json(experiment, trace);
+      traced.erase("series");
+      if (!trace.selected.empty()) {
+        add_model(trace, "traced", "traced model", "The fitted model with the effect that the tracing adds");
+      }
+    }
+    const bool laws = std::any_of(experiment.series.begin(), experiment.series.end(), [](const Series& s) { return s.law.has_value(); });
+    for (const double to : {3e-3, 4e-3, 5e-3, 18e-3}) {
+      if (!laws || interrupted()) break;
+      verdicts.push_back(verdict_at(experiment, to, [&](const std::string& stage) {
+        return progress(fmt::format("range {:g} mm: {}", 1e3 * to, stage));
+      }));
     }
   }
   console.end_progress();
@@ -255,9 +336,11 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
                 {"span_mm", 1e3 * test.mount.span},
                 {"bending_stiffness_Nm2", test.wire.bending_stiffness()},
                 {"axial_stiffness_N", test.wire.axial_stiffness()}}},
+              {"trace", traced},
+              {"verdicts", verdicts},
               {"models", json::array()},
               {"series", json::array()}};
-  for (const Model& model : models) {
+  for (const ModelCurves& model : models) {
     result["models"].push_back(model_json(experiment, model));
     for (std::size_t k = 0; k < experiment.series.size(); ++k) {
       const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
@@ -283,6 +366,9 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     std::cout << result.dump(1) << '\n';
   } else {
     console.say(error_table(result));
+    for (const json& v : verdicts) {
+      console.say(fmt::format("if the fits reach to {:g} mm: {}", v["to_mm"].get<double>(), v["verdict"].get<std::string>()));
+    }
     console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html", options.out.string()));
   }
   return status;

@@ -558,6 +558,7 @@ Trace Tracer::run() {
     if (!result_.functions.empty()) result_.channel = to_string(result_.functions.front().channel);
     clock("channels");
   }
+  result_.final_settings = final_fit.settings;
   result_.final_tests = test_residuals(data_, final_fit);
   result_.final = error_of(all, final_fit, result_.final_predictions);
   for (const Prediction& p : result_.final_predictions) {

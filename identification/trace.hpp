@@ -78,6 +78,7 @@ struct Trace {
   bool drawn = false;          ///< readings were drawn about published laws
   double mesh_error = 0.0;     ///< largest discretisation error of the final model [N]
   ModelError declared, base, final;
+  std::vector<Setting> final_settings;  ///< of the final model: see Model::apply
   std::vector<Prediction> declared_predictions, base_predictions, final_predictions;  ///< one a series
   ResidualTests base_tests, final_tests;
   bool significant = false;    ///< the base model leaves something
