@@ -21,7 +21,7 @@ struct PushVariation {
   double mount_compliance = 0.0;
 };
 
-/// Derivatives of a path of equilibria by numbers p of its test, by implicit differentiation.   theory.md (C.10)
+/// Derivatives of a path of equilibria by numbers p of its test, by implicit differentiation.   theory.md (C.13)
 ///
 ///   F(z, h, t; p) = 0:  J dz/dp = -(dF/dp + dF/dh dh/dp + dF/dt dt/dp)
 ///

@@ -87,6 +87,19 @@ wire::WireSpecification read_wire(const TomlTable& table) {
       table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
   wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
   wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
+  if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
+    wire::Yielding yielding;
+    yielding.yield_stress = 1e6 * *stress;
+    yielding.hardening_ratio = table.number_or("hardening_ratio", wire::Yielding::usual_hardening, Range::from(0.002, 0.9));
+    wire.yielding = yielding;
+  } else if (table.has("hardening_ratio")) {
+    table.fail("hardening_ratio", "only beside yield_stress_MPa");
+  }
+  const auto extra = table.optional_number("strand_extra_stiffness_Nm2", bending);
+  const auto slip = table.optional_number("strand_slip_curvature_1_m", Range::from(1e-4, 1e4));
+  if (extra && slip) wire.strand_friction = wire::StrandFriction{*extra, *slip};
+  else if (extra) table.fail("strand_extra_stiffness_Nm2", "needs strand_slip_curvature_1_m beside it");
+  else if (slip) table.fail("strand_slip_curvature_1_m", "needs strand_extra_stiffness_Nm2 beside it");
   if (wire.bending_stiffness() < smallest_bending_stiffness)
     table.fail("diameter_mm", fmt::format("gives a bending stiffness of {:.3g} N m^2, must be >= {}",
                                           wire.bending_stiffness(), smallest_bending_stiffness));
@@ -133,6 +146,7 @@ coupling::PusherSpecification read_pusher(const TomlTable& table) {
   pusher.radius = table.number("radius_mm", Range::from(0.0, 100.0), mm);
   pusher.friction = table.number("friction", Range::from(0.0, 2.0));
   pusher.direction = table.choice("direction", directions).value_or(pusher.direction);
+  pusher.compliance = table.number_or("compliance_m_N", 0.0, Range::from(0.0, 1e-3));
   pusher.tilt = table.number_or("tilt_deg", 0.0, Range::from(-45.0, 45.0), degree);
   pusher.misalignment = table.number_or("misalignment_deg", 0.0, Range::from(-45.0, 45.0), degree);
   return pusher;
@@ -410,7 +424,7 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
   for (const std::string& name : names) {
     for (const Parameter& p : all_parameters()) keys.push_back("series[" + name + "]." + p.key);
   }
-  experiment.free = read_names(fit, "free", keys, "a number that can be fitted (docs/experiment_file.md), of all series or as series[NAME].KEY of one");
+  experiment.free = read_names(fit, "free", keys, "a number that can be fitted");
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
   if (!names.empty() && distinct.size() >= names.size())

@@ -62,7 +62,8 @@ void check_readings(const Experiment& experiment, const std::vector<Series>& ser
       refuse(fmt::format("force_N is {} in every reading: there is nothing to fit", *low));
       continue;
     }
-    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike (von Neumann 1941).
+    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike (von Neumann 1941:
+    // the ratio is 2 +- 2/sqrt(n) for noise).
     double mean = 0.0;
     for (const double v : f) mean += v / static_cast<double>(f.size());
     double variance = 0.0;
@@ -72,7 +73,7 @@ void check_readings(const Experiment& experiment, const std::vector<Series>& ser
       if (i > 0) steps += (f[i] - f[i - 1]) * (f[i] - f[i - 1]);
     }
     const double n = static_cast<double>(f.size());
-    if (f.size() >= 8 && steps / variance > 2.0 - 3.0 * 2.0 / std::sqrt(n)) {
+    if (f.size() >= 8 && steps / variance > std::max(0.8, 2.0 - 6.0 / std::sqrt(n))) {
       refuse("the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
     }
   }
@@ -209,7 +210,13 @@ Fit Tracer::fit_base() {
   std::vector<Setting> start;
   bool length = false;
   for (const std::string& key : keys) {
-    start.push_back({&parameter(key), 0.0});
+    const Parameter& p = parameter(key);
+    const double declared = model_->declared(p);
+    if (!std::isfinite(declared)) {
+      throw InputError({experiment_.file.string(), 0, "fit.free", '"' + key + '"',
+                        "is a threshold that the declared model does not have: declare a value to start from"});
+    }
+    start.push_back({&p, p.coordinate(declared, declared)});
     length = length || key == "wire.length_mm";
   }
   if (data_.rows() < static_cast<Eigen::Index>(keys.size()) + 3) {

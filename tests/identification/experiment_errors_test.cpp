@@ -158,11 +158,15 @@ const WrongFile wrong_files[] = {
     {"heldout = [\"s65\"]", "heldout = \"s65\"",
      "x.toml:35: fit.heldout = \"s65\", must be an array of texts in quotes"},
     {"\"reading.force_gain\"", "\"wire.construction\"",
-     "x.toml:34: fit.free[2] = \"wire.construction\", must be a numeric key of wire, mount, pusher or "
-     "reading"},
+     "x.toml:34: fit.free[2] = \"wire.construction\", must be a number that can be "
+     "fitted"},
     {"\"reading.force_gain\"", "\"wire.lenght_mm\"",
-     "x.toml:34: fit.free[2] = \"wire.lenght_mm\", must be a numeric key of wire, mount, pusher or reading; "
+     "x.toml:34: fit.free[2] = \"wire.lenght_mm\", must be a number that can be fitted; "
      "did you mean wire.length_mm?"},
+    {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nhardening_ratio = 0.1",
+     "x.toml:11: wire.hardening_ratio = 0.1, only beside yield_stress_MPa"},
+    {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nstrand_slip_curvature_1_m = 0.1",
+     "x.toml:11: wire.strand_slip_curvature_1_m = 0.1, needs strand_extra_stiffness_Nm2 beside it"},
     {"\"reading.force_gain\"", "3", "x.toml:34: fit.free[2] = 3, must be a text in quotes"},
     {"length_mm = 180.0", "lenght_mm = 180.0",
      "x.toml:4: wire.length_mm, missing, must be a number > 0 and <= 100000\n"
