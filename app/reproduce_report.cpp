@@ -2,6 +2,7 @@
 
 #include "app/json_fields.hpp"
 #include "app/report_page.hpp"
+#include "app/reproduce_verdicts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -567,6 +568,7 @@ std::string reproduce_report_html(const json& result) {
   add_overview(page, result);
   add_error_table(page, result);
   add_parameters(page, result);
+  add_verdicts(page, result);
   add_wire(page, result);
   for (const json& series : array(result, "series")) add_series(page, result, series);
 

@@ -2,11 +2,13 @@
 #include "app/report_page.hpp"
 #include "numerics/files.hpp"
 #include "validation/suite.hpp"
+#include "validation/trace_checks.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
+#include <cstdlib>
 #include <iostream>
 
 namespace snare::app {
@@ -53,7 +55,13 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
 
 ExitStatus run_validate(const CommonOptions& options, Console& console) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  const std::vector<validation::Check> checks = validation::static_wire_checks();
+  std::vector<validation::Check> checks = validation::static_wire_checks();
+  // Measurements of others are not part of the product: they are looked for beside it.
+  const char* named = std::getenv("SNARE_MEASURED_DATA");
+  for (validation::Check& check : validation::tracing_checks(
+           named != nullptr ? std::filesystem::path(named) : data_directory() / ".." / ".." / "shared" / "data")) {
+    checks.push_back(std::move(check));
+  }
   std::vector<validation::Row> rows;
   std::vector<std::string> skipped;
   int out = 0;
@@ -61,6 +69,11 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
     if (interrupted()) {
       skipped.push_back("interrupted before: " + checks[i].name);
       break;
+    }
+    if (!checks[i].skipped.empty()) {
+      skipped.push_back(checks[i].name + ": " + checks[i].skipped);
+      console.say("skipped: " + skipped.back());
+      continue;
     }
     console.progress(fmt::format("{} of {}: {}", i + 1, checks.size(), checks[i].name));
     for (validation::Row& row : checks[i].run()) {

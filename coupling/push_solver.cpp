@@ -579,7 +579,6 @@ ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOption
   coarse_options.progress = nullptr;
   coarse_options.examine_out_of_plane = false;
   coarse_options.examine_rates = false;
-  coarse_options.variations.clear();
   const PushCurve half = solve_on_mesh(test, coarse_options, 2);
   const PushCurve quarter = solve_on_mesh(test, coarse_options, 4);
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
@@ -618,6 +617,9 @@ ExtrapolatedCurve solve_push_extrapolated(const PushTest& test, const PushOption
     for (double PushPoint::*value : {&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
                                      &PushPoint::tension_right, &PushPoint::contact_coordinate}) {
       p.*value = extrapolated(p.*value, h.*value, q.*value);
+    }
+    for (std::size_t v = 0; v < p.force_by.size(); ++v) {
+      p.force_by[v] = extrapolated(p.force_by[v], h.force_by[v], q.force_by[v]);
     }
     result.discretisation_error[i] = 2.0 * std::abs(p.force - third_order);
   }

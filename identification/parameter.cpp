@@ -2,6 +2,8 @@
 
 #include "numerics/errors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -250,7 +252,7 @@ const Parameter& parameter(const std::string& key) {
   if (const Parameter* found = find_parameter(key)) return *found;
   std::string known;
   for (const Parameter& p : all_parameters()) known += (known.empty() ? "" : ", ") + p.key;
-  throw numerics::InputError({"", 0, "fit.free", "\"" + key + "\"", "must be one of " + known});
+  throw numerics::InputError({"", 0, "fit.free", fmt::format("\"{}\"", key), "must be one of " + known});
 }
 
 }  // namespace snare::identification

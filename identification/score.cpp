@@ -13,7 +13,7 @@ namespace snare::identification {
 namespace {
 
 /// Share of a column that must be left after projection, else it lies in the span: derivatives carry the mesh's error.
-constexpr double left_over = 2e-3;
+constexpr double left_over = 2e-4;
 
 bool fitted(const Fit& fit, const Parameter* p) {
   return std::any_of(fit.settings.begin(), fit.settings.end(), [p](const Setting& s) { return s.parameter == p; });
@@ -119,16 +119,17 @@ std::vector<Score> score_effects(const Model& model, const Data& data, const Fit
       const Eigen::VectorXd column = columns.col(j);
       const Eigen::VectorXd g = projection.without(column);
       const double norm = g.norm();
-      if (column.norm() == 0.0 || !(norm * std::abs(model.upper(first) - model.lower(first)) > 1e-3)) {
+      const double range = std::abs(model.upper(first) - model.lower(first));
+      if (!(column.norm() * range > 1e-3)) {
         score.unobservable = "it does not change these curves";
         continue;
       }
-      score.direction = g / norm;
-      if (norm < left_over * column.norm()) {
+      if (norm < left_over * column.norm() || !(norm * range > 1e-3)) {
         score.absorbed = true;
         score.unobservable = "the fitted numbers change the curves in the same way";
         continue;
       }
+      score.direction = g / norm;
       score.z = g.dot(r) / norm;
       if (effect.one_sided) score.z = std::max(score.z, 0.0);
       score.p = effect.one_sided ? normal_tail(score.z) : 2.0 * normal_tail(std::abs(score.z));

@@ -342,7 +342,7 @@ std::optional<double> Tracer::heldout_rmse(const Fit& fit) const {
   return std::sqrt(squares / count);
 }
 
-// Every series predicted by a fit to the others, to first order: r_s + J_s (J_-s^T J_-s)^-1 J_-s^T r_-s ... (I.5).
+// Every series predicted by a fit to the others, to first order: theory.md (I.5).
 double Tracer::left_out_rmse(const Fit& fit) const {
   double squares = 0.0;
   Eigen::Index row = 0;
@@ -353,7 +353,13 @@ double Tracer::left_out_rmse(const Fit& fit) const {
     Eigen::VectorXd r(rest.rows());
     r << fit.residual.head(row), fit.residual.tail(fit.residual.size() - row - n);
     const Eigen::VectorXd step = covariance_of(rest) * (rest.transpose() * r);
-    const Eigen::VectorXd left = fit.residual.segment(row, n) - fit.jacobian.middleRows(row, n) * step;
+    Eigen::VectorXd left = fit.residual.segment(row, n) - fit.jacobian.middleRows(row, n) * step;
+    // Numbers of this series alone (its zero) only it can tell.
+    std::vector<Eigen::Index> own;
+    for (std::size_t j = 0; j < fit.free; ++j) {
+      if (fit.settings[j].parameter->only == model_->series()[k].name) own.push_back(static_cast<Eigen::Index>(j));
+    }
+    if (!own.empty()) left = Projection(fit.jacobian(Eigen::all, own).middleRows(row, n)).without(left);
     squares += left.squaredNorm() * data_.noise.sigma[k] * data_.noise.sigma[k];
     row += n;
   }

@@ -28,6 +28,7 @@ struct Row {
 struct Check {
   std::string name;
   std::function<std::vector<Row>()> run;
+  std::string skipped = "";  ///< why it cannot be run here; empty when it can
 };
 
 /// Everything about the static wire: buckled shape, push by knife edge and cylinder, friction, instability,

@@ -1,0 +1,108 @@
+#include "validation/trace_checks.hpp"
+
+#include "identification/trace.hpp"
+#include "validation/blind_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace snare::validation {
+
+namespace {
+
+/// Whether a trace names what is inside, as 1 or 0.
+double right(const BlindSet& set, const identification::Trace& t) {
+  if (set.effect == "none") return t.selected.empty() && t.explained ? 1.0 : 0.0;
+  if (set.effect == "drift" || set.effect == "damage") return t.selected.empty() && !t.explained ? 1.0 : 0.0;
+  if (t.selected.size() != 1) return 0.0;
+  const std::vector<std::string>& members = t.selected_classes.front();
+  return std::find(members.begin(), members.end(), set.effect) != members.end() ? 1.0 : 0.0;
+}
+
+std::vector<Row> blind_rows() {
+  std::vector<Row> rows;
+  for (const char* effect : {"none", "wire_length", "mount_slip", "contact_friction", "strand_hysteresis", "force_offset", "drift"}) {
+    const BlindSet set = make_blind_set(effect, 30.0, 101);
+    identification::TraceOptions options;
+    options.intervals = false;
+    const identification::Trace t = identification::trace(set.experiment, options);
+    const std::string source = "continuous wire by collocation, with the effect put in";
+    rows.push_back({"tracing of blind sets", fmt::format("right answer, inside: {}", effect), "", source, 1.0, right(set, t),
+                    ErrorKind::absolute, 0.5});
+    if (set.effect == "drift") continue;
+    // 234 readings: chi2 over its degrees of freedom has a standard deviation of 0.09.
+    rows.push_back({"tracing of blind sets", fmt::format("chi2 a degree of freedom after, inside: {}", effect), "", source, 1.0,
+                    t.final.chi2_dof, ErrorKind::absolute, 0.3});
+  }
+  return rows;
+}
+
+identification::Experiment strand_experiment(const std::vector<std::filesystem::path>& files, double diameter, double span,
+                                             double support_radius) {
+  std::string text = fmt::format(R"(schema = "snare-experiment/1"
+[wire]
+construction = "strand"
+diameter_mm = {}
+length_mm = {}
+youngs_modulus_GPa = 100.0
+poisson_ratio = 0.3
+density_kg_m3 = 8000.0
+[mount]
+kind = "supports"
+span_mm = {}
+support_radius_mm = {}
+[pusher]
+shape = "cylinder"
+radius_mm = {}
+friction = 0.0
+direction = "inward"
+)", diameter, span + 20.0, span, support_radius, support_radius);
+  for (const std::filesystem::path& file : files) {
+    text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\nfile = \"{}\"\n", file.stem().string(), 0.5 * span,
+                        std::filesystem::absolute(file).string());
+  }
+  return identification::parse_experiment("measured.toml", text);
+}
+
+std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group, double diameter,
+                               double span, double support_radius) {
+  const identification::Experiment e = strand_experiment(files, diameter, span, support_radius);
+  const identification::Trace t = identification::trace(e);
+  double sigma = t.noise.sigma.empty() ? 0.0 : t.noise.sigma.front();
+  const std::string source = "measured: pulsevad-optimal, three-point bending of strands (replicates)";
+  std::string answer = t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
+  return {{"tracing of measured strands", fmt::format("{}: explained ({})", group, answer), "", source, 1.0,
+           t.explained ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
+          {"tracing of measured strands", group + ": base error over the replicates' scatter (for information)", "", source,
+           t.base.rmse / sigma, t.base.rmse / sigma, ErrorKind::absolute, 1.0},
+          {"tracing of measured strands", group + ": error after over the replicates' scatter, at most 1", "", source, 0.0,
+           t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
+}
+
+}  // namespace
+
+std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
+  std::vector<Check> checks{{"tracing of blind sets", blind_rows, ""}};
+  struct Group {
+    const char* name;
+    double diameter, span, radius;  // [mm]
+  };
+  for (const Group& g : {Group{"group4", 2.5, 40.0, 2.0}, Group{"group5", 3.6, 57.6, 5.0}}) {
+    std::vector<std::filesystem::path> files;
+    for (int k = 1; k <= 9; ++k) {
+      const std::filesystem::path file = measured / "three_point_bending" / fmt::format("{}_{}.csv", g.name, k);
+      if (std::filesystem::exists(file)) files.push_back(file);
+    }
+    const std::string name = fmt::format("tracing of measured strands, {}", g.name);
+    if (files.size() < 2) {
+      checks.push_back({name, [] { return std::vector<Row>(); },
+                        fmt::format("the measured files {}_*.csv are not in {}", g.name, (measured / "three_point_bending").string())});
+      continue;
+    }
+    checks.push_back({name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius); }, ""});
+  }
+  return checks;
+}
+
+}  // namespace snare::validation
