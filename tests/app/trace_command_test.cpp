@@ -121,11 +121,9 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   EXPECT_TRUE(t["next_experiment"]["separates"].is_array());
   const std::string curves = text("t/curves.csv");
   EXPECT_EQ(curves.substr(0, curves.find('\n')).substr(curves.substr(0, curves.find('\n')).size() - 25), "measured_N,base_N,final_N");
-  for (const std::string& whole : {curves, text("t/trace.json"), text("t/report.html")}) {
-    EXPECT_FALSE(whole.empty());
-    EXPECT_EQ(whole.find("nan,"), std::string::npos);
-    EXPECT_EQ(whole.find("NaN,"), std::string::npos);
-  }
+  EXPECT_EQ(curves.find("nan"), std::string::npos);
+  EXPECT_EQ(text("t/trace.json").find("nan,"), std::string::npos);
+  EXPECT_NE(text("t/report.html").find("</html>"), std::string::npos);
 }
 
 TEST_F(TraceCommand, FitWritesItsNumbers) {
