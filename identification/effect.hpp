@@ -18,6 +18,7 @@ struct EffectNumber {
   std::string key;
   double plausible_lower = 0.0;
   double plausible_upper = 0.0;
+  bool optional = false;  ///< stays at its usual value unless a trial gives another
 };
 
 /// What the fitted base model says of the experiment, for the choice of trial values. SI units.

@@ -28,7 +28,7 @@ Effect plasticity_effect() {
   e.name = "plasticity";
   e.channel = Channel::wire;
   e.meaning = "the metal of the wire yields";
-  e.numbers = {{"plasticity.yield_stress_MPa", 1.0, 4000.0}, {"plasticity.hardening_ratio", 0.0, 0.5}};
+  e.numbers = {{"plasticity.yield_stress_MPa", 1.0, 4000.0}, {"plasticity.hardening_ratio", 0.0, 0.5, true}};
   e.one_sided = true;
   e.trials = trial_stresses;
   e.independent_check = "look for a lasting kink or elongation of the wire after the test";

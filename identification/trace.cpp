@@ -175,7 +175,7 @@ void Tracer::prepare() {
   for (Series& s : result_.series) {
     if (s.readings || !s.law) continue;
     s.readings = drawn_about(s, random, options_.draw);
-    s.force_sigma = s.law->scatter();
+    if (!s.force_sigma) s.force_sigma = s.law->scatter();
     result_.drawn = result_.drawn || options_.draw;
   }
   std::vector<Series> fitted;
@@ -213,7 +213,7 @@ Fit Tracer::fit_base() {
     const Parameter& p = parameter(key);
     const double declared = model_->declared(p);
     if (!std::isfinite(declared)) {
-      throw InputError({experiment_.file.string(), 0, "fit.free", '"' + key + '"',
+      throw InputError({experiment_.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
                         "is a threshold that the declared model does not have: declare a value to start from"});
     }
     start.push_back({&p, p.coordinate(declared, declared)});
@@ -280,17 +280,20 @@ void Tracer::refit(const Fit& current, Candidate& candidate, std::vector<Fit>& f
   fits.emplace_back();
   Fit& best = fits.back();
   best.chi2 = std::numeric_limits<double>::max();
+  best.free = current.free;
   best.report.termination = numerics::Termination::step_too_small;
   for (const std::vector<double>& coordinates : candidate.score.starts) {
     std::vector<Setting> start(current.settings.begin(), current.settings.begin() + static_cast<std::ptrdiff_t>(current.free));
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      start.push_back({&parameter(candidate.score.effect->numbers[k].key), coordinates[k]});
+      const EffectNumber& number = candidate.score.effect->numbers[k];
+      if (number.optional && coordinates[k] == 0.0) continue;
+      start.push_back({&parameter(number.key), coordinates[k]});
     }
     FitOptions fitting;
     fitting.max_iterations = 15;
     fitting.tolerance = 1e-4;
     Fit one = fit(*model_, data_, start, {}, fitting);
-    if (one.report.usable() && one.chi2 < best.chi2) best = std::move(one);
+    if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
   }
 }
 
@@ -304,9 +307,10 @@ void Tracer::judge(const Fit& current, Candidate& candidate, const Fit& refitted
   const std::vector<FittedNumber> all = numbers_of(*model_, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   const Effect& effect = *candidate.score.effect;
-  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
+  for (std::size_t k = 0; k < candidate.numbers.size(); ++k) {
     const FittedNumber& n = candidate.numbers[k];
-    const EffectNumber& range = effect.numbers[k];
+    const EffectNumber& range = *std::find_if(effect.numbers.begin(), effect.numbers.end(),
+                                              [&n](const EffectNumber& e) { return e.key == n.key; });
     const Parameter& p = parameter(n.key);
     const double coordinate = refitted.settings[current.free + k].coordinate;
     const double width = model_->upper(p) - model_->lower(p);
