@@ -80,7 +80,8 @@ struct PushCurve {
 
 /// Force-displacement curve of one push by the discrete rod on one mesh.        theory.md (C.2)-(C.9)
 /// The test must be admissible (see identification::read_experiment); travel may go up and down.
-[[nodiscard]] PushCurve solve_push(const PushTest& test, const PushOptions& options);
+/// coarsening 1, 2 or 4: only every so manieth vertex of the mesh is used.
+[[nodiscard]] PushCurve solve_push(const PushTest& test, const PushOptions& options, int coarsening = 1);
 
 /// Whether PushOptions::variations can be answered: planar pushes.
 [[nodiscard]] bool differentiable(const PushTest& test);

@@ -1,7 +1,7 @@
 #include "identification/trace.hpp"
 
 #include "identification/next_experiment.hpp"
-#include "identification/statistics.hpp"
+#include "identification/trace_input.hpp"
 #include "numerics/errors.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <random>
 
 namespace snare::identification {
 
@@ -33,73 +32,6 @@ SolverSettings for_search(const SolverSettings& asked) {
   SolverSettings search = asked;
   search.elements = std::min(128, asked.elements);
   return search;
-}
-
-/// Readings drawn about a published law with the scatter that its R^2 implies.
-Readings drawn_about(const Series& series, std::mt19937& random, bool draw) {
-  std::normal_distribution<double> normal(0.0, series.law->scatter());
-  Readings r;
-  r.displacement = series.test.travel;
-  for (const double d : r.displacement) r.force.push_back(series.law->force(d) + (draw ? normal(random) : 0.0));
-  return r;
-}
-
-void check_readings(const Experiment& experiment, const std::vector<Series>& series, const std::vector<bool>& heldout) {
-  std::vector<numerics::InputProblem> problems;
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    const std::string key = "series[" + series[k].name + "]";
-    const auto refuse = [&](const std::string& requirement) {
-      problems.push_back({experiment.file.string(), 0, key, "", requirement});
-    };
-    if (!series[k].readings) {
-      refuse("must have readings or a law to be fitted");
-      continue;
-    }
-    if (heldout[k]) continue;
-    const std::vector<double>& f = series[k].readings->force;
-    const auto [low, high] = std::minmax_element(f.begin(), f.end());
-    if (*low == *high) {
-      refuse(fmt::format("force_N is {} in every reading: there is nothing to fit", *low));
-      continue;
-    }
-    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike (von Neumann 1941:
-    // the ratio is 2 +- 2/sqrt(n) for noise).
-    double mean = 0.0;
-    for (const double v : f) mean += v / static_cast<double>(f.size());
-    double variance = 0.0;
-    double steps = 0.0;
-    for (std::size_t i = 0; i < f.size(); ++i) {
-      variance += (f[i] - mean) * (f[i] - mean);
-      if (i > 0) steps += (f[i] - f[i - 1]) * (f[i] - f[i - 1]);
-    }
-    const double n = static_cast<double>(f.size());
-    if (f.size() >= 8 && steps / variance > std::max(0.8, 2.0 - 6.0 / std::sqrt(n))) {
-      refuse("the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
-    }
-  }
-  if (!problems.empty()) throw InputError(problems);
-}
-
-ResidualTests test_residuals(const Data& data, const Fit& fit) {
-  std::vector<Eigen::VectorXd> pieces;
-  Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
-    pieces.emplace_back(fit.residual.segment(row, data.measured[k].size()));
-    row += data.measured[k].size();
-  }
-  ResidualTests tests;
-  tests.against_replicates = data.noise.source == "replicates";
-  tests.runs = runs_p(pieces);
-  tests.ljung_box = ljung_box_p(pieces, 10);
-  if (data.noise.source == "residual") {
-    // Against the noise of the same readings from second differences, whose own relative variance is 35/(18 n).
-    const double n = static_cast<double>(fit.residual.size());
-    const double ratio = fit.chi2 / std::max(1.0, fit.dof());
-    tests.lack_of_fit = normal_tail((ratio - 1.0) / std::sqrt(2.0 / n + 35.0 / (18.0 * n)));
-  } else {
-    tests.lack_of_fit = chi_square_tail(fit.chi2, std::max(1.0, fit.dof()));
-  }
-  return tests;
 }
 
 std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit) {
@@ -170,21 +102,15 @@ void Tracer::clock(const std::string& what) {
 }
 
 void Tracer::prepare() {
-  std::mt19937 random(options_.seed);
   result_.series = experiment_.series;
-  for (Series& s : result_.series) {
-    if (s.readings || !s.law) continue;
-    s.readings = drawn_about(s, random, options_.draw);
-    if (!s.force_sigma) s.force_sigma = s.law->scatter();
-    result_.drawn = result_.drawn || options_.draw;
-  }
+  result_.drawn = replace_laws(result_.series, options_.draw, options_.seed);
   std::vector<Series> fitted;
   std::vector<Series> held;
   for (const Series& s : result_.series) {
     const bool out = std::find(experiment_.heldout.begin(), experiment_.heldout.end(), s.name) != experiment_.heldout.end();
     result_.heldout.push_back(out);
   }
-  check_readings(experiment_, result_.series, result_.heldout);
+  check_readings(experiment_.file, result_.series, result_.heldout);
   for (std::size_t k = 0; k < result_.series.size(); ++k) {
     (result_.heldout[k] ? held : fitted).push_back(result_.series[k]);
   }
@@ -606,18 +532,6 @@ Trace Tracer::run() {
 }
 
 }  // namespace
-
-bool ResidualTests::acceptable() const {
-  if (against_replicates) return lack_of_fit > 0.01;
-  return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > 0.01;
-}
-
-std::vector<std::string> default_free(const Experiment& experiment) {
-  const bool supports = experiment.series.front().test.mount.kind == wire::MountKind::supports;
-  // A wire that slides over supports is not stretched.
-  if (supports) return {"wire.bending_stiffness_Nm2"};
-  return {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
-}
 
 Trace trace(const Experiment& experiment, const TraceOptions& options) { return Tracer(experiment, options).run(); }
 

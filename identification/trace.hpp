@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identification/attribution.hpp"
+#include "identification/residual_tests.hpp"
 #include "identification/score.hpp"
 
 #include <functional>
@@ -10,16 +11,6 @@
 #include <vector>
 
 namespace snare::identification {
-
-/// Tests of what is left after a fit.
-struct ResidualTests {
-  double runs = 1.0;         ///< p of the number of runs of one sign
-  double ljung_box = 1.0;    ///< p of the autocorrelations
-  double lack_of_fit = 1.0;  ///< p of chi2 against the noise
-  bool against_replicates = false;  ///< the noise is that of replicates, which differ smoothly themselves
-  /// All three together at 1 %; against replicates the lack of fit alone.
-  [[nodiscard]] bool acceptable() const;
-};
 
 /// A number of a fitted model, in its unit.
 struct FittedNumber {
@@ -115,8 +106,5 @@ struct TraceOptions {
 /// Throws numerics::InputError for series that cannot be traced (no readings, fewer than the numbers to fit, all
 /// forces equal, never in contact).
 [[nodiscard]] Trace trace(const Experiment& experiment, const TraceOptions& options = {});
-
-/// Numbers that are fitted when the experiment names none.
-[[nodiscard]] std::vector<std::string> default_free(const Experiment& experiment);
 
 }  // namespace snare::identification

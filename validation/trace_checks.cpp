@@ -69,15 +69,14 @@ std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, 
                                double span, double support_radius) {
   const identification::Experiment e = strand_experiment(files, diameter, span, support_radius);
   const identification::Trace t = identification::trace(e);
-  double sigma = t.noise.sigma.empty() ? 0.0 : t.noise.sigma.front();
+  const double sigma = t.noise.sigma.empty() ? 0.0 : t.noise.sigma.front();
   const std::string source = "measured: pulsevad-optimal, three-point bending of strands (replicates)";
   std::string answer = t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
   return {{"tracing of measured strands", fmt::format("{}: explained ({})", group, answer), "", source, 1.0,
            t.explained ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
-          {"tracing of measured strands", group + ": base error over the replicates' scatter (for information)", "", source,
-           t.base.rmse / sigma, t.base.rmse / sigma, ErrorKind::absolute, 1.0},
-          {"tracing of measured strands", group + ": error after over the replicates' scatter, at most 1", "", source, 0.0,
-           t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
+          {"tracing of measured strands",
+           fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most 1", group, t.base.rmse / sigma), "",
+           source, 0.0, t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
 }
 
 }  // namespace
