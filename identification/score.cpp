@@ -13,7 +13,7 @@ namespace snare::identification {
 namespace {
 
 /// Share of a column that must be left after projection, else it lies in the span: derivatives carry the mesh's error.
-constexpr double left_over = 2e-4;
+constexpr double left_over = 1e-3;
 
 bool fitted(const Fit& fit, const Parameter* p) {
   return std::any_of(fit.settings.begin(), fit.settings.end(), [p](const Setting& s) { return s.parameter == p; });
