@@ -93,7 +93,7 @@ struct Trace {
 struct TraceOptions {
   std::vector<std::string> free;      ///< keys of the base model; empty: the experiment's own, else the two stiffnesses
   int most_effects = 3;
-  double significance = 0.01;
+  double significance = 0.002;        ///< of a score after Holm: rounds are several, and a second effect by chance is an error too
   unsigned seed = 1;                  ///< of the noise drawn about published laws
   bool draw = true;                   ///< draw it; false: the law itself stands for the readings (for fits, not for tests)
   bool attribute = true;              ///< ask the channels when the catalogue does not explain the residual

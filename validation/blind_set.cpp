@@ -97,7 +97,7 @@ std::vector<double> read(const std::string& effect, const Push& p, const Hidden&
   else if (effect == "strand_hysteresis") {
     w.strand_extra_stiffness = h.bending * a;
     w.strand_slip_curvature = h.slip_curvature;
-  } else if (effect == "plasticity") w.yield_stress = h.highest_stress * std::max(0.05, 1.5 - 1.4 * a);
+  } else if (effect == "plasticity") w.yield_stress = h.highest_stress * std::max(0.05, 4.0 - 3.9 * a);
   else if (effect == "gravity") w.weight = {0.0, 9.81 * density * area * s};
   else if (effect == "rate_viscosity") w.relaxation_time = 0.1 * a;
   else if (effect == "damage") {
@@ -139,6 +139,10 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     throw std::invalid_argument("no blind effect " + effect);
   }
   std::mt19937 random(7919u * seed + 17u);
+  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
+  const auto number = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
+  std::seed_seq own{seed, number, static_cast<unsigned>(std::lround(10.0 * size))};
+  std::mt19937 noise(own);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   Hidden h;
@@ -192,7 +196,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     // The size rises steadily with the amount: proportional steps, held inside what is known to be too small and too large.
     double low = 0.0;
     double high = 1.0;
-    double a = 0.05;
+    double a = effect == "plasticity" ? 0.5 : 0.05;
     for (int k = 0; k < 20; ++k) {
       force = read_all(effect, h, a, highest_tension);
       set.amount = a;
@@ -229,7 +233,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     identification::Readings readings;
     readings.displacement = travel_of(p);
     readings.time = time_of(p);
-    for (std::size_t i = 0; i < readings.displacement.size(); ++i) readings.force.push_back(force[row++] + sigma * normal(random));
+    for (std::size_t i = 0; i < readings.displacement.size(); ++i) readings.force.push_back(force[row++] + sigma * normal(noise));
     t.travel = readings.displacement;
     series.readings = readings;
     series.force_sigma = sigma;

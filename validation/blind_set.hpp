@@ -25,7 +25,7 @@ struct BlindSet {
 [[nodiscard]] const std::vector<std::string>& blind_effects();
 
 /// Three positions, two slacks, load and unload at two speeds, normal noise; EI and EA of the wire off the declared ones by
-/// about 10 %. The same seed gives the same wire and noise for every effect and size. size: wanted, > 0; effects with
+/// about 10 %. The same seed gives the same wire for every effect and size. size: wanted, > 0; effects with
 /// a largest size (a slipping mount) stay below it where they must. "none" ignores it.
 [[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed);
 
