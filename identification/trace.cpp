@@ -216,7 +216,7 @@ void Tracer::refit(const Fit& current, Candidate& candidate, std::vector<Fit>& f
       start.push_back({&parameter(number.key), coordinates[k]});
     }
     FitOptions fitting;
-    fitting.max_iterations = 15;
+    fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
     Fit one = fit(*model_, data_, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
@@ -477,7 +477,9 @@ Trace Tracer::run() {
   if (result_.explained && added.size() > 1 && options_.attribute && go_on("one cause in place of several")) {
     // Several effects at once, or one cause that the catalogue does not have? One that carries over is the simpler.
     result_.functions = attribute(*model_, data_, base);
-    const bool one = !result_.functions.empty() && result_.functions.front().carried_over > one_cause;
+    // In the channel of the effect itself it is that effect in another dress.
+    const bool one = !result_.functions.empty() && result_.functions.front().carried_over > one_cause &&
+                     result_.functions.front().channel != find_effect(added.front())->channel;
     if (one) result_.explained = false;
     else result_.functions.clear();
     result_.rival_explanation = one;

@@ -140,8 +140,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   }
   std::mt19937 random(7919u * seed + 17u);
   // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
-  const auto number = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
-  std::seed_seq own{seed, number, static_cast<unsigned>(std::lround(10.0 * size))};
+  const auto which = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
+  std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
   std::mt19937 noise(own);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
