@@ -474,7 +474,14 @@ Trace Tracer::run() {
   }
   result_.significant = !result_.base_tests.acceptable() || !added.empty();
   result_.explained = tests.acceptable();
-  if (result_.explained && added.size() > 1 && options_.attribute && go_on("one cause in place of several")) {
+  // Something is left beside the first effect: a second one that was added, or one that is nearly significant.
+  bool more = added.size() > 1;
+  if (added.size() == 1 && result_.rounds.size() > 1) {
+    for (const Candidate& c : result_.rounds.back().candidates) {
+      more = more || (c.score.unobservable.empty() && c.score.adjusted_p < 0.5 * near_significance);
+    }
+  }
+  if (result_.explained && more && options_.attribute && go_on("one cause in place of several")) {
     // Several effects at once, or one cause that the catalogue does not have? One that carries over is the simpler.
     result_.functions = attribute(*model_, data_, base);
     // In the channel of the effect itself it is that effect in another dress.
