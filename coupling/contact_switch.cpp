@@ -13,10 +13,6 @@ using Eigen::Vector2d;
 constexpr double relative_force = 1e-9;
 constexpr double relative_gap = 1e-9;
 
-double angle_between(const Vector2d& a, const Vector2d& b) {
-  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-}
-
 double force_floor(const PushSystem& system) {
   const double length = system.length_scale();
   return relative_force * (system.rod().properties().bending_stiffness / (length * length) +

@@ -1,6 +1,12 @@
 #include "coupling/pin_contact.hpp"
 
+#include <cmath>
+
 namespace snare::coupling {
+
+double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
 
 VertexTangent vertex_tangent(const Eigen::Vector2d& e0, const Eigen::Vector2d& e1, double h0, double h1) {
   VertexTangent result;

@@ -4,6 +4,9 @@
 
 namespace snare::coupling {
 
+/// Signed angle from a to b [rad].
+[[nodiscard]] double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
 /// The wire's tangent at a vertex, of the C1 curve through the vertices.               theory.md (C.1)
 ///
 ///   u = h1/(h0 (h0 + h1)) e0 + h0/(h1 (h0 + h1)) e1,  t = u/|u|

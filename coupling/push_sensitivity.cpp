@@ -16,10 +16,6 @@ using Eigen::Vector2d;
 
 Vector2d turned(const Vector2d& v, double angle) { return Eigen::Rotation2Dd(angle) * v; }
 
-double angle_between(const Vector2d& a, const Vector2d& b) {
-  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-}
-
 /// The point moved by a multiple of a change.
 numerics::PathPoint moved(const numerics::PathPoint& at, const numerics::PathPoint& change, double amount) {
   return {at.band + amount * change.band, at.border + amount * change.border,

@@ -13,11 +13,6 @@ using Eigen::Matrix2d;
 using Eigen::RowVector2d;
 using Eigen::Vector2d;
 
-/// Signed angle from a to b, both unit.
-double angle_between(const Vector2d& a, const Vector2d& b) {
-  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-}
-
 }  // namespace
 
 PushSystem::PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls)
