@@ -31,7 +31,7 @@ namespace snare::app {
 /// The shipped data, beside the sources or where they were installed.
 [[nodiscard]] std::filesystem::path data_directory();
 
-/// `key=value` texts of --set. Throws InputError for one without '='.
+/// Of this build.
 [[nodiscard]] std::string version();
 
 }  // namespace snare::app

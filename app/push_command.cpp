@@ -1,10 +1,9 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
-#include "numerics/toml_tree.hpp"
+#include "app/experiment_input.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <omp.h>
 
 #include <iostream>
 
@@ -31,10 +30,7 @@ nlohmann::json summary(const identification::Series& series, const identificatio
 }  // namespace
 
 ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
-  const identification::Experiment experiment = identification::read_experiment(file, overrides);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const identification::Experiment experiment = open_experiment(file, options);
 
   std::vector<identification::PredictionOptions> prediction_options(experiment.series.size());
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {

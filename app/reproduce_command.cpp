@@ -1,14 +1,13 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
+#include "app/experiment_input.hpp"
 #include "app/reproduce_report.hpp"
 #include "app/trace_json.hpp"
 #include "identification/trace.hpp"
 #include "numerics/files.hpp"
-#include "numerics/toml_tree.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -271,17 +270,14 @@ std::string error_table(const json& result) {
 }  // namespace
 
 ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
-  const Experiment experiment = identification::read_experiment(
-      file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, overrides);
+  const Experiment experiment = open_experiment(
+      file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, options);
   for (const Series& series : experiment.series) {
     if (identification::measured_force(series).empty()) {
       throw numerics::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
                                   "must have readings or a law to reproduce"});
     }
   }
-  if (options.threads > 0) omp_set_num_threads(options.threads);
 
   std::vector<ModelCurves> models;
   ModelCurves declared;

@@ -1,15 +1,15 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
+#include "app/experiment_input.hpp"
 #include "app/trace_json.hpp"
 #include "app/trace_report.hpp"
 #include "identification/trace.hpp"
 #include "numerics/files.hpp"
-#include "numerics/toml_tree.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <omp.h>
 
+#include <functional>
 #include <iostream>
 
 namespace snare::app {
@@ -29,6 +29,13 @@ std::vector<CurveColumn> columns_of(const Trace& trace) {
   return columns;
 }
 
+std::function<bool(const std::string&)> told_to(Console& console) {
+  return [&console](const std::string& stage) {
+    console.progress(stage);
+    return !interrupted();
+  };
+}
+
 std::string number_line(const FittedNumber& n) {
   std::string text = fmt::format("  {} = {:.6g}{}{}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit);
   if (n.lower && n.upper) text += fmt::format("  [{:.5g}, {:.5g}]", *n.lower, *n.upper);
@@ -38,15 +45,9 @@ std::string number_line(const FittedNumber& n) {
 }  // namespace
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
-  const identification::Experiment experiment = identification::read_experiment(file, overrides);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const identification::Experiment experiment = open_experiment(file, options);
   identification::TraceOptions tracing;
-  tracing.progress = [&console](const std::string& stage) {
-    console.progress(stage);
-    return !interrupted();
-  };
+  tracing.progress = told_to(console);
   const Trace trace = identification::trace(experiment, tracing);
   console.end_progress();
   if (!trace.report.usable()) {
@@ -75,19 +76,13 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 }
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
-  const identification::Experiment experiment = identification::read_experiment(file, overrides);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const identification::Experiment experiment = open_experiment(file, options);
   identification::TraceOptions fitting;
   fitting.most_effects = 0;
   fitting.intervals = true;
   fitting.attribute = false;
   fitting.draw = false;
-  fitting.progress = [&console](const std::string& stage) {
-    console.progress(stage);
-    return !interrupted();
-  };
+  fitting.progress = told_to(console);
   const Trace trace = identification::trace(experiment, fitting);
   console.end_progress();
   if (!trace.report.usable()) {

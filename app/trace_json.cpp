@@ -142,12 +142,19 @@ std::string verdict(const Trace& t) {
         text += fmt::format("One of {}, which these readings cannot tell apart (carried on as {}). ", fmt::join(members, ", "), e.name);
       }
     }
-    return fmt::format("Explained. {}The error falls from {:.3g} N to {:.3g} N.", text, t.base.rmse, t.final.rmse);
+    text = fmt::format("Explained. {}The error falls from {:.3g} N to {:.3g} N.", text, t.base.rmse, t.final.rmse);
+    if (!t.alternatives.empty()) {
+      const identification::ChannelFunction& f = t.alternatives.front();
+      text += fmt::format(" A cause outside the catalogue would do as well: something in the {} that {}, as a function of {}.",
+                          to_string(f.channel), f.effect, f.argument);
+    }
+    return text;
   }
   std::string text =
       t.rival_explanation
-          ? fmt::format("Not explained: several effects together ({}) would bring the error of {:.3g} N down to the noise, and so would a single cause that the catalogue does not have.",
-                        fmt::join(t.partial, ", "), t.base.rmse)
+          ? fmt::format("Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
+                        "does not have does so more simply.",
+                        fmt::join(t.partial, " and "), t.base.rmse)
           : fmt::format("Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
   if (!t.functions.empty()) {
     const identification::ChannelFunction& f = t.functions.front();
@@ -168,6 +175,8 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
   for (const auto& [what, time] : trace.seconds) seconds[what] = time;
   json functions = json::array();
   for (const identification::ChannelFunction& f : trace.functions) functions.push_back(function_json(f));
+  json alternatives = json::array();
+  for (const identification::ChannelFunction& f : trace.alternatives) alternatives.push_back(function_json(f));
   json rounds = json::array();
   for (const Round& round : trace.rounds) rounds.push_back(round_json(round));
   json result{{"schema", "snare-trace/1"},
@@ -207,6 +216,7 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
               {"explained", trace.explained},
               {"channel", trace.channel.empty() ? json() : json(trace.channel)},
               {"functions", functions},
+              {"alternatives", alternatives},
               {"mesh_error_N", finite(trace.mesh_error)},
               {"seconds", seconds},
               {"series", json::array()}};

@@ -2,6 +2,8 @@
 
 #include "app/json_fields.hpp"
 #include "app/report_page.hpp"
+#include "app/trace_page_rounds.hpp"
+#include "app/trace_page_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +18,9 @@
 #include <nlohmann/json.hpp>
 
 namespace snare::app {
+
+using namespace trace_page;
+
 namespace {
 
 using json_fields::array;
@@ -26,9 +31,6 @@ using json_fields::text;
 using json_fields::texts;
 using nlohmann::json;
 using Values = std::vector<double>;
-using Words = std::vector<std::string>;
-
-constexpr const char* absent = "\u2013";
 
 constexpr int black = 0, blue = 1, vermillion = 2, green = 3;  // of the report's palette
 /// Bands are this many standard deviations wide: 95 % of normal scatter.
@@ -37,97 +39,6 @@ constexpr double band_sigmas = 2.0;
 constexpr double dwarfing_ratio = 1.5, dwarfing_band_ratio = 6.0;
 /// Stages of the run shorter than this are not listed [s].
 constexpr double least_stage_seconds = 0.01;
-
-// ---- Fields -----------------------------------------------------------------------------------------------------
-
-void require_finite(const json& value, const std::string& key) {
-  if (value.is_number_float() && !std::isfinite(value.get<double>())) {
-    throw std::invalid_argument(fmt::format("{} = {}, must be finite", key, value.get<double>()));
-  }
-  if (!value.is_structured()) return;
-  for (const auto& item : value.items()) require_finite(item.value(), value.is_object() ? item.key() : key);
-}
-
-void require(bool right, const std::string& key, const char* expected, const json& value) {
-  if (!right) throw std::invalid_argument(fmt::format("{} is {}, must be {}", key, value.type_name(), expected));
-}
-
-const json& object(const json& parent, const std::string& key) {
-  const json& value = member(parent, key);
-  require(value.is_null() || value.is_object(), key, "an object", value);
-  return value;
-}
-
-std::optional<bool> flag(const json& parent, const std::string& key) {
-  const json& value = member(parent, key);
-  require(value.is_null() || value.is_boolean(), key, "true or false", value);
-  return value.is_null() ? std::nullopt : std::optional(value.get<bool>());
-}
-
-/// An array of objects; a null among them is an object without any key.
-const json& objects(const json& parent, const std::string& key) {
-  for (const json& value : array(parent, key)) require(value.is_null() || value.is_object(), key, "an array of objects", value);
-  return array(parent, key);
-}
-
-std::vector<Words> text_lists(const json& parent, const std::string& key) {
-  std::vector<Words> lists;
-  for (const json& value : array(parent, key)) lists.push_back(texts({{key, value}}, key));
-  return lists;
-}
-
-// ---- Words ------------------------------------------------------------------------------------------------------
-
-std::string measured(std::optional<double> value, const std::string& unit = "") { return value ? format_significant(*value) + unit : absent; }
-std::string shown(std::optional<double> value, int digits = 6) { return value ? format_number(*value, digits) : absent; }
-
-/// 1.6 %; a share far below nothing is not worth its digits.
-std::string percent(std::optional<double> share) {
-  if (share && *share < -1.0) return "< -100 %";
-  return share ? format_number(100.0 * *share, 2) + " %" : absent;
-}
-
-Cell yes_no(std::optional<bool> value, Tone yes, Tone no) {
-  if (!value) return absent;
-  return {*value ? "yes" : "no", *value ? yes : no};
-}
-
-std::string joined(const Words& words, const char* last = " and ") {
-  if (words.size() < 2) return words.empty() ? "" : words.front();
-  return fmt::format("{}{}{}", fmt::join(words.begin(), words.end() - 1, ", "), last, words.back());
-}
-
-std::string spaced(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
-/// {"yield stress", "MPa"} of plasticity.yield_stress_MPa.
-std::pair<std::string, std::string> name_and_unit(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::string>> units = {
-      {"_rad_Nm", "rad/(N m)"}, {"_kg_m3", "kg/m\u00b3"}, {"_m_s2", "m/s\u00b2"}, {"_Nm2", "N m\u00b2"},
-      {"_m_N", "m/N"}, {"_1_m", "1/m"}, {"_GPa", "GPa"}, {"_MPa", "MPa"}, {"_deg", "\u00b0"}, {"_mm", "mm"}, {"_N", "N"}, {"_s", "s"}};
-  const std::string name = key.substr(key.rfind('.') + 1);
-  for (const auto& [suffix, unit] : units) {
-    if (name.ends_with(suffix)) return {spaced(name.substr(0, name.size() - suffix.size())), unit};
-  }
-  return {spaced(name), ""};
-}
-
-/// A number and its 95 % interval, which may be open at an end, as two cells with the digits that the interval leaves meaningful.
-std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower, std::optional<double> upper) {
-  const double width = lower && upper ? std::abs(*upper - *lower) : 0.0;
-  const auto show = [&](double v) {
-    if (v == 0.0 || width <= 0.0) return format_number(v, 4);
-    const double digits = std::floor(std::log10(std::abs(v))) - std::floor(std::log10(width)) + 2.0;
-    return format_significant(v, static_cast<int>(std::clamp(digits, 2.0, 9.0)));
-  };
-  if (!value) return {absent, absent};
-  if (lower && upper) return {show(*value), show(*lower) + " to " + show(*upper)};
-  return {show(*value), lower ? "from " + show(*lower) : upper ? "up to " + show(*upper) : absent};
-}
-
-Column number_column(std::string heading) { return {std::move(heading), ColumnKind::number}; }
 
 // ---- What the sections share --------------------------------------------------------------------------------------
 
@@ -172,6 +83,11 @@ Range padded(const Range& r, double share) { return {r.lower - share * size_of(r
 
 std::string noise_source(const json& noise) {
   const std::string source = text(noise, "source");
+  const auto smooth = number(noise, "smooth_share");
+  if (source == "replicates" && smooth.value_or(0.0) > 0.0) {
+    return fmt::format("from the spread of repeated series; {} of its variance is smooth, over {} mm of travel", percent(smooth),
+                       shown(number(noise, "correlation_length_mm"), 2));
+  }
   if (flag(noise, "drawn_about_published_laws").value_or(false)) return "the scatter that the published R\u00b2 implies";
   if (source == "declared") return "as declared in the experiment file";
   if (source == "replicates") return "from the spread of repeated series";
@@ -371,114 +287,6 @@ void add_residuals(ReportPage& page, const json& result) {
   add_tests(page, result);
 }
 
-bool observable(const json& candidate) { return flag(candidate, "observable").value_or(true); }
-
-void add_scores(ReportPage& page, const json& round) {
-  Table table{"Does the residual have the shape that the effect would give it?",
-              {{"Effect", ColumnKind::code}, {"What would happen"}, {"Where"}, number_column("Score z"), number_column("p (Holm)"), number_column("Smallest size that would show")}, {}};
-  for (const json& candidate : objects(round, "candidates")) {
-    if (!observable(candidate)) continue;
-    const std::string effect = text(candidate, "effect", absent);
-    const json& detectable = object(candidate, "detectable");
-    table.rows.push_back({{effect, effect == text(round, "added") ? Tone::good : Tone::plain}, text(candidate, "meaning"), text(candidate, "channel", absent),
-                          measured(number(candidate, "score_z")), shown(number(candidate, "score_p_holm"), 2),
-                          measured(number(detectable, "size"), " " + name_and_unit(text(detectable, "key")).second)});
-  }
-  if (!table.rows.empty()) page.table(table);
-}
-
-/// One row a number of the effect; what belongs to the effect stands in the first.
-void add_refit(Table& table, const json& candidate) {
-  const json& values = object(candidate, "value");
-  const auto end = [&](const std::string& key, std::size_t i) {
-    const json& interval = array(object(candidate, "interval95"), key);
-    return i < interval.size() ? number({{key, interval[i]}}, key) : std::nullopt;
-  };
-  const std::size_t first = table.rows.size();
-  for (const auto& item : values.items()) {
-    const auto [name, unit] = name_and_unit(item.key());
-    const auto cells = value_cells(number(values, item.key()), end(item.key(), 0), end(item.key(), 1));
-    table.rows.push_back({"", "", "", name + (unit.empty() ? "" : " [" + unit + "]"), cells[0], cells[1], "", ""});
-  }
-  if (table.rows.size() == first) table.rows.push_back({"", "", "", absent, absent, absent, "", ""});
-  std::vector<Cell>& row = table.rows[first];
-  row[0] = text(candidate, "effect", absent);
-  row[1] = measured(number(candidate, "rmse_N"));
-  row[2] = measured(number(candidate, "delta_bic"));
-  row[6] = yes_no(flag(candidate, "plausible"), Tone::plain, Tone::bad);
-  row[7] = yes_no(flag(candidate, "heldout_improves"), Tone::plain, Tone::bad);
-}
-
-void add_refits(ReportPage& page, const json& round) {
-  Table table{"The best of them, each added to the model and all numbers refitted.",
-              {{"Effect", ColumnKind::code}, number_column("Error [N rms]"), number_column("Change of BIC"), {"Its number"}, number_column("Value"),
-               number_column("95 % interval"), {"Plausible"}, {"Held-out improves"}}, {}};
-  for (const json& candidate : objects(round, "candidates")) {
-    if (flag(candidate, "refitted").value_or(false)) add_refit(table, candidate);
-  }
-  if (!table.rows.empty()) page.table(table);
-}
-
-void add_list(ReportPage& page, const char* introduction, const Words& items) {
-  if (items.empty()) return;
-  page.paragraph(introduction);
-  page.list(items);
-}
-
-/// What was ruled out and what could not be judged; `told` of earlier rounds is not said again.
-void add_reasons(ReportPage& page, const json& round, Words& told) {
-  Words implausible, unseen;
-  for (const json& candidate : objects(round, "candidates")) {
-    const std::string why = text(candidate, "why_implausible");
-    if (!why.empty()) implausible.push_back(fmt::format("{}: {}", text(candidate, "effect"), why));
-    if (observable(candidate)) continue;
-    unseen.push_back(fmt::format("{} ({}): {}", text(candidate, "effect"), text(candidate, "meaning"), text(candidate, "why_unobservable", "no reason given")));
-    if (std::ranges::find(told, unseen.back()) != told.end()) unseen.pop_back();
-  }
-  add_list(page, "Not plausible, a value like this makes no physical sense:", implausible);
-  add_list(page, told.empty() ? "These data cannot show, whether present or not:" : "Beside those above these data cannot show:", unseen);
-  told.insert(told.end(), unseen.begin(), unseen.end());
-}
-
-/// Members of a class that are no candidates of its round are in the model already.
-void add_classes(ReportPage& page, const json& round) {
-  Words candidates;
-  for (const json& candidate : objects(round, "candidates")) candidates.push_back(text(candidate, "effect"));
-  Words items;
-  for (const Words& members : text_lists(round, "classes")) {
-    Words fitted = members;
-    std::erase_if(fitted, [&](const std::string& name) { return std::ranges::find(candidates, name) != candidates.end(); });
-    if (members.size() > 1) items.push_back(joined(members) + (fitted.empty() ? "" : fmt::format("; of these the model has {} already", joined(fitted))));
-  }
-  add_list(page, "These data cannot tell apart, since the curves change in the same way:", items);
-}
-
-void add_rounds(ReportPage& page, const json& result) {
-  const json& rounds = objects(result, "rounds");
-  if (rounds.empty()) return;
-  page.heading("What could be missing");
-  page.paragraph("Every effect of the catalogue is asked in turn. Where: the part of the test in which it sits. Score z: by how many standard deviations its "
-                 "pattern stands out of the noise; 0 when the residual points the other way. p: how often noise alone would reach such a score, corrected by "
-                 "Holm's rule for asking so many effects at once. Smallest size: what these readings would reveal nine times in ten.");
-  page.paragraph("BIC, the Bayesian information criterion, is the misfit plus a price for every number fitted: an effect worth its price lowers it.");
-  int count = 0;
-  Words told;
-  for (const json& round : rounds) {
-    page.subheading(fmt::format("Round {}", ++count));
-    const std::string added = text(round, "added");
-    const std::string reason = text(round, "reason");
-    page.paragraph((added.empty() ? "Nothing added" : "Added: " + added) + (reason.empty() ? "" : "; " + reason) + ".");
-    add_scores(page, round);
-    add_refits(page, round);
-    add_reasons(page, round, told);
-    add_classes(page, round);
-  }
-  const json& partial = object(result, "partial");
-  const Words taken_out = texts(partial, "effects");
-  if (taken_out.empty()) return;
-  page.paragraph(fmt::format("Taken out of the model again, for the reason in the verdict: {}. With them the error would be {} N rms.", joined(taken_out), measured(number(partial, "rmse_N"))));
-}
-
 void add_parameters(ReportPage& page, const json& result) {
   const json& base = object(object(result, "base"), "parameters");
   const json& final = object(object(result, "final"), "parameters");
@@ -548,6 +356,20 @@ void add_functions(ReportPage& page, const json& result) {
   page.line_plot(function_plot(functions.front()));
 }
 
+void add_alternatives(ReportPage& page, const json& result) {
+  const json& alternatives = objects(result, "alternatives");
+  if (alternatives.empty()) return;
+  page.heading("Causes outside the catalogue that would do as well");
+  page.paragraph("A free function in another part of the test, found in some series, explains the others too. These readings do not speak against it; "
+                 "the effect above is the simpler answer.");
+  Table table{"", {{"Channel"}, {"What it would do"}, {"As a function of"}, {"Shape"}, number_column("Carried over")}, {}};
+  for (const json& f : alternatives) {
+    table.rows.push_back({text(f, "channel", absent), text(f, "effect", absent), text(f, "argument", absent), text(f, "shape", absent),
+                          percent(number(f, "carried_over"))});
+  }
+  page.table(table);
+}
+
 void add_next(ReportPage& page, const json& result) {
   const json& next = object(result, "next_experiment");
   const std::string what = text(next, "what");
@@ -590,6 +412,7 @@ std::string trace_report_html(const json& result) {
   add_rounds(page, result);
   add_parameters(page, result);
   add_functions(page, result);
+  add_alternatives(page, result);
   add_next(page, result);
   page.footer(small_print(result));
   return page.html();

@@ -8,10 +8,12 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <mutex>
 
@@ -29,8 +31,11 @@ struct Outcome {
   bool right = false;       // the class holds the effect (nothing, where nothing is inside); see judge()
   bool alarm = false;       // an effect was selected
   bool channel = false;     // of an effect that is in no catalogue
+  bool alternative = false; // such an effect's channel is named beside the effect that was selected
   int covered = 0;          // base numbers within their intervals, of two
+  std::vector<double> deviates;  // of the base numbers from the truth, in standard errors
   double chi2_dof = 0.0;
+  double left_out = 0.0;    // error of series predicted from the others, over the noise
   std::string answer;
   double class_size = 0.0;
   double seconds = 0.0;
@@ -60,22 +65,32 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   const bool outside = set.effect == "damage" || set.effect == "drift";
   if (outside) {
     o.right = t.selected.empty() && !t.explained;
-    o.channel = o.right && t.channel == (set.effect == "damage" ? "wire" : "sensor");
+    const std::string where = set.effect == "damage" ? "wire" : "sensor";
+    o.channel = o.right && t.channel == where;
+    for (const identification::ChannelFunction& f : t.alternatives) o.alternative = o.alternative || to_string(f.channel) == where;
   }
   o.answer = t.selected.empty() ? (t.explained ? "nothing" : "unexplained:" + t.channel) : fmt::format("{}", fmt::join(t.selected, "+"));
+  if (t.left_out_rmse) o.left_out = t.left_out_rmse->second / t.noise.sigma.front();
   for (const identification::FittedNumber& n : t.final.numbers) {
     const double truth = n.key == "wire.bending_stiffness_Nm2" ? set.bending_stiffness
                          : n.key == "wire.axial_stiffness_N"   ? set.axial_stiffness
                                                                : std::nan("");
     if (n.lower && n.upper && *n.lower <= truth && truth <= *n.upper) ++o.covered;
+    if (n.standard_error && std::isfinite(truth)) o.deviates.push_back((n.value - truth) / *n.standard_error);
   }
   return o;
 }
 
+/// Counts of one size.
+struct Totals {
+  double inside = 0, right = 0, class_size = 0, numbers = 0, covered = 0, at_noise = 0, left_out = 0;
+  double outside = 0, silent = 0, channel = 0, beside = 0;
+};
+
 /// Counts over the sets that are finished.
 nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome>& outcomes) {
   nlohmann::json result{{"schema", "snare-blind/1"}, {"matrix", nlohmann::json::object()}, {"not_reached", nlohmann::json::object()}};
-  std::map<double, std::array<double, 7>> totals;  // n, right inside, n outside, silent, channel, covered, class
+  std::map<double, Totals> totals;
   double quiet = 0.0, nothing = 0.0, seconds = 0.0, finished = 0.0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
@@ -97,17 +112,24 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       quiet += o.alarm ? 0.0 : 1.0;
       continue;
     }
-    std::array<double, 7>& t = totals[c.size];
+    Totals& t = totals[c.size];
     if (c.effect == "damage" || c.effect == "drift") {
-      t[2] += 1.0;
-      t[3] += o.alarm ? 0.0 : 1.0;
-      t[4] += o.channel ? 1.0 : 0.0;
-    } else {
-      t[0] += 1.0;
-      t[1] += o.right ? 1.0 : 0.0;
-      t[5] += o.covered / 2.0;
-      t[6] += o.class_size;
+      ++t.outside;
+      t.silent += o.alarm ? 0 : 1;
+      t.channel += o.channel ? 1 : 0;
+      t.beside += o.channel || (o.alarm && o.alternative) ? 1 : 0;
+      continue;
     }
+    ++t.inside;
+    t.right += o.right ? 1 : 0;
+    t.class_size += o.class_size;
+    // A gain is EI and EA by another name: they are told up to it.
+    if (c.effect != "force_gain") {
+      t.numbers += 2;
+      t.covered += o.covered;
+    }
+    t.at_noise += o.chi2_dof > 0.8 && o.chi2_dof < 1.2 ? 1 : 0;
+    t.left_out += o.left_out;
   }
   result["sets_finished"] = finished;
   result["sets_asked"] = cases.size();
@@ -115,14 +137,17 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
   result["mean_seconds_a_trace"] = seconds / std::max(1.0, finished);
   for (const auto& [size, t] : totals) {
     nlohmann::json& s = result["sizes"][fmt::format("{:g}", size)];
-    if (t[0] > 0.0) {
-      s["right_class"] = t[1] / t[0];
-      s["base_numbers_covered"] = t[5] / t[0];
-      s["mean_class_size"] = t[6] / t[0];
+    if (t.inside > 0) {
+      s["right_class"] = t.right / t.inside;
+      s["mean_class_size"] = t.class_size / t.inside;
+      s["chi2_dof_within_0.8_and_1.2"] = t.at_noise / t.inside;
+      s["mean_error_of_left_out_series_over_noise"] = t.left_out / t.inside;
+      if (t.numbers > 0) s["base_numbers_covered"] = t.covered / t.numbers;
     }
-    if (t[2] > 0.0) {
-      s["outside_without_false_attribution"] = t[3] / t[2];
-      s["outside_right_channel"] = t[4] / t[2];
+    if (t.outside > 0) {
+      s["outside_without_false_attribution"] = t.silent / t.outside;
+      s["outside_right_channel"] = t.channel / t.outside;
+      s["outside_right_channel_alone_or_beside_an_effect"] = t.beside / t.outside;
     }
   }
   return result;
@@ -182,8 +207,8 @@ int main(int argc, char** argv) {
     const std::lock_guard lock(mutex);
     o.finished = true;
     outcomes[static_cast<std::size_t>(i)] = o;
-    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
-               c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, o.covered, o.seconds);
+    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
+               c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
     if (!out.empty()) numerics::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }

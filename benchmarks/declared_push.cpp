@@ -2,6 +2,7 @@
 
 #include "coupling/contact_switch.hpp"
 #include "coupling/push_setup.hpp"
+#include "validation/declared_wire.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -30,14 +31,7 @@ double shape_amplitude(double ratio) {
 }  // namespace
 
 coupling::PushTest declared_push() {
-  coupling::PushTest test;
-  test.wire.diameter = 1.5 * mm;
-  test.wire.length = 180.0 * mm;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
-  test.mount.span = 175.0 * mm;
-  test.contact_position = 87.5 * mm;
+  coupling::PushTest test = validation::declared_wire(87.5 * mm, 0.0);
   for (int i = 1; i <= 20; ++i) test.travel.push_back(1.5 * mm * i / 20);
   return test;
 }

@@ -15,51 +15,6 @@ namespace snare::identification {
 
 namespace {
 
-constexpr int stations = 12;
-
-/// A channel's columns: whitened change of the forces for a unit of the function at each station.
-struct Channelled {
-  ChannelFunction description;
-  Eigen::MatrixXd columns;
-  double unit = 1.0;  // SI of the values in their printed unit
-};
-
-/// Hat functions over evenly spread stations at one argument.
-void add_hats(double u, double weight, Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index row) {
-  const double at = std::clamp(u, 0.0, 1.0) * (stations - 1);
-  const auto j = std::min(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(stations - 2));
-  const double part = at - static_cast<double>(j);
-  out(row, j) += weight * (1.0 - part);
-  out(row, j + 1) += weight * part;
-}
-
-/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the argument.
-Channelled function_of(const Data& data, const std::function<double(std::size_t, Eigen::Index)>& argument,
-                       const std::function<double(std::size_t, Eigen::Index)>& weight, double argument_unit) {
-  double low = std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::lowest();
-  for (const std::size_t k : data.series) {
-    for (Eigen::Index i = 0; i < data.measured[k].size(); ++i) {
-      low = std::min(low, argument(k, i));
-      high = std::max(high, argument(k, i));
-    }
-  }
-  Channelled result;
-  result.columns.resize(data.rows(), stations);
-  Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
-    const Eigen::Index n = data.measured[k].size();
-    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, stations);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), own, i);
-    }
-    result.columns.middleRows(row, n) = data.noise.whiten(k, own);
-    row += n;
-  }
-  for (int s = 0; s < stations; ++s) result.description.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
-  return result;
-}
-
 /// Ridge regression on second differences beside free columns.
 struct Smooth {
   Eigen::VectorXd values;      // of the function
@@ -144,102 +99,76 @@ std::string describe(const ChannelFunction& f) {
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
 
+/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
+struct Fold {
+  std::vector<Eigen::Index> in, out;
+  Eigen::MatrixXd free_in, free_out;
+  Eigen::VectorXd residual_in, residual_out;
+  double excess = 0.0;  // of chi2 in the rows left out, predicted without any function
+};
+
+std::vector<Fold> folds_of(const Model& model, const Data& data, const Fit& current) {
+  const Eigen::VectorXd& r = current.residual;
+  std::vector<Fold> result;
+  for (std::vector<Eigen::Index>& out : left_out_rows(model, data)) {
+    Fold fold;
+    fold.out = std::move(out);
+    std::vector<bool> goes(static_cast<std::size_t>(r.size()), false);
+    for (const Eigen::Index i : fold.out) goes[static_cast<std::size_t>(i)] = true;
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      if (!goes[static_cast<std::size_t>(i)]) fold.in.push_back(i);
+    }
+    fold.free_in = current.jacobian(fold.in, Eigen::all);
+    fold.free_out = current.jacobian(fold.out, Eigen::all);
+    fold.residual_in = r(fold.in);
+    fold.residual_out = r(fold.out);
+    const Smooth plain = solve(fold.free_in, Eigen::MatrixXd::Zero(fold.free_in.rows(), 1), fold.residual_in, 1.0);
+    fold.excess = (fold.residual_out - fold.free_out * plain.free).squaredNorm() - static_cast<double>(fold.out.size());
+    result.push_back(std::move(fold));
+  }
+  return result;
+}
+
+/// Share of the excess in the rows left out that a function found in the others explains.
+double carried_over(const std::vector<Fold>& folds, const Eigen::MatrixXd& columns, double weight) {
+  double without = 0.0;
+  double with = 0.0;
+  for (const Fold& fold : folds) {
+    const Smooth s = solve(fold.free_in, columns(fold.in, Eigen::all), fold.residual_in, weight);
+    const Eigen::VectorXd left = fold.residual_out - fold.free_out * s.free - columns(fold.out, Eigen::all) * s.values;
+    with += left.squaredNorm() - static_cast<double>(fold.out.size());
+    without += fold.excess;
+  }
+  return without > 0.0 ? 1.0 - with / without : 0.0;
+}
+
 }  // namespace
 
 std::vector<ChannelFunction> attribute(const Model& model, const Data& data, const Fit& current) {
-  std::vector<Channelled> channels;
-  const auto displacement = [&](std::size_t k, Eigen::Index i) { return measured_displacement(model.series()[k])[static_cast<std::size_t>(i)]; };
-  const auto computed = [&](std::size_t k, Eigen::Index i) { return current.evaluation.force[k][i]; };
-  const auto add = [&](Channelled c, Channel channel, const std::string& argument, const std::string& effect, double unit) {
-    c.description.channel = channel;
-    c.description.argument = argument;
-    c.description.effect = effect;
-    c.unit = unit;
-    channels.push_back(std::move(c));
-  };
-  const auto one = [](std::size_t, Eigen::Index) { return 1.0; };
-
-  add(function_of(data, displacement, one, 1e-3), Channel::sensor, "recorded travel [mm]", "adds to the recorded force [N]", 1.0);
-  bool timed = true;
-  for (const std::size_t k : data.series) timed = timed && model.series()[k].readings && !model.series()[k].readings->time.empty();
-  const auto time = [&](std::size_t k, Eigen::Index i) {
-    const auto r = static_cast<std::size_t>(i);
-    if (!timed) return static_cast<double>(i);
-    return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
-  };
-  add(function_of(data, time, one, 1.0), Channel::sensor, timed ? "time since the series began [s]" : "number of the reading",
-      "adds to the recorded force [N]", 1.0);
-
-  const Parameter& span = parameter("mount.span_mm");
-  const Parameter& zero = parameter("reading.displacement_offset_mm");
-  const bool supports = model.series().front().test.mount.kind == wire::MountKind::supports;
-  const Evaluation smooth = model.evaluate(current.settings, {&span, &zero});
-  if (smooth.complete) {
-    if (!supports) {
-      const auto tension = [&](std::size_t k, Eigen::Index i) { return current.evaluation.predictions[k].tension[static_cast<std::size_t>(i)]; };
-      add(function_of(data, tension, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0), Channel::mount,
-          "tension at the mount [N]", "moves the mounts apart [mm]", 1e-3);
-    }
-    add(function_of(data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0), Channel::pusher,
-        "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3);
-  }
-  const auto sense = [&](std::size_t k, Eigen::Index i) {
-    const Eigen::Index last = data.measured[k].size() - 1;
-    const double move = displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
-    return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
-  };
-  add(function_of(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
-      "resists the pusher's motion, either way [N]", 1.0);
-  if (!supports) {
-    const Evaluation windows = model.evaluate_windows(current.settings, stations);
-    if (windows.complete) {
-      Channelled c;
-      c.columns = data.jacobian(windows);
-      const double length = model.series().front().test.wire.length;
-      for (int s = 0; s < stations; ++s) c.description.at.push_back(1e3 * length * s / (stations - 1));
-      add(std::move(c), Channel::wire, "place along the wire from the left mount [mm]",
-          "changes the bending stiffness there, as a share", 1.0);
-    }
-  }
-
   const Eigen::VectorXd& r = current.residual;
   const double excess = r.squaredNorm() - current.dof();
-  const auto groups = left_out_rows(model, data);
+  const std::vector<Fold> folds = folds_of(model, data, current);
   std::vector<ChannelFunction> result;
-  for (Channelled& channel : channels) {
+  for (const ChannelColumns& channel : channel_columns(model, data, current)) {
     double best = std::numeric_limits<double>::lowest();
     double best_weight = 1.0;
     for (const double weight : {1e-4, 1e-2, 1.0, 1e2}) {
-      double without = 0.0;
-      double with = 0.0;
-      for (const std::vector<Eigen::Index>& out : groups) {
-        std::vector<bool> left_out(static_cast<std::size_t>(r.size()), false);
-        for (const Eigen::Index i : out) left_out[static_cast<std::size_t>(i)] = true;
-        std::vector<Eigen::Index> in;
-        for (Eigen::Index i = 0; i < r.size(); ++i) {
-          if (!left_out[static_cast<std::size_t>(i)]) in.push_back(i);
-        }
-        const Eigen::MatrixXd none(static_cast<Eigen::Index>(in.size()), 0);
-        const Eigen::MatrixXd free = current.jacobian(in, Eigen::all);
-        const Smooth s = solve(free, channel.columns(in, Eigen::all), r(in), weight);
-        const Smooth plain = solve(free, Eigen::MatrixXd::Zero(free.rows(), 1), r(in), 1.0);
-        const Eigen::VectorXd here = r(out) - current.jacobian(out, Eigen::all) * s.free - channel.columns(out, Eigen::all) * s.values;
-        const Eigen::VectorXd before = r(out) - current.jacobian(out, Eigen::all) * plain.free;
-        with += here.squaredNorm() - static_cast<double>(out.size());
-        without += before.squaredNorm() - static_cast<double>(out.size());
-      }
-      const double share = without > 0.0 ? 1.0 - with / without : 0.0;
+      const double share = carried_over(folds, channel.columns, weight);
       if (share > best) {
         best = share;
         best_weight = weight;
       }
     }
-    ChannelFunction f = channel.description;
+    ChannelFunction f;
+    f.channel = channel.channel;
+    f.argument = channel.argument;
+    f.effect = channel.effect;
+    f.at = channel.at;
     const Smooth s = solve(current.jacobian, channel.columns, r, best_weight);
     const double left = (r - current.jacobian * s.free - channel.columns * s.values).squaredNorm();
     f.carried_over = std::min(best, 1.0);
     f.explained = excess > 0.0 ? std::min(1.0, 1.0 - (left - current.dof()) / excess) : 0.0;
-    f.chi2_dof = left / std::max(1.0, current.dof() - stations / 2.0);
+    f.chi2_dof = left / std::max(1.0, current.dof() - ChannelColumns::stations / 2.0);
     for (Eigen::Index k = 0; k < s.values.size(); ++k) {
       f.value.push_back(s.values[k] / channel.unit);
       f.deviation.push_back(std::sqrt(std::max(s.covariance(k, k), 0.0)) / channel.unit);
@@ -248,7 +177,8 @@ std::vector<ChannelFunction> attribute(const Model& model, const Data& data, con
     f.accepted = f.carried_over > 0.7;
     result.push_back(std::move(f));
   }
-  std::stable_sort(result.begin(), result.end(), [](const ChannelFunction& a, const ChannelFunction& b) { return a.carried_over > b.carried_over; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const ChannelFunction& a, const ChannelFunction& b) { return a.carried_over > b.carried_over; });
   return result;
 }
 

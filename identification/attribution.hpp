@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/effect.hpp"
+#include "identification/channels.hpp"
 
 #include <string>
 #include <vector>

@@ -37,4 +37,11 @@ const Effect* find_effect(std::string_view name) {
   return at == all.end() ? nullptr : &*at;
 }
 
+std::string needs_mounts(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.test.mount.kind != wire::MountKind::supports) return "";
+  }
+  return "a wire that rests on supports is not held by mounts";
+}
+
 }  // namespace snare::identification

@@ -52,6 +52,9 @@ struct Effect {
 /// Null when there is none of this name.
 [[nodiscard]] const Effect* find_effect(std::string_view name);
 
+/// For Effect::unobservable: a wire that rests on supports is not held by mounts.
+[[nodiscard]] std::string needs_mounts(const std::vector<Series>& series);
+
 // One a file.
 [[nodiscard]] Effect bending_stiffness_effect();
 [[nodiscard]] Effect axial_stiffness_effect();

@@ -2,18 +2,6 @@
 
 namespace snare::identification {
 
-namespace {
-
-std::string needs_mounts(const std::vector<Series>& series) {
-  for (const Series& s : series) {
-    if (s.test.mount.kind != wire::MountKind::supports) return "";
-  }
-  return "a wire that rests on supports is not held by mounts";
-}
-
-}  // namespace
-
-
 /// Both mounts give along the chord like springs.
 Effect mount_axial_compliance_effect() {
   Effect e;

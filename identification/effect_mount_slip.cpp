@@ -6,17 +6,6 @@ namespace snare::identification {
 
 namespace {
 
-std::string needs_mounts(const std::vector<Series>& series) {
-  for (const Series& s : series) {
-    if (s.test.mount.kind != wire::MountKind::supports) return "";
-  }
-  return "a wire that rests on supports is not held by mounts";
-}
-
-}  // namespace
-
-namespace {
-
 // The tension at which slip begins decides everything: from just above what the buckled wire pushes, which the mount
 // must have held, to the highest tension of the test.
 std::vector<std::vector<double>> trial_tensions(const TrialContext& context) {

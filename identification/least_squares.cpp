@@ -11,8 +11,8 @@ namespace snare::identification {
 
 namespace {
 
-/// One whitened residual vector as a function of scaled coordinates. The last evaluation is kept: Ceres asks for the
-/// derivatives where it has just asked for the values.
+/// One whitened residual vector as a function of scaled coordinates. The last evaluation is kept, since Ceres asks for
+/// the derivatives where it has just asked for the values, and the best one, which is where it ends.
 class Residuals final : public ceres::CostFunction {
  public:
   Residuals(const Model& model, const Data& data, std::vector<Setting> settings, std::size_t free, Eigen::VectorXd scale)
@@ -25,30 +25,49 @@ class Residuals final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Map<const Eigen::VectorXd> at(parameters[0], static_cast<Eigen::Index>(free_));
     const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
-    if (!(kept_at_.size() == at.size() && kept_at_ == at) || (derivatives && kept_.by.empty())) {
+    if (best_.is_at(at) && !last_.is_at(at)) last_ = best_;
+    if (!last_.is_at(at) || (derivatives && last_.evaluation.by.empty())) {
       std::vector<Setting> settings = settings_;
       for (std::size_t k = 0; k < free_; ++k) {
         const auto i = static_cast<Eigen::Index>(k);
         settings[k].coordinate = at[i] * scale_[i];
       }
-      kept_ = model_.evaluate(settings, derivatives || cheap_ ? by_ : std::vector<const Parameter*>{});
-      kept_at_ = at;
+      keep(at, model_.evaluate(settings, derivatives || cheap_ ? by_ : std::vector<const Parameter*>{}));
     }
-    if (!kept_.complete) {
-      kept_at_.resize(0);
+    if (!last_.evaluation.complete) {
+      last_.at.resize(0);
       return false;
     }
-    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = -data_.residual(kept_);
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = -data_.residual(last_.evaluation);
     if (derivatives) {
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
           jacobians[0], num_residuals(), static_cast<Eigen::Index>(free_)) =
-          data_.jacobian(kept_) * scale_.asDiagonal();
+          data_.jacobian(last_.evaluation) * scale_.asDiagonal();
     }
     return true;
   }
   void derivatives_are_dear() { cheap_ = false; }
 
+  /// An evaluation made elsewhere.
+  void keep(const Eigen::VectorXd& at, Evaluation evaluation) const {
+    last_ = {at, std::move(evaluation), std::numeric_limits<double>::max()};
+    if (!last_.evaluation.complete) return;
+    last_.chi2 = data_.residual(last_.evaluation).squaredNorm();
+    if (last_.chi2 < best_.chi2 || best_.is_at(at)) best_ = last_;
+  }
+  /// The evaluation there with its derivatives, if it is known; else null.
+  [[nodiscard]] const Evaluation* known(const Eigen::VectorXd& at) const {
+    return best_.is_at(at) && !best_.evaluation.by.empty() ? &best_.evaluation : nullptr;
+  }
+
  private:
+  struct Kept {
+    Eigen::VectorXd at;
+    Evaluation evaluation;
+    double chi2 = std::numeric_limits<double>::max();
+    [[nodiscard]] bool is_at(const Eigen::VectorXd& other) const { return at.size() == other.size() && at == other; }
+  };
+
   const Model& model_;
   const Data& data_;
   std::vector<Setting> settings_;
@@ -56,20 +75,29 @@ class Residuals final : public ceres::CostFunction {
   Eigen::VectorXd scale_;
   std::vector<const Parameter*> by_;
   bool cheap_ = true;
-  mutable Evaluation kept_;
-  mutable Eigen::VectorXd kept_at_;
+  mutable Kept last_;
+  mutable Kept best_;
 };
 
 class Observer final : public ceres::IterationCallback {
  public:
   explicit Observer(const FitOptions& options) : options_(options) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
-    if (!options_.progress || options_.progress(s.iteration, 2.0 * s.cost)) return ceres::SOLVER_CONTINUE;
-    return ceres::SOLVER_ABORT;
+    if (options_.progress && !options_.progress(s.iteration, 2.0 * s.cost)) return ceres::SOLVER_ABORT;
+    // A refused step reports its own cost: the fit stands where it stood.
+    chi2_.push_back(chi2_.empty() ? 2.0 * s.cost : std::min(2.0 * s.cost, chi2_.back()));
+    const std::size_t n = chi2_.size();
+    if (!(options_.rival > 0.0) || n <= pace) return ceres::SOLVER_CONTINUE;
+    const double fall = (chi2_[n - 1 - pace] - chi2_[n - 1]) / pace;
+    const double left = std::min(patience, options_.max_iterations - s.iteration);
+    return chi2_.back() - left * fall > options_.rival ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  static constexpr std::size_t pace = 3;  // iterations over which the pace is taken: some steps are refused
+  static constexpr int patience = 10;     // iterations for which a pace can last: it slackens
   const FitOptions& options_;
+  std::vector<double> chi2_;
 };
 
 }  // namespace
@@ -105,6 +133,14 @@ Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
 
 double Fit::bic() const {
   return chi2 + static_cast<double>(free) * std::log(static_cast<double>(std::max<Eigen::Index>(residual.size(), 1)));
+}
+
+std::vector<Setting> Fit::fitted() const {
+  return {settings.begin(), settings.begin() + static_cast<std::ptrdiff_t>(free)};
+}
+
+std::vector<Setting> Fit::fixed() const {
+  return {settings.begin() + static_cast<std::ptrdiff_t>(free), settings.end()};
 }
 
 std::vector<const Parameter*> Fit::parameters() const {
@@ -165,14 +201,17 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
   problem.AddResidualBlock(&residuals, nullptr, unknown.data());
+  bool moved = false;
   for (int k = 0; k < static_cast<int>(n); ++k) {
     const Parameter& p = *result.settings[static_cast<std::size_t>(k)].parameter;
     const double lower = model.lower(p) / scale[k];
     const double upper = model.upper(p) / scale[k];
+    moved = moved || unknown[k] < lower || unknown[k] > upper;
     unknown[k] = std::clamp(unknown[k], lower, upper);
     problem.SetParameterLowerBound(unknown.data(), k, lower);
     problem.SetParameterUpperBound(unknown.data(), k, upper);
   }
+  if (!moved) residuals.keep(unknown, result.evaluation);
   ceres::Solver::Options solve;
   solve.linear_solver_type = ceres::DENSE_QR;
   solve.logging_type = ceres::SILENT;
@@ -197,7 +236,8 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   for (std::size_t k = 0; k < result.free; ++k) {
     result.settings[k].coordinate = unknown[static_cast<Eigen::Index>(k)] * scale[static_cast<Eigen::Index>(k)];
   }
-  Evaluation at = model.evaluate(result.settings, result.parameters());
+  const Evaluation* known = residuals.known(unknown);
+  Evaluation at = known != nullptr ? *known : model.evaluate(result.settings, result.parameters());
   if (!at.complete) {
     result.report.termination = numerics::Termination::step_too_small;
     result.report.message = at.message;
@@ -218,7 +258,7 @@ ProfileInterval profile_interval(const Model& model, const Data& data, const Fit
   for (std::size_t k = 0; k < optimum.free; ++k) {
     if (k != which) others.push_back(optimum.settings[k]);
   }
-  const std::vector<Setting> fixed(optimum.settings.begin() + static_cast<std::ptrdiff_t>(optimum.free), optimum.settings.end());
+  const std::vector<Setting> fixed = optimum.fixed();
   FitOptions options;
   options.max_iterations = 15;
   for (const double sense : {-1.0, 1.0}) {

@@ -35,13 +35,16 @@ struct Fit {
   [[nodiscard]] double dof() const { return static_cast<double>(residual.size()) - static_cast<double>(free); }
   /// Bayesian information criterion chi2 + k ln n.
   [[nodiscard]] double bic() const;
-  [[nodiscard]] std::vector<const Parameter*> parameters() const;
+  [[nodiscard]] std::vector<Setting> fitted() const;
+  [[nodiscard]] std::vector<Setting> fixed() const;
+  [[nodiscard]] std::vector<const Parameter*> parameters() const;  ///< of the fitted ones
 };
 
 struct FitOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;  ///< relative fall of chi2 below which the fit ends
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops the fit
+  double rival = 0.0;  ///< chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it
 };
 
 /// Weighted least squares by Ceres (Levenberg-Marquardt, bounds), from one start.      theory.md (I.1)

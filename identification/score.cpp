@@ -180,11 +180,19 @@ std::vector<Score> score_effects(const Model& model, const Data& data, const Fit
     score.z = std::max(trials.front().z, 0.0);
     score.direction = trials.front().direction;
     score.p = std::min(1.0, static_cast<double>(trials.size()) * normal_tail(score.z));
+    // From the likeliest trials, their first number brought to the size seen where it can be (a coefficient, a stiffness);
+    // a threshold stays as it was tried, and what it then leaves is |r - change|^2 = |r|^2 - 2 size z + size^2.
+    const bool scalable = first.motion == Motion::shift;
+    if (!scalable) {
+      std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+        return a.size * (2.0 * a.z - a.size) > b.size * (2.0 * b.z - b.size);
+      });
+    }
     for (const Trial& trial : trials) {
-      if (score.starts.size() == 2 || trial.z < 0.7 * score.z) break;
+      if (score.starts.size() == 2) break;
+      if (scalable && trial.z < 0.7 * score.z) break;
       std::vector<double> start = trial.coordinates;
-      // The first number of effects that grow with it (a coefficient, a stiffness) is brought to the size seen.
-      if (first.motion == Motion::shift) {
+      if (scalable) {
         start.front() = std::clamp(start.front() * std::clamp(trial.z / trial.size, 0.05, 5.0), model.lower(first), model.upper(first));
       }
       score.starts.push_back(start);

@@ -24,7 +24,7 @@ struct Score {
 };
 
 struct ScoreOptions {
-  double significance = 0.002;  ///< after Holm
+  double significance = 0.02;  ///< after Holm
 };
 
 /// Score (Lagrange multiplier) tests of every effect of the catalogue that is not among the fitted numbers:

@@ -1,6 +1,7 @@
 #include "identification/statistics.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
@@ -14,6 +15,29 @@ namespace bm = boost::math;
 double chi_square_tail(double x, double dof) {
   if (!(x > 0.0)) return 1.0;
   return bm::cdf(bm::complement(bm::chi_squared(dof), x));
+}
+
+double chi_square_mixture_tail(double x, const Eigen::VectorXd& weights) {
+  const Eigen::ArrayXd w = weights.array().max(0.0);
+  const double c1 = w.sum();
+  const double c2 = w.square().sum();
+  const double c3 = w.cube().sum();
+  const double c4 = w.square().square().sum();
+  if (!(c2 > 0.0)) return 1.0;
+  const double s1 = c3 / std::pow(c2, 1.5);
+  const double s2 = c4 / (c2 * c2);
+  double a = 1.0 / s1;
+  double noncentrality = 0.0;
+  double dof = a * a;
+  if (s1 * s1 > s2) {
+    a = 1.0 / (s1 - std::sqrt(s1 * s1 - s2));
+    noncentrality = s1 * a * a * a - a * a;
+    dof = a * a - 2.0 * noncentrality;
+  }
+  const double at = (x - c1) / std::sqrt(2.0 * c2) * std::sqrt(2.0) * a + dof + noncentrality;
+  if (!(at > 0.0)) return 1.0;
+  if (noncentrality <= 0.0) return bm::cdf(bm::complement(bm::chi_squared(dof), at));
+  return bm::cdf(bm::complement(bm::non_central_chi_squared(dof, noncentrality), at));
 }
 
 double normal_tail(double z) { return bm::cdf(bm::complement(bm::normal(), z)); }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,8 +20,10 @@ using numerics::InputError;
 
 constexpr double collinear = 0.95;      // |cos| above which effects are one class
 constexpr double indistinct_bic = 6.0;  // difference of BIC below which the likelihood does not decide (Kass and Raftery 1995)
+constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;  // gain of BIC that an effect must bring
-constexpr double one_cause = 0.9;       // share of an excess that a single function must carry over to rival several effects
+constexpr double one_cause = 0.9;       // share of an excess that an unknown function must carry over to rival effects
+constexpr double rest_of_rival = 0.01;  // P below which an effect has left something in the direction of its rival
 constexpr std::size_t most_refits = 6;
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this share of the
 // best gain cannot lead and are not refitted.
@@ -69,11 +72,13 @@ class Tracer {
   void settle_noise(Fit& base);
   [[nodiscard]] ModelError error_of(const Model& all, const Fit& fit, std::vector<Prediction>& predictions) const;
   [[nodiscard]] Round look(const Fit& current, Fit& better);
-  void refit(const Fit& current, Candidate& candidate, std::vector<Fit>& fits) const;
-  void judge(const Fit& current, Candidate& candidate, const Fit& refitted) const;
+  [[nodiscard]] Fit refit(const Fit& current, const Score& score, double rival) const;
+  void judge(const Fit& current, std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) const;
   void classify(const Fit& current, Round& round, const std::vector<Fit>& fits) const;
   [[nodiscard]] std::optional<double> heldout_rmse(const Fit& fit) const;
   [[nodiscard]] double left_out_rmse(const Fit& fit) const;
+  [[nodiscard]] std::vector<ChannelFunction> rivals_outside(const Fit& base, const std::string& first_effect);
+  void look_outside(const Fit& base, const Fit& current, const std::vector<std::string>& added);
   void propose();
   [[nodiscard]] bool go_on(const std::string& stage);
   void clock(const std::string& what);
@@ -86,6 +91,7 @@ class Tracer {
   std::vector<Eigen::VectorXd> heldout_measured_;
   Data data_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::vector<ChannelFunction> functions_;    // of the base model's residual, once asked for
   std::vector<std::vector<Fit>> rivals_;      // of each round: refits of the class that was added, best first
   std::vector<std::vector<std::string>> rival_names_;
 };
@@ -202,28 +208,30 @@ ModelError Tracer::error_of(const Model& all, const Fit& fit, std::vector<Predic
   return error;
 }
 
-void Tracer::refit(const Fit& current, Candidate& candidate, std::vector<Fit>& fits) const {
-  fits.emplace_back();
-  Fit& best = fits.back();
+Fit Tracer::refit(const Fit& current, const Score& score, double rival) const {
+  Fit best;
   best.chi2 = std::numeric_limits<double>::max();
   best.free = current.free;
   best.report.termination = numerics::Termination::step_too_small;
-  for (const std::vector<double>& coordinates : candidate.score.starts) {
-    std::vector<Setting> start(current.settings.begin(), current.settings.begin() + static_cast<std::ptrdiff_t>(current.free));
+  for (const std::vector<double>& coordinates : score.starts) {
+    std::vector<Setting> start = current.fitted();
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      const EffectNumber& number = candidate.score.effect->numbers[k];
+      const EffectNumber& number = score.effect->numbers[k];
       if (number.optional && coordinates[k] == 0.0) continue;
       start.push_back({&parameter(number.key), coordinates[k]});
     }
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
+    fitting.rival = rival;
     Fit one = fit(*model_, data_, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
   }
+  return best;
 }
 
-void Tracer::judge(const Fit& current, Candidate& candidate, const Fit& refitted) const {
+void Tracer::judge(const Fit& current, std::optional<double> heldout_before, Candidate& candidate,
+                   const Fit& refitted) const {
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
   double squares = 0.0;
@@ -251,11 +259,10 @@ void Tracer::judge(const Fit& current, Candidate& candidate, const Fit& refitted
     }
   }
   if (heldout_) {
-    const std::optional<double> before = heldout_rmse(current);
     const std::optional<double> after = heldout_rmse(refitted);
     // At the noise already it need not improve any more.
     const double sigma = data_.noise.mean_sigma(model_->series());
-    candidate.heldout_improves = before && after && (*after < *before || *after < 1.1 * sigma);
+    candidate.heldout_improves = heldout_before && after && (*after < *heldout_before || *after < 1.1 * sigma);
   }
 }
 
@@ -335,7 +342,7 @@ Round Tracer::look(const Fit& current, Fit& better) {
   Round round;
   const std::string number = fmt::format("round {}", result_.rounds.size() + 1);
   ScoreOptions scoring;
-  scoring.significance = options_.significance;
+  scoring.significance = result_.rounds.empty() ? options_.significance : options_.further_significance;
   std::vector<Score> scores = score_effects(*model_, data_, current, scoring);
   clock(number + ": scores");
   std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) {
@@ -349,6 +356,7 @@ Round Tracer::look(const Fit& current, Fit& better) {
   }
   // Refit the significant ones and what is nearly in their direction.
   std::vector<Fit> fits(round.candidates.size());
+  const std::optional<double> before = heldout_rmse(current);
   std::size_t refits = 0;
   double best_gain = 0.0;
   for (std::size_t i = 0; i < round.candidates.size() && refits < most_refits; ++i) {
@@ -356,16 +364,15 @@ Round Tracer::look(const Fit& current, Fit& better) {
     if (!c.score.unobservable.empty() || c.score.adjusted_p > near_significance) continue;
     if (refits > 0 && c.score.z * c.score.z < refit_share * best_gain - 10.0) continue;
     if (!go_on(number + ": refit with " + c.score.effect->name)) break;
-    std::vector<Fit> one;
-    refit(current, c, one);
-    fits[i] = std::move(one.front());
-    judge(current, c, fits[i]);
+    // What cannot come near the best so far is not followed to its own bottom.
+    fits[i] = refit(current, c.score, best_gain > 0.0 ? current.chi2 - best_gain + out_of_class_bic : 0.0);
+    judge(current, before, c, fits[i]);
     if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.chi2 - fits[i].chi2);
     ++refits;
   }
   clock(number + ": refits");
   const auto eligible = [&](const Candidate& c) {
-    return c.refitted && c.plausible && c.score.adjusted_p < options_.significance && c.delta_bic < -worthwhile_bic &&
+    return c.refitted && c.plausible && c.score.adjusted_p < scoring.significance && c.delta_bic < -worthwhile_bic &&
            c.heldout_improves.value_or(true);
   };
   // Eligible first, by BIC; then the other refitted ones; then by score as they stand.
@@ -394,8 +401,7 @@ Round Tracer::look(const Fit& current, Fit& better) {
                                first->score.adjusted_p, -first->delta_bic);
     better = ranked_fits.front();
     // To the bottom.
-    const std::vector<Setting> start(better.settings.begin(), better.settings.begin() + static_cast<std::ptrdiff_t>(better.free));
-    const Fit polished = fit(*model_, data_, start);
+    const Fit polished = fit(*model_, data_, better.fitted());
     if (polished.report.usable() && polished.chi2 <= better.chi2) better = polished;
     std::vector<Fit> rivals;
     std::vector<std::string> names;
@@ -415,11 +421,42 @@ Round Tracer::look(const Fit& current, Fit& better) {
     return round;
   }
   const bool any = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
-    return c.score.unobservable.empty() && c.score.adjusted_p < options_.significance;
+    return c.score.unobservable.empty() && c.score.adjusted_p < scoring.significance;
   });
   if (!any) round.reason = "no effect of the catalogue is significant";
   else round.reason = "the significant effects do not survive the refit (BIC, plausible values, held-out series)";
   return round;
+}
+
+// Unknown functions of one channel that explain what the base model leaves and carry over.
+std::vector<ChannelFunction> Tracer::rivals_outside(const Fit& base, const std::string& first_effect) {
+  if (functions_.empty()) functions_ = attribute(*model_, data_, base);
+  std::vector<ChannelFunction> rivals;
+  for (const ChannelFunction& f : functions_) {
+    // In the channel of the effect itself it is that effect in another dress.
+    if (f.carried_over > one_cause && f.channel != find_effect(first_effect)->channel) rivals.push_back(f);
+  }
+  return rivals;
+}
+
+// What the catalogue explains a cause that it does not have may explain as well: theory.md (I.8).
+void Tracer::look_outside(const Fit& base, const Fit& current, const std::vector<std::string>& added) {
+  std::vector<ChannelFunction> rivals = rivals_outside(base, added.front());
+  if (rivals.empty()) return;
+  // One cause that carries over is simpler than several effects together, and than an effect that leaves something of it.
+  bool simpler = added.size() > 1;
+  for (const ChannelColumns& c : channel_columns(*model_, data_, current)) {
+    const bool rival = std::any_of(rivals.begin(), rivals.end(), [&c](const ChannelFunction& f) {
+      return f.channel == c.channel && f.argument == c.argument;
+    });
+    simpler = simpler || (rival && channel_p(c, current) < rest_of_rival);
+  }
+  result_.rival_explanation = simpler;
+  if (simpler) {
+    result_.explained = false;
+  } else {
+    result_.alternatives = std::move(rivals);
+  }
 }
 
 void Tracer::propose() {
@@ -471,25 +508,14 @@ Trace Tracer::run() {
     classes.push_back(round.classes[round.candidates.front().class_index]);
     current = std::move(better);
     tests = test_residuals(data_, current);
+    // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
+    if (!tests.acceptable() && options_.attribute && !rivals_outside(base, added.front()).empty()) break;
   }
   result_.significant = !result_.base_tests.acceptable() || !added.empty();
   result_.explained = tests.acceptable();
-  // Something is left beside the first effect: a second one that was added, or one that is nearly significant.
-  bool more = added.size() > 1;
-  if (added.size() == 1 && result_.rounds.size() > 1) {
-    for (const Candidate& c : result_.rounds.back().candidates) {
-      more = more || (c.score.unobservable.empty() && c.score.adjusted_p < 0.5 * near_significance);
-    }
-  }
-  if (result_.explained && more && options_.attribute && go_on("one cause in place of several")) {
-    // Several effects at once, or one cause that the catalogue does not have? One that carries over is the simpler.
-    result_.functions = attribute(*model_, data_, base);
-    // In the channel of the effect itself it is that effect in another dress.
-    const bool one = !result_.functions.empty() && result_.functions.front().carried_over > one_cause &&
-                     result_.functions.front().channel != find_effect(added.front())->channel;
-    if (one) result_.explained = false;
-    else result_.functions.clear();
-    result_.rival_explanation = one;
+  if (result_.explained && !added.empty() && options_.attribute && go_on("causes outside the catalogue")) {
+    look_outside(base, current, added);
+    clock("causes outside the catalogue");
   }
   Fit final_fit = base;
   if (result_.explained) {
@@ -504,15 +530,22 @@ Trace Tracer::run() {
       for (const std::size_t k : data_.series) squares += (data_.measured[k] - current.evaluation.force[k]).squaredNorm();
       result_.partial_rmse = std::sqrt(squares / static_cast<double>(data_.rows()));
     }
-    if (options_.attribute && result_.functions.empty() && go_on("where the residual comes from")) {
-      result_.functions = attribute(*model_, data_, base);
+    if (options_.attribute && go_on("where the residual comes from")) {
+      if (functions_.empty()) functions_ = attribute(*model_, data_, base);
+      result_.functions = functions_;
     }
     if (!result_.functions.empty()) result_.channel = to_string(result_.functions.front().channel);
     clock("channels");
   }
   result_.final_settings = final_fit.settings;
-  result_.final_tests = test_residuals(data_, final_fit);
-  result_.final = error_of(all, final_fit, result_.final_predictions);
+  if (result_.selected.empty()) {
+    result_.final_tests = result_.base_tests;
+    result_.final = result_.base;
+    result_.final_predictions = result_.base_predictions;
+  } else {
+    result_.final_tests = test_residuals(data_, final_fit);
+    result_.final = error_of(all, final_fit, result_.final_predictions);
+  }
   for (const Prediction& p : result_.final_predictions) {
     for (const double e : p.curve.discretisation_error) result_.mesh_error = std::max(result_.mesh_error, e);
   }

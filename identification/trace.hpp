@@ -78,10 +78,11 @@ struct Trace {
   std::vector<std::vector<std::string>> selected_classes;  ///< of each selected effect
   std::vector<std::string> partial;  ///< effects that were added but leave a residual: not selected
   double partial_rmse = 0.0;
-  bool rival_explanation = false;    ///< those effects together would do, and so would one function of one channel
+  bool rival_explanation = false;    ///< those effects would do, but one function of one channel is the simpler cause
   bool explained = false;
   std::string channel;         ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
+  std::vector<ChannelFunction> alternatives;  ///< when it does: causes outside it, in other channels, that would as well
   std::optional<std::pair<double, double>> heldout_rmse;   ///< base, final [N]
   std::optional<std::pair<double, double>> left_out_rmse;  ///< likewise of every series predicted from the others, to first order
   std::optional<NextExperiment> next;
@@ -93,7 +94,8 @@ struct Trace {
 struct TraceOptions {
   std::vector<std::string> free;      ///< keys of the base model; empty: the experiment's own, else the two stiffnesses
   int most_effects = 3;
-  double significance = 0.002;        ///< of a score after Holm: rounds are several, and a second effect by chance is an error too
+  double significance = 0.02;         ///< of the first effect's score after Holm: one false alarm in fifty
+  double further_significance = 0.002;  ///< of a further effect's: one by chance beside a true one is an error too
   unsigned seed = 1;                  ///< of the noise drawn about published laws
   bool draw = true;                   ///< draw it; false: the law itself stands for the readings (for fits, not for tests)
   bool attribute = true;              ///< ask the channels when the catalogue does not explain the residual

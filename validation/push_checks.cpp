@@ -1,6 +1,7 @@
 #include "validation/push_checks.hpp"
 
 #include "coupling/push_solver.hpp"
+#include "validation/declared_wire.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/elastica.hpp"
 #include "validation/elastica_push.hpp"
@@ -19,20 +20,6 @@ using coupling::PushTest;
 
 constexpr double mm = 1e-3;
 const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
-
-/// The wire of the published tests: solid SUS-304, 1.5 mm, 180 mm between mounts 175 mm apart.
-PushTest declared_test(double position, double radius) {
-  PushTest test;
-  test.wire.diameter = 1.5 * mm;
-  test.wire.length = 180.0 * mm;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
-  test.mount.span = 175.0 * mm;
-  test.contact_position = position;
-  test.pusher.radius = radius;
-  return test;
-}
 
 /// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.
 PushTest stiffened(PushTest test) {
@@ -79,7 +66,7 @@ Normalised normalise(const PushTest& test, const coupling::PushPoint& p, double 
 /// A shallow wire whose strain stays below a hundredth of its slack up to compressions or tensions of
 /// `largest` EI/l^2: stiffer, round-off would show.
 PushTest shallow_test(double position, double slack, double largest) {
-  PushTest test = declared_test(position, 0.0);
+  PushTest test = declared_wire(position, 0.0);
   const double l = test.mount.span;
   test.wire.length = l * (1.0 + slack);
   test.wire.axial_stiffness_override = 100.0 * largest * test.wire.bending_stiffness() / (l * l) / slack;
@@ -109,11 +96,11 @@ double shallow_force(double position, double slack, double deflection, double la
 
 std::vector<Row> buckled_shape_rows() {
   const char* group = "Buckled shape before the push";
-  PushTest test = stiffened(declared_test(87.5 * mm, 0.0));
+  PushTest test = stiffened(declared_wire(87.5 * mm, 0.0));
   test.travel = {0.0};
   const coupling::ExtrapolatedCurve stiff = coupling::solve_push_extrapolated(test, fine());
   const BuckledElastica reference = clamped_elastica(test.wire.bending_stiffness(), test.wire.length, test.mount.span);
-  test = declared_test(87.5 * mm, 0.0);
+  test = declared_wire(87.5 * mm, 0.0);
   test.travel = {0.0};
   const coupling::ExtrapolatedCurve declared = coupling::solve_push_extrapolated(test, fine());
   const char* integrals = "inextensible elastica, elliptic integrals (Love 1927)";
@@ -131,16 +118,16 @@ std::vector<Row> buckled_shape_rows() {
 
 std::vector<Row> material_point_rows() {
   const char* group = "Material mid-point pushed outward by 1.5 mm";
-  ElasticaPush elastica = elastica_of(declared_test(87.5 * mm, 0.0));
+  ElasticaPush elastica = elastica_of(declared_wire(87.5 * mm, 0.0));
   elastica.contact = ElasticaContact::material_point;
   elastica.material_coordinate = 90.0 * mm;
   const double reference = push(elastica, 1.5 * mm).force;
   return {{group, "force, default mesh", "N", multiple_shooting, reference,
-           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm), ErrorKind::relative, 5e-6},
+           force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm), ErrorKind::relative, 5e-6},
           {group, "force, 128 edges", "N", multiple_shooting, reference,
-           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm, 128), ErrorKind::relative, 1e-4},
+           force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm, 128), ErrorKind::relative, 1e-4},
           {group, "force, published to six digits", "N", "232.983 N, stated for this wire", 232.983,
-           force_at(declared_test(87.5 * mm, 0.0), 1.5 * mm), ErrorKind::relative, 5e-6}};
+           force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm), ErrorKind::relative, 5e-6}};
 }
 
 std::vector<Row> elastica_rows() {
@@ -148,7 +135,7 @@ std::vector<Row> elastica_rows() {
   std::vector<Row> rows;
   for (const double radius : {0.0, 6.0}) {
     for (const double position : {40.0, 65.0, 90.0}) {
-      PushTest test = declared_test(position * mm, radius * mm);
+      PushTest test = declared_wire(position * mm, radius * mm);
       test.travel = {0.2 * mm, 1.0 * mm, 2.0 * mm, 3.0 * mm, 4.0 * mm};
       const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
       const std::vector<ElasticaState> reference = push_path(elastica_of(test), test.travel);
@@ -169,7 +156,7 @@ std::vector<Row> wrapped_rows() {
   const char* group = "Soft wire (EI 5e-4 N m2, EA 114 kN) that wraps the pusher";
   std::vector<Row> rows;
   for (const double position : {87.5, 65.0}) {
-    PushTest test = declared_test(position * mm, 6.0 * mm);
+    PushTest test = declared_wire(position * mm, 6.0 * mm);
     test.wire.bending_stiffness_override = 5e-4;
     test.wire.axial_stiffness_override = 114e3;
     for (int i = 1; i <= 6; ++i) test.travel.push_back(i * mm);
@@ -270,13 +257,13 @@ std::vector<Row> taut_rows() {
   const double position[] = {40.0, 65.0, 90.0};
   const double digest[] = {7407.2, 3638.9, 3083.8};
   for (int k = 0; k < 3; ++k) {
-    PushTest test = declared_test(position[k] * mm, 0.0);
+    PushTest test = declared_wire(position[k] * mm, 0.0);
     test.wire.length = test.mount.span / (1.0 + 50.0 / test.wire.axial_stiffness());
     const double travel = 1e-4 * mm;
     rows.push_back({group, fmt::format("stiffness at {:g} mm under 50 N, clamped", position[k]), "N/m",
                     "w'''' - (T/EI) w'' = 0, closed form", digest[k], force_at(test, travel) / travel, ErrorKind::relative, 1e-4});
   }
-  PushTest test = declared_test(65.0 * mm, 0.0);
+  PushTest test = declared_wire(65.0 * mm, 0.0);
   test.wire.length = test.mount.span;
   test.wire.bending_stiffness_override = 1e-9;
   const double travel = 1.0 * mm;
@@ -288,7 +275,7 @@ std::vector<Row> taut_rows() {
 
 std::vector<Row> friction_rows() {
   const char* group = "Coulomb friction on the pusher";
-  PushTest test = declared_test(40.0 * mm, 6.0 * mm);
+  PushTest test = declared_wire(40.0 * mm, 6.0 * mm);
   test.pusher.friction = 0.2;
   constexpr int points = 400;
   for (int i = 0; i <= points; ++i) test.travel.push_back(2.0 * mm * i / points);
@@ -325,7 +312,7 @@ std::vector<Row> friction_rows() {
 
 std::vector<Row> support_rows() {
   const char* group = "Three-point bending on two supports";
-  PushTest test = declared_test(20.0 * mm, 0.0);
+  PushTest test = declared_wire(20.0 * mm, 0.0);
   test.mount.kind = wire::MountKind::supports;
   test.mount.span = 40.0 * mm;
   test.wire.length = 60.0 * mm;

@@ -1,6 +1,7 @@
 // The tilted pusher, against the planar push, energy, symmetry.
 
 #include "coupling/spatial_push.hpp"
+#include "validation/declared_wire.hpp"
 #include "wire/loose_wire.hpp"
 
 #include <gtest/gtest.h>
@@ -14,18 +15,7 @@ namespace {
 constexpr double mm = 1e-3;
 constexpr double degree = std::numbers::pi / 180.0;
 
-PushTest declared_test(double position, double radius) {
-  PushTest test;
-  test.wire.diameter = 1.5 * mm;
-  test.wire.length = 180.0 * mm;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
-  test.mount.span = 175.0 * mm;
-  test.contact_position = position;
-  test.pusher.radius = radius;
-  return test;
-}
+using validation::declared_wire;
 
 std::vector<double> even_travel(double to, int points) {
   std::vector<double> travel;
@@ -41,7 +31,7 @@ PushOptions mesh(int elements) {
 
 TEST(SpatialPush, VanishingTiltIsThePlanarPush) {
   for (const double friction : {0.0, 0.2}) {
-    PushTest test = declared_test(40.0 * mm, 6.0 * mm);
+    PushTest test = declared_wire(40.0 * mm, 6.0 * mm);
     test.pusher.friction = friction;
     test.travel = even_travel(2.0 * mm, 8);
     const PushCurve planar = solve_push(test, mesh(64));
@@ -59,7 +49,7 @@ TEST(SpatialPush, VanishingTiltIsThePlanarPush) {
 }
 
 TEST(SpatialPush, WorkOfThePusherIsTheWiresEnergy) {
-  PushTest test = declared_test(40.0 * mm, 5.0 * mm);
+  PushTest test = declared_wire(40.0 * mm, 5.0 * mm);
   test.pusher.tilt = 10.0 * degree;
   test.travel = even_travel(2.0 * mm, 40);
   const PushCurve curve = solve_push(test, mesh(128));
@@ -75,7 +65,7 @@ TEST(SpatialPush, WorkOfThePusherIsTheWiresEnergy) {
 }
 
 TEST(SpatialPush, TiltToEitherSideIsTheSame) {
-  PushTest test = declared_test(65.0 * mm, 6.0 * mm);
+  PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
   test.travel = even_travel(1.5 * mm, 3);
   test.pusher.tilt = 5.0 * degree;
   const PushCurve right = solve_push(test, mesh(64));
@@ -89,7 +79,7 @@ TEST(SpatialPush, TiltToEitherSideIsTheSame) {
 }
 
 TEST(SpatialPush, TiltAtMidSpanDoesNotTurnTheForce) {
-  PushTest test = declared_test(87.5 * mm, 0.0);
+  PushTest test = declared_wire(87.5 * mm, 0.0);
   test.travel = {1.0 * mm};
   const PushCurve planar = solve_push(test, mesh(64));
   test.pusher.tilt = 8.0 * degree;
@@ -101,7 +91,7 @@ TEST(SpatialPush, TiltAtMidSpanDoesNotTurnTheForce) {
 }
 
 TEST(SpatialPush, FrictionLoopDissipatesItsArea) {
-  PushTest test = declared_test(40.0 * mm, 6.0 * mm);
+  PushTest test = declared_wire(40.0 * mm, 6.0 * mm);
   test.pusher.tilt = 4.0 * degree;
   test.pusher.friction = 0.2;
   test.travel = even_travel(1.0 * mm, 100);
@@ -119,7 +109,7 @@ TEST(SpatialPush, FrictionLoopDissipatesItsArea) {
 }
 
 TEST(SpatialPush, WhatIsNotComputedIsSaid) {
-  PushTest test = declared_test(20.0 * mm, 6.0 * mm);
+  PushTest test = declared_wire(20.0 * mm, 6.0 * mm);
   test.pusher.tilt = 0.1;
   test.mount.kind = wire::MountKind::supports;
   test.mount.span = 40.0 * mm;
@@ -133,7 +123,7 @@ TEST(SpatialPush, WhatIsNotComputedIsSaid) {
 
 TEST(SpatialPush, InwardPushIsUnstableOutOfThePlane) {
   // A loose wire pushed against its bulge escapes sideways: it swings about its chord.
-  PushTest test = declared_test(87.5 * mm, 0.0);
+  PushTest test = declared_wire(87.5 * mm, 0.0);
   test.travel = {0.2 * mm};
   PushOptions options = mesh(64);
   options.examine_out_of_plane = true;
@@ -143,7 +133,7 @@ TEST(SpatialPush, InwardPushIsUnstableOutOfThePlane) {
 }
 
 TEST(LooseSpatialWire, BucklesIntoTheAskedPlane) {
-  const PushTest test = declared_test(87.5 * mm, 0.0);
+  const PushTest test = declared_wire(87.5 * mm, 0.0);
   wire::PlanarRodProperties flat;
   flat.bending_stiffness = test.wire.bending_stiffness();
   flat.axial_stiffness = test.wire.axial_stiffness();

@@ -18,6 +18,19 @@ TEST(Statistics, TailsOfTables) {
   EXPECT_NEAR(normal_quantile(0.025), 1.959964, 1e-5);
 }
 
+// Equal weights are a scaled chi-square; two pairs of weights have the tail (a e^(-x/2a) - b e^(-x/2b))/(a - b).
+TEST(Statistics, TailOfAMixtureOfChiSquares) {
+  EXPECT_NEAR(chi_square_mixture_tail(2.0 * 18.307038, Eigen::VectorXd::Constant(10, 2.0)), 0.05, 1e-6);
+  const double a = 1.0;
+  const double b = 0.2;
+  for (const double x : {6.0, 10.0, 14.0}) {
+    const double exact = (a * std::exp(-0.5 * x / a) - b * std::exp(-0.5 * x / b)) / (a - b);
+    // Moments are matched, the tail is not: the approximation is good to a tenth of P (Liu, Tang and Zhang, Table 1).
+    EXPECT_NEAR(chi_square_mixture_tail(x, Eigen::Vector4d(a, a, b, b)), exact, 0.1 * exact) << x;
+  }
+  EXPECT_EQ(chi_square_mixture_tail(1.0, Eigen::VectorXd::Zero(3)), 1.0);
+}
+
 TEST(Statistics, HolmByHand) {
   const std::vector<double> adjusted = holm({0.01, 0.04, 0.03, 0.005});
   EXPECT_DOUBLE_EQ(adjusted[3], 0.02);  // 4 x 0.005

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/push_solver.hpp"
+#include "validation/declared_wire.hpp"
 #include "validation/elastica_push.hpp"
 
 #include <vector>
@@ -9,19 +10,7 @@ namespace snare::test {
 
 constexpr double mm = 1e-3;
 
-/// The wire of the published tests: solid SUS-304, 1.5 mm, 180 mm between clamps 175 mm apart. [m]
-inline coupling::PushTest declared_wire(double position, double radius) {
-  coupling::PushTest test;
-  test.wire.diameter = 1.5 * mm;
-  test.wire.length = 180.0 * mm;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
-  test.mount.span = 175.0 * mm;
-  test.contact_position = position;
-  test.pusher.radius = radius;
-  return test;
-}
+using validation::declared_wire;
 
 /// The same with the stiffness of a strand: it wraps a pin of some millimetres.
 inline coupling::PushTest soft_wire(double position, double radius) {
