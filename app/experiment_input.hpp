@@ -13,6 +13,7 @@ namespace snare::app {
 [[nodiscard]] std::vector<numerics::Override> overrides_of(const CommonOptions& options);
 
 /// The experiment with the overrides of --set; from here on --threads holds. Throws numerics::InputError.
-[[nodiscard]] identification::Experiment open_experiment(const std::filesystem::path& file, const CommonOptions& options);
+[[nodiscard]] identification::Experiment open_experiment(const std::filesystem::path& file,
+                                                         const CommonOptions& options);
 
 }  // namespace snare::app

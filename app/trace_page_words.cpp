@@ -22,7 +22,8 @@ void require_finite(const json& value, const std::string& key) {
 }
 
 void require(bool right, const std::string& key, const char* expected, const json& value) {
-  if (!right) throw std::invalid_argument(fmt::format("{} is {}, must be {}", key, value.type_name(), expected));
+  if (!right)
+    throw std::invalid_argument(fmt::format("{} is {}, must be {}", key, value.type_name(), expected));
 }
 
 const json& object(const json& parent, const std::string& key) {
@@ -38,7 +39,8 @@ std::optional<bool> flag(const json& parent, const std::string& key) {
 }
 
 const json& objects(const json& parent, const std::string& key) {
-  for (const json& value : array(parent, key)) require(value.is_null() || value.is_object(), key, "an array of objects", value);
+  for (const json& value : array(parent, key))
+    require(value.is_null() || value.is_object(), key, "an array of objects", value);
   return array(parent, key);
 }
 
@@ -48,8 +50,12 @@ std::vector<Words> text_lists(const json& parent, const std::string& key) {
   return lists;
 }
 
-std::string measured(std::optional<double> value, const std::string& unit) { return value ? format_significant(*value) + unit : absent; }
-std::string shown(std::optional<double> value, int digits) { return value ? format_number(*value, digits) : absent; }
+std::string measured(std::optional<double> value, const std::string& unit) {
+  return value ? format_significant(*value) + unit : absent;
+}
+std::string shown(std::optional<double> value, int digits) {
+  return value ? format_number(*value, digits) : absent;
+}
 
 std::string percent(std::optional<double> share) {
   if (share && *share < -1.0) return "< -100 %";
@@ -72,9 +78,18 @@ std::string spaced(std::string name) {
 }
 
 std::pair<std::string, std::string> name_and_unit(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::string>> units = {
-      {"_rad_Nm", "rad/(N m)"}, {"_kg_m3", "kg/m\u00b3"}, {"_m_s2", "m/s\u00b2"}, {"_Nm2", "N m\u00b2"},
-      {"_m_N", "m/N"}, {"_1_m", "1/m"}, {"_GPa", "GPa"}, {"_MPa", "MPa"}, {"_deg", "\u00b0"}, {"_mm", "mm"}, {"_N", "N"}, {"_s", "s"}};
+  static const std::vector<std::pair<std::string, std::string>> units = {{"_rad_Nm", "rad/(N m)"},
+                                                                         {"_kg_m3", "kg/m\u00b3"},
+                                                                         {"_m_s2", "m/s\u00b2"},
+                                                                         {"_Nm2", "N m\u00b2"},
+                                                                         {"_m_N", "m/N"},
+                                                                         {"_1_m", "1/m"},
+                                                                         {"_GPa", "GPa"},
+                                                                         {"_MPa", "MPa"},
+                                                                         {"_deg", "\u00b0"},
+                                                                         {"_mm", "mm"},
+                                                                         {"_N", "N"},
+                                                                         {"_s", "s"}};
   const std::string name = key.substr(key.rfind('.') + 1);
   for (const auto& [suffix, unit] : units) {
     if (name.ends_with(suffix)) return {spaced(name.substr(0, name.size() - suffix.size())), unit};
@@ -82,7 +97,8 @@ std::pair<std::string, std::string> name_and_unit(const std::string& key) {
   return {spaced(name), ""};
 }
 
-std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower, std::optional<double> upper) {
+std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
+                              std::optional<double> upper) {
   const double width = lower && upper ? std::abs(*upper - *lower) : 0.0;
   const auto show = [&](double v) {
     if (v == 0.0 || width <= 0.0) return format_number(v, 4);
@@ -94,6 +110,8 @@ std::vector<Cell> value_cells(std::optional<double> value, std::optional<double>
   return {show(*value), lower ? "from " + show(*lower) : upper ? "up to " + show(*upper) : absent};
 }
 
-Column number_column(std::string heading) { return {std::move(heading), ColumnKind::number}; }
+Column number_column(std::string heading) {
+  return {std::move(heading), ColumnKind::number};
+}
 
 }  // namespace snare::app::trace_page

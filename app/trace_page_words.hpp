@@ -40,7 +40,8 @@ void require(bool right, const std::string& key, const char* expected, const jso
 /// {"yield stress", "MPa"} of plasticity.yield_stress_MPa.
 [[nodiscard]] std::pair<std::string, std::string> name_and_unit(const std::string& key);
 /// A number and its 95 % interval, which may be open at an end, as two cells with the digits that the interval leaves meaningful.
-[[nodiscard]] std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower, std::optional<double> upper);
+[[nodiscard]] std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
+                                            std::optional<double> upper);
 [[nodiscard]] Column number_column(std::string heading);
 
 }  // namespace snare::app::trace_page

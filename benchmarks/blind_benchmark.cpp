@@ -1,6 +1,8 @@
 // How often the tracing names the right class: blind sets of the continuous wire with an effect that the declared model
 // lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion matrix as JSON.
-//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--require]
+//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--sets FILE] [--require]
+// --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended. It belongs to one
+// build: another one starts with a new file.
 
 #include "identification/trace.hpp"
 #include "numerics/files.hpp"
@@ -12,8 +14,10 @@
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <mutex>
 
@@ -79,6 +83,47 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
     if (n.standard_error && std::isfinite(truth)) o.deviates.push_back((n.value - truth) / *n.standard_error);
   }
   return o;
+}
+
+nlohmann::json line_of(const Case& c, const Outcome& o) {
+  return {{"effect", c.effect},       {"size", c.size},           {"seed", c.seed},         {"right", o.right},
+          {"alarm", o.alarm},         {"channel", o.channel},     {"beside", o.alternative}, {"deviates", o.deviates},
+          {"covered", o.covered},     {"chi2_dof", o.chi2_dof},   {"left_out", o.left_out}, {"answer", o.answer},
+          {"class", o.class_size},    {"seconds", o.seconds},     {"made", o.made_size},    {"reached", o.reached}};
+}
+
+Outcome outcome_of(const nlohmann::json& line) {
+  Outcome o;
+  o.right = line["right"];
+  o.alarm = line["alarm"];
+  o.channel = line["channel"];
+  o.alternative = line["beside"];
+  o.deviates = line["deviates"].get<std::vector<double>>();
+  o.covered = line["covered"];
+  o.chi2_dof = line["chi2_dof"];
+  o.left_out = line["left_out"];
+  o.answer = line["answer"];
+  o.class_size = line["class"];
+  o.seconds = line["seconds"];
+  o.made_size = line["made"];
+  o.reached = line["reached"];
+  o.finished = true;
+  return o;
+}
+
+/// Outcomes of an earlier run, as far as they are whole lines; one a case.
+std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>& cases) {
+  std::vector<Outcome> outcomes(cases.size());
+  std::ifstream in(file);
+  for (std::string text; std::getline(in, text);) {
+    const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
+    if (line.is_discarded()) continue;
+    const auto at = std::find_if(cases.begin(), cases.end(), [&line](const Case& c) {
+      return c.effect == line["effect"] && c.size == line["size"] && c.seed == line["seed"];
+    });
+    if (at != cases.end()) outcomes[static_cast<std::size_t>(at - cases.begin())] = outcome_of(line);
+  }
+  return outcomes;
 }
 
 /// Counts of one size.
@@ -162,6 +207,8 @@ int main(int argc, char** argv) {
   std::vector<double> sizes{5.0, 10.0, 30.0};
   std::vector<std::string> effects = validation::blind_effects();
   std::string out;
+  std::string sets;
+  app.add_option("--sets", sets);
   app.add_option("--seeds", seeds);
   app.add_option("--first", first);
   app.add_option("--sizes", sizes)->delimiter(',');
@@ -178,21 +225,26 @@ int main(int argc, char** argv) {
       for (const double size : sizes) cases.push_back({effect, size, s});
     }
   }
-  std::vector<Outcome> outcomes(cases.size());
+  std::vector<Outcome> outcomes = sets.empty() ? std::vector<Outcome>(cases.size()) : read_sets(sets, cases);
+  std::ofstream journal;
+  if (!sets.empty()) journal.open(sets, std::ios::app);
   std::mutex mutex;
   omp_set_max_active_levels(1);
   const auto count = static_cast<std::ptrdiff_t>(cases.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Case& c = cases[static_cast<std::size_t>(i)];
+    if (outcomes[static_cast<std::size_t>(i)].finished) continue;
     Outcome o;
     try {
       const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed);
       const bool absorbed_whole = c.effect == "force_gain";  // scales with EI and EA: no size at all
       if (c.effect != "none" && !absorbed_whole && set.size < 0.8 * c.size) {
         const std::lock_guard lock(mutex);
-        outcomes[static_cast<std::size_t>(i)].reached = false;
-        outcomes[static_cast<std::size_t>(i)].finished = true;
+        o.reached = false;
+        o.finished = true;
+        outcomes[static_cast<std::size_t>(i)] = o;
+        journal << line_of(c, o).dump() << std::endl;
         continue;
       }
       const auto start = std::chrono::steady_clock::now();
@@ -207,6 +259,7 @@ int main(int argc, char** argv) {
     const std::lock_guard lock(mutex);
     o.finished = true;
     outcomes[static_cast<std::size_t>(i)] = o;
+    journal << line_of(c, o).dump() << std::endl;
     fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
                c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);

@@ -8,8 +8,9 @@
 namespace snare::identification {
 
 bool ResidualTests::acceptable() const {
-  if (against_replicates) return lack_of_fit > 0.01;
-  return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > 0.01;
+  constexpr double level = 0.002;
+  if (against_replicates) return lack_of_fit > level;
+  return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > level;
 }
 
 ResidualTests test_residuals(const Data& data, const Fit& fit) {

@@ -23,7 +23,7 @@ constexpr double indistinct_bic = 6.0;  // difference of BIC below which the lik
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;  // gain of BIC that an effect must bring
 constexpr double one_cause = 0.9;       // share of an excess that an unknown function must carry over to rival effects
-constexpr double rest_of_rival = 0.01;  // P below which an effect has left something in the direction of its rival
+constexpr double rest_of_rival = 0.003; // P below which an effect has left something in the direction of its rival
 constexpr std::size_t most_refits = 6;
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this share of the
 // best gain cannot lead and are not refitted.

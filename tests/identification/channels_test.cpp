@@ -56,7 +56,8 @@ TEST(Channels, ASmoothFunctionIsSeenASlopeThatIsFittedIsNot) {
   }
   const Example seen(wave);
   const Example fitted(slope);
-  EXPECT_LT(channel_p(seen.channel, seen.fit), 1e-6);    // 7.7 sigma in all
+  // 7.7 sigma in all, of which a test of every smooth shape sees its share.
+  EXPECT_LT(channel_p(seen.channel, seen.fit), 1e-3);
   EXPECT_GT(channel_p(fitted.channel, fitted.fit), 0.01);
 }
 
