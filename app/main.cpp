@@ -60,6 +60,13 @@ int run(int argc, char** argv) {
   add_common(*reproduce, reproduce_options, "out/reproduce");
   reproduce->footer("Example: snare reproduce --out out/reproduce --set series[s40].law.to_mm=5");
 
+  CommonOptions distil_options;
+  std::filesystem::path distil_file;
+  CLI::App* distil = app.add_subcommand("distil", "reduced spring laws and stiffness tables with their error bounds");
+  distil->add_option("WIRE.toml", distil_file, "wire file")->required();
+  add_common(*distil, distil_options, "out/distil");
+  distil->footer("Example: snare distil data/wires/traced_published.toml --out out/distil");
+
   CommonOptions validate_options;
   CLI::App* validate = app.add_subcommand("validate", "every validation row: reference, value, error, limit, verdict");
   add_common(*validate, validate_options, "out/validate");
@@ -99,6 +106,8 @@ int run(int argc, char** argv) {
     status = call(fit_options, [&](snare::app::Console& c) { return snare::app::run_fit(fit_file, fit_options, c); });
   } else if (trace->parsed()) {
     status = call(trace_options, [&](snare::app::Console& c) { return snare::app::run_trace(trace_file, trace_options, c); });
+  } else if (distil->parsed()) {
+    status = call(distil_options, [&](snare::app::Console& c) { return snare::app::run_distil(distil_file, distil_options, c); });
   } else if (validate->parsed()) {
     status = call(validate_options, [&](snare::app::Console& c) { return snare::app::run_validate(validate_options, c); });
   }
