@@ -28,6 +28,9 @@ namespace snare::app {
 /// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other languages.
 [[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options, Console& console);
 
+/// Every wire model on the same case: compare.json, report.html.
+[[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 
