@@ -16,6 +16,7 @@ constexpr int timed_rounds = 7;
 constexpr std::size_t timed_evaluations = 20000;
 // What the full wire is told: EI, EA, length, span, radius and friction of the pusher, place of the contact.
 constexpr int full_wire_parameters = 7;
+constexpr double honda_half_wire_stiffness = 5.55e5;  // K_wire [N/m]
 
 /// Seconds of one evaluation: the least of some rounds, each over many.
 template <class Force>
@@ -135,9 +136,14 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     add("load_unload", 2 * static_cast<int>(store.travel().size()) + 2, one.wire.travel, [&](double d) { return law.move(state, d); });
   }
   for (const FittedLaw& law : place.laws) {
-    add(law.form->name(), static_cast<int>(law.values.size()), law.range,
-        [&](double d) { return law.form->force(law.values, d); });
+    add(law.form->name(), static_cast<int>(law.values.size()), law.range, law.form->with(law.values));
   }
+  // Honda et al., Table 4: the stiffness of half a wire that they started from; it counts from where the wire is taut.
+  const coupling::PushTest& t = one.wire.test;
+  const LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
+  Eigen::VectorXd published(2);
+  published << honda_half_wire_stiffness * 0.5 * t.wire.length, 0.0;
+  add("stretched_wire_published", 1, one.wire.travel, stretched_wire_law(where)->with(published));
   for (const GivenLaw& law : one.given) add(law.name, law.parameters, law.range, law.force);
   return result;
 }

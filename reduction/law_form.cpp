@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace snare::reduction {
@@ -57,6 +58,11 @@ class Polynomial final : public LawForm {
     return text;
   }
   double force(const VectorXd& p, double d) const override { return p.dot(by_parameters(p, d)); }
+  std::function<double(double)> with(const VectorXd& p) const override {
+    std::array<double, 3> by_power{};
+    for (std::size_t i = 0; i < powers_.size(); ++i) by_power[static_cast<std::size_t>(powers_[i])] = p[static_cast<Eigen::Index>(i)];
+    return [c = by_power](double d) { return (c[2] * d + c[1]) * d + c[0]; };
+  }
   double stiffness(const VectorXd& p, double d) const override {
     double sum = 0.0;
     for (std::size_t i = 0; i < powers_.size(); ++i) {
@@ -94,6 +100,9 @@ class Power final : public LawForm {
     return fmt::format("{} * {}pow(d, {})", digits(p[0]), prefix, digits(p[1]));
   }
   double force(const VectorXd& p, double d) const override { return p[0] * std::pow(d, p[1]); }
+  std::function<double(double)> with(const VectorXd& p) const override {
+    return [k = p[0], power = p[1]](double d) { return k * std::pow(d, power); };
+  }
   double stiffness(const VectorXd& p, double d) const override { return p[0] * p[1] * std::pow(d, p[1] - 1.0); }
   double energy(const VectorXd& p, double d) const override { return p[0] * std::pow(d, p[1] + 1.0) / (p[1] + 1.0); }
   VectorXd by_parameters(const VectorXd& p, double d) const override {
@@ -158,6 +167,12 @@ class Stretched : public LawForm {
     const Pieces now = pieces_at(place_, height_ + d - p[1]);
     return now.stretch > 0.0 ? p[0] * now.stretch * now.lift : 0.0;
   }
+  std::function<double(double)> with(const VectorXd& p) const override {
+    return [w = place_, k = p[0], base = height_ - p[1]](double d) {
+      const Pieces now = pieces_at(w, base + d);
+      return now.stretch > 0.0 ? k * now.stretch * now.lift : 0.0;
+    };
+  }
   double stiffness(const VectorXd& p, double d) const override {
     const Pieces now = pieces_at(place_, height_ + d - p[1]);
     return now.stretch > 0.0 ? p[0] * (now.lift * now.lift / place_.length + now.stretch * now.bend) : 0.0;
@@ -203,6 +218,9 @@ class StretchedLinear final : public LawForm {
     return fmt::format("{} * 0.5 * ({} + {}fabs({}))", digits(p[0] * unit_), x, prefix, x);
   }
   double force(const VectorXd& p, double d) const override { return p[0] * unit_ * std::max(0.0, d - p[1]); }
+  std::function<double(double)> with(const VectorXd& p) const override {
+    return [k = p[0] * unit_, free = p[1]](double d) { return k * std::max(0.0, d - free); };
+  }
   double stiffness(const VectorXd& p, double d) const override { return d > p[1] ? p[0] * unit_ : 0.0; }
   double energy(const VectorXd& p, double d) const override {
     const auto stored = [&](double x) { return 0.5 * p[0] * unit_ * std::pow(std::max(0.0, x - p[1]), 2); };
@@ -234,6 +252,9 @@ class Tensioned final : public LawForm {
   std::vector<LawParameter> parameters() const override { return {{"T", "N"}}; }
   std::string expression(const VectorXd& p, const std::string&) const override { return digits(at(p).value) + " * d"; }
   double force(const VectorXd& p, double d) const override { return at(p).value * d; }
+  std::function<double(double)> with(const VectorXd& p) const override {
+    return [k = at(p).value](double d) { return k * d; };
+  }
   double stiffness(const VectorXd& p, double) const override { return at(p).value; }
   double energy(const VectorXd& p, double d) const override { return 0.5 * at(p).value * d * d; }
   VectorXd by_parameters(const VectorXd& p, double d) const override { return vector({at(p).by_tension * d}); }

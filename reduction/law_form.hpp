@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ class LawForm {
   [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
 
   [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const = 0;      ///< [N]
+  /// The force as a function of the travel alone, all that depends on the numbers done: for many evaluations.
+  [[nodiscard]] virtual std::function<double(double)> with(const Eigen::VectorXd& p) const = 0;
   [[nodiscard]] virtual double stiffness(const Eigen::VectorXd& p, double d) const = 0;  ///< dF/dd [N/m]
   [[nodiscard]] virtual double energy(const Eigen::VectorXd& p, double d) const = 0;     ///< integral from 0 [J]
   [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;

@@ -1,3 +1,4 @@
+#include "coupling/push_solver.hpp"
 #include "reduction/table_builder.hpp"
 #include "wires.hpp"
 
@@ -98,6 +99,35 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
                 built.loading_error.bound);
     }
   }
+}
+
+// The default table of the traced wire against the full wire solved anew at 1000 places, each from the straight wire: 0.5 % of the
+// range of the force, and never beyond the bound that the table states.
+TEST(SlowTable, AThousandRandomPoints) {
+  WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");
+  file.settings = {};
+  const WireCase& wire = file.cases.front();
+  CurveStore store(wire, file.settings, sampling_travel(wire, file.settings));
+  const BuiltTable built = build_table(store, file.settings);
+  ASSERT_TRUE(built.report.usable()) << built.report.message;
+  EXPECT_EQ(built.loading->axes()[0].size(), 20u);
+  EXPECT_EQ(built.loading->axes()[1].size(), 9u);
+  EXPECT_EQ(built.loading->axes()[2].size(), 5u);
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  double worst = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    coupling::PushTest test = wire.test;
+    test.contact_position = wire.position.low + (wire.position.high - wire.position.low) * u(random);
+    const double slack = wire.slack.low + (wire.slack.high - wire.slack.low) * u(random);
+    test.wire.length = test.mount.span + slack;
+    test.travel = {wire.travel.high * u(random)};
+    const coupling::PushCurve curve = coupling::solve_push_extrapolated(test, {}).curve;
+    ASSERT_EQ(curve.points.size(), 1u) << curve.report.message;
+    worst = std::max(worst, std::abs(built.loading->force(test.travel.front(), test.contact_position, slack) - curve.points.front().force));
+  }
+  EXPECT_LE(worst, 0.005 * built.loading_error.force_range);
+  EXPECT_LE(worst, built.loading_error.bound);
 }
 
 TEST(CurveStore, ATornJournalGivesTheSameCurves) {

@@ -40,7 +40,7 @@ positions_mm = [0.1]
     EXPECT_THAT(error.what(), HasSubstr("ranges.slack_mm = [1.0, 2.0], must contain that of the wire, 0.49 mm"));
     EXPECT_THAT(error.what(), HasSubstr("frction"));
     EXPECT_THAT(error.what(), HasSubstr("did you mean friction"));
-    EXPECT_THAT(error.what(), HasSubstr("laws.positions_mm[0] = "));
+    EXPECT_THAT(error.what(), HasSubstr("laws.positions_mm[1] = 0.1, must be >= 1.75 and <= 173.25"));
   }
 }
 
