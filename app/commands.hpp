@@ -25,6 +25,12 @@ namespace snare::app {
 /// Finds what the declared model lacks: trace.json, curves.csv, report.html.
 [[nodiscard]] ExitStatus run_trace(const std::filesystem::path& experiment, const CommonOptions& options, Console& console);
 
+/// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other languages.
+[[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options, Console& console);
+
+/// Every wire model on the same case: compare.json, report.html.
+[[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

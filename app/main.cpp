@@ -60,6 +60,20 @@ int run(int argc, char** argv) {
   add_common(*reproduce, reproduce_options, "out/reproduce");
   reproduce->footer("Example: snare reproduce --out out/reproduce --set series[s40].law.to_mm=5");
 
+  CommonOptions distil_options;
+  std::filesystem::path distil_file;
+  CLI::App* distil = app.add_subcommand("distil", "reduced spring laws and stiffness tables with their error bounds");
+  distil->add_option("WIRE.toml", distil_file, "wire file")->required();
+  add_common(*distil, distil_options, "out/distil");
+  distil->footer("Example: snare distil data/wires/traced_published.toml --out out/distil");
+
+  CommonOptions compare_options;
+  std::filesystem::path compare_file;
+  CLI::App* compare = app.add_subcommand("compare", "the same case with every wire model: accuracy and cost side by side");
+  compare->add_option("SCENARIO.toml", compare_file, "experiment or wire file")->required();
+  add_common(*compare, compare_options, "out/compare");
+  compare->footer("Example: snare compare data/experiments/published_static.toml --out out/compare");
+
   CommonOptions validate_options;
   CLI::App* validate = app.add_subcommand("validate", "every validation row: reference, value, error, limit, verdict");
   add_common(*validate, validate_options, "out/validate");
@@ -99,6 +113,11 @@ int run(int argc, char** argv) {
     status = call(fit_options, [&](snare::app::Console& c) { return snare::app::run_fit(fit_file, fit_options, c); });
   } else if (trace->parsed()) {
     status = call(trace_options, [&](snare::app::Console& c) { return snare::app::run_trace(trace_file, trace_options, c); });
+  } else if (distil->parsed()) {
+    status = call(distil_options, [&](snare::app::Console& c) { return snare::app::run_distil(distil_file, distil_options, c); });
+  } else if (compare->parsed()) {
+    status = call(compare_options,
+                  [&](snare::app::Console& c) { return snare::app::run_compare(compare_file, compare_options, c); });
   } else if (validate->parsed()) {
     status = call(validate_options, [&](snare::app::Console& c) { return snare::app::run_validate(validate_options, c); });
   }

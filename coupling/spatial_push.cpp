@@ -28,6 +28,8 @@ wire::SpatialEnd spatial_end(const wire::PlanarEnd& end) {
   return result;
 }
 
+}  // namespace
+
 wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness, double weight_across) {
   const wire::PlanarRodProperties& p = planar.properties();
   wire::SpatialRodProperties properties;
@@ -42,6 +44,8 @@ wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_sti
   properties.right = spatial_end(p.right);
   return {planar.mesh(), properties};
 }
+
+namespace {
 
 Vector3d axis_of(double tilt) { return {std::sin(tilt), 0.0, std::cos(tilt)}; }
 

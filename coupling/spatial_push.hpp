@@ -73,6 +73,10 @@ class SpatialPushSystem final : public numerics::PathProblem {
   std::array<Eigen::Vector3d, 2> reactions_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 };
 
+/// The rod of a planar push in space: same mesh, mounts, stiffnesses; isotropic in bending.
+/// weight_across: weight along z per unit length [N/m].
+[[nodiscard]] wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness, double weight_across);
+
 /// Whether a test leaves the plane of the wire: a tilted pusher, or weight across the plane.
 [[nodiscard]] bool needs_space(const PushTest& test);
 

@@ -138,7 +138,8 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
 
   // Position across the axis: b.(x - p - (R + g) n) = 0 for two directions b.
   const Vector3d arm = wire::vertex(s, i) - pin.centre - at.parameter * pin.motion - (pin.radius + gap) * g.normal;
-  const Vector3d b0 = pin.axis.cross(pin.motion).normalized();
+  const Vector3d sideways = pin.axis.cross(pin.motion);  // none where the pin moves along its axis
+  const Vector3d b0 = sideways.norm() > 1e-3 ? sideways.normalized() : pin.axis.cross(pin.last_normal).normalized();
   const std::array<Vector3d, 2> across{b0, pin.axis.cross(b0)};
   for (int k = 0; k < 2; ++k) {
     const Vector3d& b = across[static_cast<std::size_t>(k)];

@@ -1,0 +1,162 @@
+#include "app/commands.hpp"
+#include "app/compare_report.hpp"
+#include "identification/experiment.hpp"
+#include "identification/prediction.hpp"
+#include "numerics/files.hpp"
+#include "numerics/toml_tree.hpp"
+#include "reduction/compare.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+
+namespace snare::app {
+
+namespace {
+
+using reduction::CaseComparison;
+using reduction::StaticCase;
+
+using Overrides = std::vector<numerics::Override>;
+
+/// What is compared, from one kind of file.
+struct Comparison {
+  std::string title;
+  std::vector<StaticCase> cases;
+  reduction::DistilSettings settings;
+};
+
+/// Every series of an experiment with its readings or its published law.
+Comparison from_experiment(const std::filesystem::path& file, const Overrides& overrides) {
+  const identification::Experiment experiment = identification::read_experiment(file, overrides);
+  Comparison result;
+  result.title = experiment.title;
+  result.settings.elements = experiment.solver.elements;
+  result.settings.extrapolate = experiment.solver.extrapolate;
+  for (const identification::Series& series : experiment.series) {
+    StaticCase one;
+    one.name = series.name;
+    one.wire.test = series.test;
+    one.travel = identification::measured_displacement(series);
+    one.measured = identification::measured_force(series);
+    one.wire.travel = {0.0, *std::max_element(one.travel.begin(), one.travel.end())};
+    one.wire.position = {series.test.contact_position, series.test.contact_position};
+    one.wire.slack = {one.wire.nominal_slack(), one.wire.nominal_slack()};
+    one.wire.law_positions = {series.test.contact_position};
+    if (series.law) {
+      const identification::QuadraticLaw law = *series.law;
+      one.given.push_back({"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
+    }
+    result.cases.push_back(std::move(one));
+  }
+  return result;
+}
+
+/// The positions of a wire file at its nominal slack; nothing is measured.
+Comparison from_wire(const std::filesystem::path& file, const Overrides& overrides) {
+  constexpr int points = 61;
+  const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
+  Comparison result;
+  result.title = wire.title;
+  result.settings = wire.settings;
+  for (std::size_t c = 0; c < wire.cases.size(); ++c) {
+    for (const double position : wire.cases[c].law_positions) {
+      StaticCase one;
+      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "", 1e3 * position);
+      one.wire = wire.cases[c];
+      one.wire.law_positions = {position};
+      for (int i = 0; i < points; ++i) one.travel.push_back(one.wire.travel.high * i / (points - 1));
+      if (one.wire.dissipates()) one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
+      result.cases.push_back(std::move(one));
+    }
+  }
+  return result;
+}
+
+/// Kinds of files that can be compared, by their schema. A dynamic scenario is one more line here.
+struct Kind {
+  const char* schema;
+  Comparison (*read)(const std::filesystem::path&, const Overrides&);
+};
+constexpr std::array<Kind, 2> kinds{{{"snare-experiment/1", from_experiment}, {"snare-wire/1", from_wire}}};
+
+Comparison read(const std::filesystem::path& file, const Overrides& overrides) {
+  const numerics::TomlNode root = numerics::parse_toml(file.string(), numerics::read_text(file));
+  const numerics::TomlNode* schema = root.find("schema");
+  std::string allowed;
+  for (const Kind& kind : kinds) {
+    if (schema != nullptr && schema->text == kind.schema) return kind.read(file, overrides);
+    allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " or ", kind.schema);
+  }
+  throw numerics::InputError(numerics::InputProblem{file.string(), schema != nullptr ? schema->line : 0, "schema",
+                                                    schema != nullptr ? schema->written : "",
+                                                    (schema != nullptr ? "must be " : "missing, must be ") + allowed});
+}
+
+nlohmann::json case_json(const CaseComparison& one) {
+  nlohmann::json models = nlohmann::json::array();
+  for (const reduction::ModelResult& m : one.models) {
+    models.push_back({{"model", m.model}, {"parameters", m.parameters},
+                      {"valid_travel_mm", {1e3 * m.range.low, 1e3 * m.range.high}},
+                      {"error_full_wire", {{"largest_N", m.largest_error}, {"rms_N", m.rms_error},
+                                           {"share", one.force_range > 0.0 ? m.largest_error / one.force_range : 0.0}}},
+                      {"error_measured", m.measured_rms ? nlohmann::json{{"rms_N", *m.measured_rms}} : nlohmann::json()},
+                      {"seconds_per_evaluation", m.seconds}, {"force_N", m.force}});
+  }
+  std::vector<double> travel = one.travel;
+  for (double& d : travel) d *= 1e3;
+  return {{"case", one.name}, {"displacement_mm", travel},
+          {"measured_N", one.measured.empty() ? nlohmann::json() : nlohmann::json(one.measured)},
+          {"force_range_N", one.force_range}, {"models", models},
+          {"stopped", one.report.usable() ? nlohmann::json() : nlohmann::json(one.report.message)}};
+}
+
+}  // namespace
+
+ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  Overrides overrides;
+  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const Comparison comparison = read(file, overrides);
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+
+  // One after the other: their cost is measured.
+  std::vector<CaseComparison> results;
+  ExitStatus status = ExitStatus::done;
+  for (const StaticCase& one : comparison.cases) {
+    if (interrupted()) {
+      console.complain("interrupted");
+      status = ExitStatus::solver_stopped;
+      break;
+    }
+    console.progress(fmt::format("case {}", one.name));
+    results.push_back(reduction::compare_static(one, comparison.settings));
+    if (results.back().report.usable()) continue;
+    console.complain(fmt::format("case {}: {}", one.name, results.back().report.message));
+    status = ExitStatus::solver_stopped;
+  }
+  console.end_progress();
+  nlohmann::json json{{"schema", "snare-comparison/1"}, {"version", version()}, {"title", comparison.title},
+                      {"kind", "static"}, {"cases", nlohmann::json::array()}};
+  for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
+  numerics::write_text(options.out / "compare.json", json.dump(1) + "\n");
+  numerics::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
+  if (options.json) {
+    std::cout << json.dump(1) << '\n';
+    return status;
+  }
+  for (const CaseComparison& one : results) {
+    for (const reduction::ModelResult& m : one.models) {
+      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name, m.model,
+                              m.largest_error, m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-", m.seconds,
+                              m.parameters));
+    }
+  }
+  console.say(fmt::format("wrote {}/compare.json", options.out.string()));
+  return status;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,101 @@
+// What a distilled law costs beside the solve that it replaces, and what the default table costs.
+
+#include "coupling/push_solver.hpp"
+#include "reduction/distil.hpp"
+
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include <functional>
+#include <vector>
+
+namespace {
+
+using namespace snare;
+
+constexpr const char* wire_text = R"(schema = "snare-wire/1"
+[wire]
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 175.49
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+bending_stiffness_Nm2 = 0.0094
+axial_stiffness_N = 19300.0
+[mount]
+kind = "clamped"
+span_mm = 175.0
+[pusher]
+shape = "cylinder"
+radius_mm = 6.0
+friction = 0.0
+direction = "outward"
+[ranges]
+travel_mm = 4.0
+)";
+
+const reduction::WireFile& wire_file() {
+  static const reduction::WireFile file = reduction::parse_wire_file("benchmark.toml", wire_text);
+  return file;
+}
+
+const reduction::DistilledCase& distilled() {
+  static const reduction::Distillation result = reduction::distil(wire_file());
+  return result.cases.front();
+}
+
+/// Travels in no order, so that no cell is met twice in a row by design.
+std::vector<double> travels() {
+  std::vector<double> d;
+  for (int i = 0; i < 4096; ++i) d.push_back(4e-3 * ((i * 1597) % 4096) / 4096.0);
+  return d;
+}
+
+void TableForce(benchmark::State& state) {
+  const reduction::ForceTable& table = *distilled().table.loading;
+  const std::vector<double> d = travels();
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(table.force(d[i % 4096], 0.035 + 10.0 * d[(i + 7) % 4096], 4e-4 + 0.05 * d[(i + 13) % 4096]));
+    ++i;
+  }
+}
+BENCHMARK(TableForce);
+
+void LawForce(benchmark::State& state) {
+  const reduction::FittedLaw& law = distilled().places[1].laws.at(static_cast<std::size_t>(state.range(0)));
+  state.SetLabel(law.form->name());
+  const std::vector<double> d = travels();
+  std::size_t i = 0;
+  const std::function<double(double)> force = law.form->with(law.values);
+  for (auto _ : state) benchmark::DoNotOptimize(force(d[i++ % 4096]));
+}
+BENCHMARK(LawForce)->DenseRange(0, 6);
+
+/// The solve that an evaluation replaces: one travel from the straight wire, extrapolated from three meshes.
+void FullWireForce(benchmark::State& state) {
+  coupling::PushTest test = wire_file().cases.front().test;
+  test.contact_position = 0.065;
+  test.travel = {3e-3};
+  for (auto _ : state) benchmark::DoNotOptimize(coupling::solve_push_extrapolated(test, {}).curve.points.back().force);
+}
+BENCHMARK(FullWireForce)->Unit(benchmark::kMicrosecond);
+
+/// The default table, 20 x 9 x 5, from scratch: knots placed, nodes solved, bound checked.
+void DefaultTable(benchmark::State& state) {
+  omp_set_num_threads(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    const reduction::WireFile& file = wire_file();
+    reduction::CurveStore store(file.cases.front(), file.settings, reduction::sampling_travel(file.cases.front(), file.settings));
+    const reduction::BuiltTable built = reduction::build_table(store, file.settings);
+    state.counters["bound_share"] = built.loading_error.bound / built.loading_error.force_range;
+    state.counters["curves"] = static_cast<double>(built.curves);
+  }
+  omp_set_num_threads(omp_get_num_procs());
+}
+BENCHMARK(DefaultTable)->Arg(1)->Arg(2)->Unit(benchmark::kSecond)->UseRealTime();
+
+}  // namespace
+
+BENCHMARK_MAIN();

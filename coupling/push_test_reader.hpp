@@ -1,0 +1,26 @@
+#pragma once
+
+#include "coupling/push_test.hpp"
+#include "numerics/toml_reader.hpp"
+
+#include <optional>
+#include <string>
+
+namespace snare::coupling {
+
+/// The tables that describe one push in a file: keys, units and ranges in docs/experiment_file.md.
+struct PushTables {
+  numerics::TomlTable wire, mount, pusher, bulge, gravity;
+};
+
+/// Those of a file, or of one of its tables.
+[[nodiscard]] PushTables push_tables(const numerics::TomlTable& root);
+
+/// Reads and checks wire, mounts, pusher, bulge and gravity; what is wrong is reported to the tables' document.
+/// Contact position and travel are left to the caller.
+[[nodiscard]] PushTest read_push_test(const PushTables& tables);
+
+/// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
+[[nodiscard]] std::optional<std::string> position_problem(double position, double span);
+
+}  // namespace snare::coupling

@@ -1,0 +1,241 @@
+#include "reduction/curve_store.hpp"
+
+#include "coupling/push_solver.hpp"
+#include "numerics/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <string_view>
+#include <system_error>
+
+namespace snare::reduction {
+
+namespace {
+
+/// Fowler, Noll and Vo's hash, 64 bits, variant 1a.
+std::uint64_t fnv1a(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return hash;
+}
+
+/// Everything that a curve depends on but its place, as text.
+std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
+  const coupling::PushTest& t = wire.test;
+  std::string text = fmt::format(
+      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} g {} {} {} "
+      "rho {} elements {} {}",
+      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature, t.wire.torsional_stiffness(),
+      t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius, t.pusher.radius, t.pusher.friction,
+      t.pusher.compliance, static_cast<int>(t.pusher.direction), t.pusher.misalignment, t.bulge.mode, t.bulge.plane,
+      t.gravity[0], t.gravity[1], t.gravity[2], t.wire.mass_per_length(), settings.elements, settings.extrapolate);
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (value) text += fmt::format(" {} {}", name, *value);
+  };
+  add("kt", t.mount.translational_stiffness);
+  add("kr", t.mount.rotational_stiffness);
+  add("slip", t.mount.slip_tension);
+  if (t.wire.strand_friction)
+    text += fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness, t.wire.strand_friction->slip_curvature);
+  // The curvature at which metal yields depends on the diameter.
+  if (t.wire.yielding)
+    text += fmt::format(" yield {} {} {} {}", t.wire.yielding->yield_stress, t.wire.yielding->hardening_ratio,
+                        t.wire.diameter, t.wire.youngs_modulus);
+  for (const double factor : t.wire.bending_profile) text += fmt::format(" {}", factor);
+  for (const double d : travel) text += fmt::format(" {}", d);
+  return fmt::format("{:016x}", fnv1a(text));
+}
+
+void append(std::string& text, const std::vector<double>& values) {
+  text += fmt::format(" {}", values.size());
+  for (const double v : values) text += fmt::format(" {}", v);
+}
+
+/// One line of the journal: identity, place, curve, and the hash of all that.
+std::string journal_line(const std::string& identity, const CurvePlace& place, const WireCurve& curve) {
+  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack, curve.discretisation_error,
+                                 curve.largest_strain, curve.dissipated);
+  append(text, curve.loading);
+  append(text, curve.unloading);
+  return fmt::format("{} {:016x}\n", text, fnv1a(text));
+}
+
+/// Numbers of a line, one after the other.
+class NumberReader {
+ public:
+  explicit NumberReader(std::string_view text) : text_(text) {}
+  [[nodiscard]] double next() {
+    while (!text_.empty() && text_.front() == ' ') text_.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
+    good_ = good_ && error == std::errc();
+    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    return value;
+  }
+  [[nodiscard]] std::vector<double> list(std::size_t most) {
+    const double count = next();
+    if (!(count >= 0.0 && count <= static_cast<double>(most))) good_ = false;
+    std::vector<double> values;
+    for (std::size_t i = 0; good_ && i < static_cast<std::size_t>(count); ++i) values.push_back(next());
+    return values;
+  }
+  [[nodiscard]] bool good() const { return good_; }
+
+ private:
+  std::string_view text_;
+  bool good_ = true;
+};
+
+}  // namespace
+
+CurveStore::CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
+                       std::filesystem::path journal)
+    : wire_(std::move(wire)), settings_(settings), travel_(std::move(travel)), journal_(std::move(journal)),
+      identity_(identity(wire_, settings_, travel_)) {
+  if (!journal_.empty() && std::filesystem::exists(journal_)) read_journal();
+}
+
+double CurveStore::folded(double position) const noexcept {
+  const double span = wire_.test.mount.span;
+  return wire_.symmetric() && position > 0.5 * span ? span - position : position;
+}
+
+void CurveStore::read_journal() {
+  const std::string text = numerics::read_text(journal_, std::size_t{1} << 30u);
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) break;  // torn
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(end + 1);
+    const std::size_t last = line.rfind(' ');
+    if (last == std::string_view::npos || line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last)))) continue;
+    if (line.substr(0, identity_.size()) != identity_) continue;
+    NumberReader numbers(line.substr(identity_.size(), last - identity_.size()));
+    CurvePlace place;
+    WireCurve curve;
+    place.position = numbers.next();
+    place.slack = numbers.next();
+    curve.discretisation_error = numbers.next();
+    curve.largest_strain = numbers.next();
+    curve.dissipated = numbers.next();
+    curve.loading = numbers.list(travel_.size());
+    curve.unloading = numbers.list(travel_.size());
+    curve.complete = true;
+    if (numbers.good() && curve.loading.size() == travel_.size()) curves_.emplace(place, std::move(curve));
+  }
+}
+
+WireCurve CurveStore::solve(const CurvePlace& place) const {
+  coupling::PushTest test = wire_.test;
+  test.contact_position = place.position;
+  test.wire.length = test.mount.span + place.slack;
+  test.travel = travel_;
+  const bool returns = wire_.dissipates();
+  if (returns) test.travel.insert(test.travel.end(), travel_.rbegin() + 1, travel_.rend());
+  coupling::PushOptions options;
+  options.elements = settings_.elements;
+  coupling::ExtrapolatedCurve solution;
+  if (settings_.extrapolate) solution = coupling::solve_push_extrapolated(test, options);
+  else solution.curve = coupling::solve_push(test, options);
+
+  WireCurve curve;
+  std::vector<double> force;
+  bool stable = true;
+  const std::vector<coupling::PushPoint>& points = solution.curve.points;
+  // Points that the path passed between the asked ones have no travel here.
+  for (std::size_t i = 0; i < points.size() && force.size() < test.travel.size(); ++i) {
+    if (points[i].travel != test.travel[force.size()]) continue;
+    if (points[i].unstable_modes > 0) {
+      stable = false;
+      break;
+    }
+    force.push_back(points[i].force);
+    curve.largest_strain = std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
+    curve.dissipated = points[i].dissipated;
+    if (i < solution.discretisation_error.size())
+      curve.discretisation_error = std::max(curve.discretisation_error, solution.discretisation_error[i]);
+  }
+  curve.complete = force.size() == test.travel.size();
+  if (!curve.complete) {
+    const std::string reason = !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm",
+                                                     1e3 * test.travel[force.size()])
+                                       : solution.curve.report.message;
+    curve.stopped = fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position, 1e3 * place.slack, reason);
+  }
+  const std::size_t up = std::min(force.size(), travel_.size());
+  curve.loading.assign(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(up));
+  if (returns && curve.complete) {
+    curve.unloading.assign(force.rbegin(), force.rbegin() + static_cast<std::ptrdiff_t>(travel_.size()));
+  }
+  return curve;
+}
+
+numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, const SamplingObserver& observer) {
+  std::vector<CurvePlace> wanted;
+  for (CurvePlace place : places) {
+    place.position = folded(place.position);
+    if (curves_.contains(place) && curves_.at(place).complete) continue;
+    if (std::find(wanted.begin(), wanted.end(), place) == wanted.end()) wanted.push_back(place);
+  }
+  numerics::FileHandle journal;
+  if (!journal_.empty() && !wanted.empty()) {
+    if (journal_.has_parent_path()) std::filesystem::create_directories(journal_.parent_path());
+    journal.reset(std::fopen(journal_.c_str(), "ab"));
+    if (!journal) throw std::system_error(errno, std::generic_category(), journal_.string());
+    std::fputs("\n", journal.get());  // ends a torn line
+  }
+  std::vector<WireCurve> results(wanted.size());
+  std::atomic<bool> stop{false};
+  std::exception_ptr failure;
+  std::size_t finished = 0;
+  const auto count = static_cast<std::ptrdiff_t>(wanted.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    if (stop) continue;
+    const auto k = static_cast<std::size_t>(i);
+    try {
+      WireCurve curve = solve(wanted[k]);
+#pragma omp critical(snare_curve_store)
+      {
+        ++finished;
+        if (journal && curve.complete) {
+          const std::string line = journal_line(identity_, wanted[k], curve);
+          std::fwrite(line.data(), 1, line.size(), journal.get());
+          std::fflush(journal.get());
+        }
+        results[k] = std::move(curve);
+        if (observer && !observer(finished, wanted.size())) stop = true;
+      }
+    } catch (...) {
+#pragma omp critical(snare_curve_store)
+      failure = std::current_exception();
+      stop = true;
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  numerics::SolveReport report;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    if (results[k].loading.empty() && results[k].stopped.empty()) continue;  // not begun
+    ++solved_;
+    if (!results[k].complete && report.usable()) {
+      report.termination = numerics::Termination::step_too_small;
+      report.message = results[k].stopped;
+    }
+    curves_[wanted[k]] = std::move(results[k]);
+  }
+  if (stop && report.usable()) {
+    report.termination = numerics::Termination::interrupted;
+    report.message = "interrupted";
+  }
+  return report;
+}
+
+}  // namespace snare::reduction

@@ -1,0 +1,63 @@
+#include "reduction/distil.hpp"
+
+#include <utility>
+
+namespace snare::reduction {
+
+namespace {
+
+constexpr int fit_every = 3;  // travels that a fit sees; the others check it
+constexpr int stiffness_points = 40;
+constexpr int map_slacks = 17;
+constexpr int map_travels = 60;
+
+}  // namespace
+
+numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>& places, const SamplingObserver& observer) {
+  const WireCase& wire = store.wire();
+  std::vector<CurvePlace> wanted;
+  for (const double s : wire.law_positions) wanted.push_back({s, wire.nominal_slack()});
+  numerics::SolveReport report = store.sample(wanted, observer);
+  if (!report.usable()) return report;
+  std::vector<std::size_t> fit_at;
+  for (std::size_t i = 0; i < store.travel().size(); i += fit_every) fit_at.push_back(i);
+  for (const double s : wire.law_positions) {
+    const WireCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
+    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}};
+    const LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length, wire.test.wire.bending_stiffness()};
+    for (const LawFormPointer& form : law_forms(geometry)) {
+      FittedLaw law = fit_law(form, place.full, fit_at);
+      if (law.values.size() > 0) place.laws.push_back(std::move(law));
+    }
+    place.stiffness = stiffness_curve(place.full, stiffness_points);
+    if (!curve.unloading.empty()) {
+      const HermiteCurve back(store.travel(), curve.unloading);
+      place.dissipation = dissipation(place.full, back);
+      place.load_unload = fit_load_unload(place.full, back);
+    }
+    places.push_back(std::move(place));
+  }
+  return report;
+}
+
+Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer) {
+  Distillation result;
+  for (const WireCase& wire : file.cases) {
+    CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal);
+    DistilledCase one;
+    one.wire = wire;
+    const double span = wire.test.mount.span;
+    one.groups = {wire.test.wire.axial_stiffness() * span * span / wire.test.wire.bending_stiffness(),
+                  wire.test.pusher.radius / span, wire.test.pusher.friction};
+    one.table = build_table(store, file.settings, observer);
+    result.report = one.table.report;
+    if (result.report.usable()) result.report = fit_places(store, one.places, observer);
+    result.solved += store.solved();
+    if (!result.report.usable()) return result;
+    one.map = map_laws(wire, file.settings, map_slacks, map_travels);
+    result.cases.push_back(std::move(one));
+  }
+  return result;
+}
+
+}  // namespace snare::reduction

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "reduction/law_fit.hpp"
+#include "reduction/law_map.hpp"
+#include "reduction/load_unload.hpp"
+#include "reduction/table_builder.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace snare::reduction {
+
+/// The simple laws at one position, at the nominal slack.
+struct DistilledPlace {
+  double position = 0.0;  ///< [m]
+  HermiteCurve full;      ///< the full wire, loading
+  std::vector<FittedLaw> laws;
+  StiffnessCurve stiffness;
+  std::optional<Dissipation> dissipation;       ///< where something dissipates
+  std::optional<LoadUnloadFit> load_unload;
+};
+
+/// Dimensionless groups of a case that its table holds for.
+struct WireGroups {
+  double axial = 0.0;     ///< EA L^2/EI
+  double radius = 0.0;    ///< R/L
+  double friction = 0.0;  ///< mu
+};
+
+/// One wire with everything distilled from it.
+struct DistilledCase {
+  WireCase wire;
+  WireGroups groups;
+  BuiltTable table;
+  std::vector<DistilledPlace> places;
+  LawMap map;
+};
+
+struct Distillation {
+  std::vector<DistilledCase> cases;  ///< those that were finished
+  std::size_t solved = 0;            ///< curves computed in this run, those of the journal not counted
+  numerics::SolveReport report;      ///< not usable: the last case is missing
+};
+
+/// Distils every case of a wire file. journal: where finished curves are kept until the end; none when empty.
+[[nodiscard]] Distillation distil(const WireFile& file, const std::filesystem::path& journal = {},
+                                  const SamplingObserver& observer = {});
+
+/// The laws at some positions from curves of the nominal slack; they are sampled where they are not known.
+[[nodiscard]] numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>& places,
+                                               const SamplingObserver& observer);
+
+}  // namespace snare::reduction

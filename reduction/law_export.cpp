@@ -1,0 +1,310 @@
+#include "reduction/law_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::reduction {
+
+namespace {
+
+/// What differs between the three languages.
+struct Language {
+  std::string comment;     // begins a line of comment
+  std::string prefix;      // of mathematical functions
+  std::string array_open;  // "static const double %s[] = {"
+  std::string array_close;
+  std::string function_open;  // of one argument d
+  std::string function_close;
+  std::string prelude;
+  std::string table;  // its evaluation
+  std::string end;
+};
+
+std::string numbers(const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += fmt::format("{}{}", values[i], i + 1 < values.size() ? (i % 8 == 7 ? ",\n  " : ", ") : "");
+  }
+  return text;
+}
+
+std::string error_words(const FittedLaw& law) {
+  return fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(), law.error.largest_force, law.error.force_range);
+}
+
+std::string head(const DistilledCase& one, const std::string& title, const std::string& comment) {
+  const TableError& e = one.table.loading_error;
+  const auto& axes = one.table.loading->axes();
+  const double span = one.table.loading->span();
+  const auto range = [&](std::size_t a) {
+    return fmt::format("{:.6g} to {:.6g} m", axes[a].front() * span, axes[a].back() * span);
+  };
+  std::string title_line = title;
+  std::replace(title_line.begin(), title_line.end(), '\n', ' ');
+  std::string text;
+  for (const std::string& line :
+       {title_line, std::string("Force of a snare wire on a pusher, distilled from the full wire by snare. SI units: m, N."),
+        "travel d from first touch: " + range(0), "position s along the chord: " + range(1), "slack: " + range(2),
+        fmt::format("table within {:.4g} N of the full wire ({:.3g} % of the range of the force)", e.bound,
+                    100.0 * e.bound / e.force_range),
+        std::string(one.wire.dissipates() ? "loading only: this wire dissipates, see load_unload in law.json" : "")}) {
+    if (!line.empty()) text += comment + line + "\n";
+  }
+  return text;
+}
+
+std::string generate(const DistilledCase& one, const std::string& title, const Language& l) {
+  const ForceTable& table = *one.table.loading;
+  const auto& axes = table.axes();
+  std::string text = head(one, title, l.comment) + l.prelude;
+  const auto array = [&](const std::string& name, const std::vector<double>& values) {
+    text += fmt::format(fmt::runtime(l.array_open), name) + "\n  " + numbers(values) + l.array_close;
+  };
+  array("knots_travel", axes[0]);
+  array("knots_position", axes[1]);
+  array("knots_slack", axes[2]);
+  array("nodes", table.nodes());
+  text += fmt::format(fmt::runtime(l.table), fmt::arg("nd", axes[0].size()), fmt::arg("ns", axes[1].size()),
+                      fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()), fmt::arg("scale", table.force_scale()),
+                      fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"));
+  for (const DistilledPlace& place : one.places) {
+    for (const FittedLaw& law : place.laws) {
+      text += "\n" + l.comment + error_words(law) + "\n";
+      text += fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
+      text += law.form->expression(law.values, l.prefix) + l.function_close;
+    }
+  }
+  return text + l.end;
+}
+
+// The evaluation in C, which C++ takes as well. {q}: qualifier of the functions, {m}: prefix of arrays.
+std::string c_table(const std::string& qualifier) {
+  return qualifier + R"(unsigned find_cell_(const double* knots, unsigned count, double x) {{
+  unsigned low = 0, high = count > 1 ? count - 1 : 1;
+  while (high - low > 1) {{
+    unsigned middle = (low + high) / 2;
+    if (x >= knots[middle]) low = middle; else high = middle;
+  }}
+  return low;
+}}
+
+)" + qualifier + R"(unsigned basis_(const double* knots, unsigned count, double x, double b[4], unsigned* upper) {{
+  unsigned i = find_cell_(knots, count, x);
+  double h, t, u;
+  b[0] = 1.0; b[1] = 0.0; b[2] = 0.0; b[3] = 0.0;
+  *upper = i;
+  if (count == 1) return i;
+  *upper = i + 1;
+  h = knots[i + 1] - knots[i];
+  t = (x - knots[i]) / h;
+  u = 1.0 - t;
+  b[0] = u * u * (1.0 + 2.0 * t); b[1] = h * t * u * u; b[2] = t * t * (1.0 + 2.0 * u); b[3] = -h * u * t * t;
+  return i;
+}}
+
+/* force [N] at travel d, position and slack [m] */
+)" + qualifier + R"(double force(double d, double position, double slack) {{
+  double x = d / {span}, s = position / {span}, e = slack / {span};
+  double bd[4], bs[4], be[4], total = 0.0;
+  unsigned k, k1, i[2], j[2], b, c, p;
+  if (d < 0.0) return 0.0;
+  if ({mirror}) s = 1.0 - s;
+  k = basis_(knots_travel, {nd}, x, bd, &k1);
+  i[0] = basis_(knots_position, {ns}, s, bs, &i[1]);
+  j[0] = basis_(knots_slack, {ne}, e, be, &j[1]);
+  (void)k1;
+  for (c = 0; c < 2; ++c) {{
+    for (b = 0; b < 2; ++b) {{
+      const double* low = nodes + 8 * (k + {nd} * (i[b] + {ns} * j[c]));
+      const double* high = low + 8;
+      double along[4];
+      for (p = 0; p < 4; ++p) {{
+        along[p] = bd[0] * low[2 * p] + bd[1] * low[2 * p + 1] + bd[2] * high[2 * p] + bd[3] * high[2 * p + 1];
+      }}
+      total += be[2 * c] * (bs[2 * b] * along[0] + bs[2 * b + 1] * along[1]) +
+               be[2 * c + 1] * (bs[2 * b] * along[2] + bs[2 * b + 1] * along[3]);
+    }}
+  }}
+  return {scale} * total;
+}}
+
+)" + qualifier + R"(int in_range(double d, double position, double slack) {{
+  double x = d / {span}, s = position / {span}, e = slack / {span};
+  if ({mirror}) s = 1.0 - s;
+  return x <= knots_travel[{nd} - 1] + 1e-9 && s >= knots_position[0] - 1e-9 && s <= knots_position[{ns} - 1] + 1e-9 &&
+         e >= knots_slack[0] - 1e-9 && e <= knots_slack[{ne} - 1] + 1e-9;
+}}
+)";
+}
+
+constexpr const char* python_table = R"(
+
+def _basis(knots, x):
+    if len(knots) == 1:
+        return 0, 0, (1.0, 0.0, 0.0, 0.0)
+    low, high = 0, len(knots) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if x >= knots[middle]:
+            low = middle
+        else:
+            high = middle
+    h = knots[low + 1] - knots[low]
+    t = (x - knots[low]) / h
+    u = 1.0 - t
+    return low, low + 1, (u * u * (1.0 + 2.0 * t), h * t * u * u, t * t * (1.0 + 2.0 * u), -h * u * t * t)
+
+
+def force(d, position, slack):
+    """Force [N] at travel d, position and slack [m]."""
+    if d < 0.0:
+        return 0.0
+    x, s, e = d / {span}, position / {span}, slack / {span}
+    if {mirror}:
+        s = 1.0 - s
+    k, _, bd = _basis(knots_travel, x)
+    i0, i1, bs = _basis(knots_position, s)
+    j0, j1, be = _basis(knots_slack, e)
+    total = 0.0
+    for c, j in enumerate((j0, j1)):
+        for b, i in enumerate((i0, i1)):
+            low = 8 * (k + {nd} * (i + {ns} * j))
+            along = [bd[0] * nodes[low + 2 * p] + bd[1] * nodes[low + 2 * p + 1] + bd[2] * nodes[low + 8 + 2 * p]
+                     + bd[3] * nodes[low + 9 + 2 * p] for p in range(4)]
+            total += (be[2 * c] * (bs[2 * b] * along[0] + bs[2 * b + 1] * along[1])
+                      + be[2 * c + 1] * (bs[2 * b] * along[2] + bs[2 * b + 1] * along[3]))
+    return {scale} * total
+
+
+def in_range(d, position, slack):
+    x, s, e = d / {span}, position / {span}, slack / {span}
+    if {mirror}:
+        s = 1.0 - s
+    return (x <= knots_travel[-1] + 1e-9 and knots_position[0] - 1e-9 <= s <= knots_position[-1] + 1e-9
+            and knots_slack[0] - 1e-9 <= e <= knots_slack[-1] + 1e-9)
+)";
+
+const FittedLaw* find_law(const DistilledPlace& place, const std::string& name) {
+  for (const FittedLaw& law : place.laws) {
+    if (law.form->name() == name) return &law;
+  }
+  return nullptr;
+}
+
+/// "a, b, c" in lines that ADAMS takes, each continued by a leading comma.
+std::string adams_numbers(const std::string& key, const std::vector<double>& values) {
+  std::string text = ", " + key + "=";
+  for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : i % 5 == 0 ? "\n, " : ", ", values[i]);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string position_name(double position) {
+  std::string text = fmt::format("s{:.6g}", 1e3 * position);
+  std::replace(text.begin(), text.end(), '.', '_');
+  return text;
+}
+
+std::string cpp_header(const DistilledCase& one, const std::string& title) {
+  Language l;
+  l.comment = "// ";
+  l.prefix = "std::";
+  l.array_open = "inline constexpr double {}[] = {{";
+  l.array_close = "};\n";
+  l.function_open = "inline double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
+  l.function_close = ";\n}\n";
+  l.prelude = "#pragma once\n\n#include <cmath>\n\nnamespace snare_law {\n\n";
+  l.table = "\n" + c_table("inline ");
+  l.end = "\n}  // namespace snare_law\n";
+  return generate(one, title, l);
+}
+
+std::string c_source(const DistilledCase& one, const std::string& title) {
+  Language l;
+  l.comment = "/* ";
+  l.prefix = "";
+  l.array_open = "static const double {}[] = {{";
+  l.array_close = "};\n";
+  l.function_open = "double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
+  l.function_close = ";\n}\n";
+  l.prelude = "#include <math.h>\n\n";
+  l.table = "\n" + c_table("");
+  std::string text = generate(one, title, l);
+  // Comments of C end where they should.
+  std::string closed;
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    std::string line = text.substr(from, end - from);
+    if (line.starts_with("/* ") && !line.ends_with("*/")) line += " */";
+    closed += line + "\n";
+    from = end + 1;
+  }
+  // What no other file should see.
+  for (const char* name : {"unsigned find_cell_(", "unsigned basis_("}) {
+    const std::size_t at = closed.find(std::string("\n") + name);
+    if (at != std::string::npos) closed.insert(at + 1, "static ");
+  }
+  return closed;
+}
+
+std::string python_module(const DistilledCase& one, const std::string& title) {
+  Language l;
+  l.comment = "# ";
+  l.prefix = "math.";
+  l.array_open = "{} = (";
+  l.array_close = ",)\n";
+  l.function_open = "def {}(d):\n    return 0.0 if d < 0.0 else ";
+  l.function_close = "\n";
+  l.prelude = "import math\n\n";
+  l.table = python_table;
+  return generate(one, title, l);
+}
+
+std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
+  const DistilledPlace& place = one.places.front();
+  const FittedLaw* linear = find_law(place, "linear");
+  const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
+  // A double hyphen may not stand in a comment of XML.
+  std::string words = title;
+  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--")) words.replace(at, 2, "-");
+  return fmt::format(
+      "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first touch: off the full wire by up to"
+      "\n     {:.3g} N of {:.3g} N. The damping times the angular rate is {:.4g} N/m (from the friction loop; 0: elastic). -->\n"
+      "<mujoco model=\"snare_wire\">\n  <worldbody>\n    <body name=\"wire_contact\">\n"
+      "      <joint name=\"wire_travel\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{}\" springref=\"0\" damping=\"0\"\n"
+      "             limited=\"true\" range=\"0 {}\"/>\n"
+      "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\"/>\n    </body>\n  </worldbody>\n</mujoco>\n",
+      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force, linear->error.force_range, loss,
+      linear->values[0], linear->range.high);
+}
+
+std::string adams_splines(const DistilledCase& one, const std::string& title) {
+  const ForceTable& table = *one.table.loading;
+  std::vector<double> travel = table.axes()[0];
+  for (double& d : travel) d *= table.span();
+  std::string words = title;
+  std::replace(words.begin(), words.end(), '\n', ' ');
+  std::string text = "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
+  int number = 1;
+  for (const DistilledPlace& place : one.places) {
+    std::vector<double> force;
+    for (const double d : travel) force.push_back(place.full.value(d));
+    text += fmt::format("! s = {:.6g} mm, slack {:.6g} mm\nSPLINE/{}\n", 1e3 * place.position, 1e3 * one.wire.nominal_slack(), number++);
+    text += adams_numbers("X", travel) + adams_numbers("Y", force);
+  }
+  text += fmt::format("! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n", 1e3 * one.wire.nominal_slack(), number);
+  text += adams_numbers("X", travel);
+  for (const double s : table.axes()[1]) {
+    // The first number of a Y list is its Z.
+    std::vector<double> row{s * table.span()};
+    for (const double d : travel) row.push_back(table.force(d, s * table.span(), one.wire.nominal_slack()));
+    text += adams_numbers("Y", row);
+  }
+  return text;
+}
+
+}  // namespace snare::reduction

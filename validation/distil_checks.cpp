@@ -1,0 +1,219 @@
+#include "validation/distil_checks.hpp"
+
+#include "coupling/push_solver.hpp"
+#include "reduction/law_fit.hpp"
+#include "reduction/snare_joint.hpp"
+#include "reduction/table_builder.hpp"
+#include "reduction/tensioned_wire.hpp"
+#include "validation/closed_forms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+namespace snare::validation {
+
+namespace {
+
+/// A published fit and what the tracing found for its record: displacement at which the pusher touches the wire.
+struct PublishedLaw {
+  double position, a, b, c, r2, zero;  // [m], [N/m^2], [N/m], [N], [-], [m]
+  [[nodiscard]] double force(double d) const { return (a * d + b) * d + c; }
+};
+constexpr std::array<PublishedLaw, 3> published{{{0.040, 719880.0, -13.578, 0.0533, 0.9976, 0.44e-3},
+                                                 {0.065, 878089.0, -1086.0, 0.2115, 0.998, 1.03e-3},
+                                                 {0.090, 890183.0, -1297.6, 0.3457, 0.9975, 1.46e-3}}};
+constexpr double recorded_range = 4e-3;  // [m], assumed: the papers do not print it
+constexpr int recorded_points = 41;
+
+/// The one wire that the tracing of the published tests ends with.
+coupling::PushTest traced_wire() {
+  coupling::PushTest test;
+  test.wire.diameter = 1.5e-3;
+  test.wire.youngs_modulus = 193e9;
+  test.wire.poisson_ratio = 0.29;
+  test.wire.density = 7930.0;
+  test.wire.bending_stiffness_override = 0.0094;
+  test.wire.axial_stiffness_override = 19300.0;
+  test.wire.length = 175.49e-3;
+  test.mount.span = 175e-3;
+  test.pusher.radius = 6e-3;
+  return test;
+}
+
+/// Force of the traced wire at the recorded displacements.
+std::vector<double> recorded(const PublishedLaw& law, std::vector<double>& displacement) {
+  coupling::PushTest test = traced_wire();
+  test.contact_position = law.position;
+  std::vector<double> force;
+  for (int i = 0; i < recorded_points; ++i) {
+    displacement.push_back(recorded_range * i / (recorded_points - 1));
+    if (displacement.back() >= law.zero) test.travel.push_back(displacement.back() - law.zero);
+    else force.push_back(0.0);
+  }
+  for (const coupling::PushPoint& p : coupling::solve_push_extrapolated(test, {}).curve.points) force.push_back(p.force);
+  if (force.size() != displacement.size()) throw std::runtime_error("the push on the traced wire ended early");
+  return force;
+}
+
+std::vector<Row> published_rows() {
+  std::vector<Row> rows;
+  const std::string group = "distilled laws";
+  std::vector<double> stiffness;
+  for (const PublishedLaw& law : published) {
+    std::vector<double> d;
+    const std::vector<double> force = recorded(law, d);
+    std::vector<std::size_t> all(d.size());
+    std::iota(all.begin(), all.end(), 0);
+    const reduction::FittedLaw fit = reduction::fit_law(reduction::quadratic_law(), reduction::HermiteCurve(d, force), all);
+    // Scatter of the lost readings about the published law, from its R^2 and its variance over the range.
+    double mean = 0.0;
+    for (const double x : d) mean += law.force(x) / recorded_points;
+    double variance = 0.0;
+    double apart = 0.0;
+    for (const double x : d) {
+      variance += std::pow(law.force(x) - mean, 2) / recorded_points;
+      apart += std::pow(fit.form->force(fit.values, x) - law.force(x), 2) / recorded_points;
+    }
+    const double scatter = std::sqrt((1.0 - law.r2) / law.r2 * variance);
+    rows.push_back({group, fmt::format("quadratic of the traced wire at s = {:g} mm: rms to the published one over its scatter, "
+                                       "at most 1", 1e3 * law.position),
+                    "", "Abiko et al., Table 4", 0.0, std::sqrt(apart) / scatter, ErrorKind::absolute, 1.0});
+    stiffness.push_back(force.back() / recorded_range);
+    double falls = 0.0;
+    for (std::size_t i = 1; i < d.size(); ++i) {
+      if (d[i] > law.zero + 1e-4 && force[i] / d[i] < force[i - 1] / d[i - 1]) falls += 1.0;
+    }
+    rows.push_back({group, fmt::format("larger penetration, larger stiffness at s = {:g} mm: points that fall", 1e3 * law.position),
+                    "", "Abiko et al., section 4", 0.0, falls, ErrorKind::absolute, 0.5});
+  }
+  const bool ordered = stiffness[0] > stiffness[1] && stiffness[1] > stiffness[2];
+  rows.push_back({group, "stiffness falls from s = 40 over 65 to 90 mm at 4 mm (1: yes)", "", "Abiko et al., Table 4 and Fig. 11",
+                  1.0, ordered ? 1.0 : 0.0, ErrorKind::absolute, 0.5});
+  return rows;
+}
+
+std::vector<Row> table_rows() {
+  reduction::WireCase wire;
+  wire.test = traced_wire();
+  wire.travel = {0.0, recorded_range};
+  wire.position = {0.035, 0.0875};
+  wire.slack = {0.75 * wire.nominal_slack(), 1.25 * wire.nominal_slack()};
+  reduction::DistilSettings settings;
+  settings.elements = 128;
+  reduction::CurveStore store(wire, settings, reduction::sampling_travel(wire, settings));
+  const reduction::BuiltTable built = reduction::build_table(store, settings);
+  if (!built.report.usable()) throw std::runtime_error(built.report.message);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  constexpr int places = 200;
+  double worst = 0.0;
+  for (int i = 0; i < places; ++i) {
+    coupling::PushTest test = wire.test;
+    test.contact_position = wire.position.low + (wire.position.high - wire.position.low) * u(random);
+    const double slack = wire.slack.low + (wire.slack.high - wire.slack.low) * u(random);
+    test.wire.length = test.mount.span + slack;
+    test.travel = {wire.travel.high * u(random)};
+    coupling::PushOptions options;
+    options.elements = 2 * settings.elements;
+    const coupling::PushCurve curve = coupling::solve_push_extrapolated(test, options).curve;
+    if (curve.points.empty()) throw std::runtime_error(curve.report.message);
+    const double table = built.loading->force(test.travel.front(), test.contact_position, slack);
+    worst = std::max(worst, std::abs(table - curve.points.back().force));
+  }
+  const double range = built.loading_error.force_range;
+  return {{"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force", "", "full wire, solved anew on a finer mesh",
+           0.0, worst / range, ErrorKind::absolute, 0.005},
+          {"distilled laws", "the same over the bound that the table states", "", "full wire, solved anew on a finer mesh", 0.0,
+           worst / built.loading_error.bound, ErrorKind::absolute, 1.0}};
+}
+
+std::vector<Row> closed_form_rows() {
+  std::vector<Row> rows;
+  const reduction::LawPlace middle{0.175, 0.0875, 0.180, 0.01};
+  Eigen::VectorXd p(2);
+  p << 5.55e5 * 0.09, 0.0;
+  const auto exact = reduction::stretched_wire_law(middle);
+  const auto linear = reduction::stretched_wire_linearised(middle);
+  const std::string honda = "Honda et al., eqs 1 and 2, evaluated by hand";
+  rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, 60810.0, linear->stiffness(p, 1e-3),
+                  ErrorKind::relative, 1e-4});  // printed to four digits
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, 1.068,
+                  exact->force(p, 1e-3) / linear->force(p, 1e-3), ErrorKind::absolute, 5e-4});
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda, 1.74,
+                  exact->force(p, 1e-2) / linear->force(p, 1e-2), ErrorKind::absolute, 5e-3});
+  for (const double s : {0.04, 0.065, 0.09}) {
+    rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s), "N/m",
+                    "w'''' - m^2 w'' = 0 on both sides, solved by itself", tensioned_clamped_stiffness(0.04796, 50.0, 0.175, s),
+                    reduction::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative, 1e-9});
+  }
+  return rows;
+}
+
+/// Half the traced wire in every length, so that stresses stay: EI by 1/16, EA by 1/4. Seat and friction are assumed.
+coupling::SnareSpecification half_scale_snare() {
+  coupling::SnareSpecification snare;
+  snare.wire = traced_wire();
+  snare.wire.wire.diameter *= 0.5;
+  snare.wire.wire.length *= 0.5;
+  snare.wire.mount.span *= 0.5;
+  snare.wire.pusher.radius *= 0.5;
+  *snare.wire.wire.bending_stiffness_override /= 16.0;
+  *snare.wire.wire.axial_stiffness_override /= 4.0;
+  snare.wire.pusher.friction = 0.1;  // Honda et al., Table 3, dynamic
+  snare.seat = 5e-3;                 // beyond the 3 mm by which the shaft is moved
+  return snare;
+}
+
+std::vector<Row> snare_rows() {
+  std::vector<Row> rows;
+  const std::string group = "shaft in a closed snare";
+  const std::string paper = "Nakanishi et al., ground test: what is stated";
+  const coupling::SnareSpecification snare = half_scale_snare();
+  const auto stiffness = [&](const Eigen::Vector3d& u) {
+    const coupling::ShaftPath path = coupling::move_shaft(snare, {u});
+    if (!path.report.usable()) throw std::runtime_error(path.report.message);
+    return path.points.back().force.dot(u) / u.squaredNorm();
+  };
+  const double x = stiffness({1e-5, 0.0, 0.0});
+  rows.push_back({group, "stiffness in y over that in x", "", "three wires at 120 degrees", 1.0, stiffness({0.0, 1e-5, 0.0}) / x,
+                  ErrorKind::absolute, 0.01});
+  for (const int axis : {0, 1, 2}) {
+    const char* name = axis == 0 ? "x" : axis == 1 ? "y" : "z";
+    const reduction::JointCycle cycle = reduction::cycle_snare(snare, axis, axis == 2 ? 0.010 : 0.003, 120);
+    if (!cycle.report.usable()) throw std::runtime_error(cycle.report.message);
+    // The slip between two points counts as one straight step.
+    rows.push_back({group, fmt::format("{}: dissipation over the loop's area", name), "", "energy balance of a closed cycle", 1.0,
+                    cycle.dissipated / cycle.loop, ErrorKind::absolute, 0.02});
+    const double width = cycle.half_width / cycle.force_range;
+    if (axis < 2) {
+      rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper, 1.0, cycle.linear_r2,
+                      ErrorKind::absolute, 0.05});
+      rows.push_back({group, fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "", paper, 0.0,
+                      width, ErrorKind::absolute, 0.1});
+    } else {
+      rows.push_back({group, "z: R^2 of a straight line, not linear", "", paper, 0.0, cycle.linear_r2, ErrorKind::absolute, 0.8});
+      rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper, 0.5, width,
+                      ErrorKind::absolute, 0.1});
+      rows.push_back({group, "z: rms error of constant friction over the force", "", paper, 0.0, cycle.rms_error / cycle.force_range,
+                      ErrorKind::absolute, 0.05});
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Check> distil_checks() {
+  return {{"published quadratics from the traced wire", published_rows},
+          {"table at random places", table_rows},
+          {"closed forms of stretched and tensioned wires", closed_form_rows},
+          {"shaft in a closed snare", snare_rows}};
+}
+
+}  // namespace snare::validation
