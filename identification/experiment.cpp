@@ -26,7 +26,7 @@ using numerics::TomlTable;
 
 constexpr std::string_view schema = "snare-experiment/1";
 
-constexpr double mm = 1e-3;                          // [m]
+constexpr double mm = 1e-3;  // [m]
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
 constexpr double largest_length = 1e5;                // [mm]
