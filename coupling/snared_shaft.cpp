@@ -39,6 +39,7 @@ class HeldWire {
  private:
   [[nodiscard]] numerics::SolveReport solve(numerics::PathPoint& trial);
   [[nodiscard]] bool wraps(const numerics::PathPoint& trial) const;
+  [[nodiscard]] double stretch(const wire::SpatialState& s) const;
   void accept(const numerics::PathPoint& point);
 
   std::unique_ptr<wire::SpatialRod> rod_;
@@ -94,13 +95,27 @@ numerics::SolveReport HeldWire::seat(const SnareSpecification& snare) {
   return report;
 }
 
+// |dx/dS| of the parabola through the contact and its neighbours.        theory.md (C.1)
+double HeldWire::stretch(const wire::SpatialState& s) const {
+  const int i = rod_->mesh().contact_vertex();
+  const double before = rod_->mesh().rest_length(i - 1, s.controls);
+  const double after = rod_->mesh().rest_length(i, s.controls);
+  const Vector3d e0 = wire::vertex(s, i) - wire::vertex(s, i - 1);
+  const Vector3d e1 = wire::vertex(s, i + 1) - wire::vertex(s, i);
+  return (after / before * e0 + before / after * e1).norm() / (before + after);
+}
+
 void HeldWire::accept(const numerics::PathPoint& point) {
-  const SpatialPushSystem::Geometry g = system_->geometry(point, system_->state(point));
+  const wire::SpatialState state = system_->state(point);
+  const SpatialPushSystem::Geometry g = system_->geometry(point, state);
   SpatialPin& pin = system_->pin;
   slides_ = pin.pressed && pin.friction > 0.0 && system_->slides(g);
+  // What slides over the shaft is stretched wire: (1 + e) dS, of which the slip of the stick condition has dS.
+  const double fed = point.border[3] - pin.last_coordinate;
+  const Vector2d slip = g.slip - (stretch(state) - 1.0) * fed * Vector2d(g.tangent.dot(g.across), g.tangent.dot(pin.axis));
   // Trapezoidal in the force; where the slip has turned round, the force it ends with.
   const bool turned = g.friction.dot(last_friction_) <= 0.0;
-  if (slides_) dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * g.slip.norm();
+  if (slides_) dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * slip.norm();
   last_friction_ = g.friction;
   point_ = point;
   system_->accept(point);

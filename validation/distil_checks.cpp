@@ -189,7 +189,7 @@ std::vector<Row> snare_rows() {
     if (!cycle.report.usable()) throw std::runtime_error(cycle.report.message);
     // The slip between two points counts as one straight step.
     rows.push_back({group, fmt::format("{}: dissipation over the loop's area", name), "", "energy balance of a closed cycle", 1.0,
-                    cycle.dissipated / cycle.loop, ErrorKind::absolute, 0.02});
+                    cycle.dissipated / cycle.loop, ErrorKind::absolute, 0.005});
     const double width = cycle.half_width / cycle.force_range;
     if (axis < 2) {
       rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper, 1.0, cycle.linear_r2,
