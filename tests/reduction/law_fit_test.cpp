@@ -40,7 +40,8 @@ TEST(LawFit, FindsItsOwnNumbers) {
     for (std::size_t i = 0; i < d.size(); i += 3) at.push_back(i);
     const FittedLaw law = fit_law(form, HermiteCurve(d, force), at);
     ASSERT_EQ(law.values.size(), p.size()) << form->name();
-    for (Eigen::Index i = 0; i < p.size(); ++i) EXPECT_NEAR(law.values[i] / p[i], 1.0, 1e-6) << form->name() << " " << i;
+    for (Eigen::Index i = 0; i < p.size(); ++i)
+      EXPECT_NEAR(law.values[i] / p[i], 1.0, 1e-6) << form->name() << " " << i;
     EXPECT_LT(law.error.largest_force, 1e-8 * law.error.force_range) << form->name();
   }
 }

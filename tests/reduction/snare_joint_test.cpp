@@ -44,8 +44,10 @@ TEST(SnaredShaft, IsIsotropicInItsPlane) {
 
 // A wire and the mirror image of the way.
 TEST(SnaredShaft, MirrorsInX) {
-  const coupling::ShaftPath right = coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
-  const coupling::ShaftPath left = coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath right =
+      coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath left =
+      coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
   ASSERT_EQ(right.points.size(), 2u);
   ASSERT_EQ(left.points.size(), 2u);
   const Eigen::Vector3d f = right.points.back().force;
@@ -61,7 +63,8 @@ TEST(SnaredShaft, StoresTheWorkWithoutFriction) {
   const coupling::ShaftPath path = coupling::move_shaft(small_snare(0.0), way);
   ASSERT_EQ(path.points.size(), way.size()) << path.report.message;
   double work = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) work += 0.5 * (path.points[i].force + path.points[i - 1].force).dot(way[i] - way[i - 1]);
+  for (std::size_t i = 1; i < way.size(); ++i)
+    work += 0.5 * (path.points[i].force + path.points[i - 1].force).dot(way[i] - way[i - 1]);
   EXPECT_NEAR(work, path.points.back().energy - path.points.front().energy, 1e-3 * work);
 }
 
