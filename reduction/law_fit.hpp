@@ -24,7 +24,8 @@ struct LawError {
 struct FittedLaw {
   LawFormPointer form;
   Eigen::VectorXd values;
-  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers of a form that
+  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers
+  /// of a form that
   /// does not fit it exactly; there is no noise in it.
   Eigen::MatrixXd covariance;
   Interval range;  ///< of the travel [m]
@@ -46,7 +47,8 @@ struct FittedLaw {
 [[nodiscard]] LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at,
                                 const FittedLaw& law);
 
-/// The spring of the linear spring-dashpot law against the travel it is used over: k(d) = F/d.       Abiko et al., Fig. 11
+/// The spring of the linear spring-dashpot law against the travel it is used over: k(d) = F/d.       Abiko et
+/// al., Fig. 11
 struct StiffnessCurve {
   std::vector<double> travel;   ///< > 0 [m]
   std::vector<double> secant;   ///< F/d [N/m]

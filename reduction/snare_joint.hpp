@@ -22,7 +22,8 @@ struct JointState {
   Eigen::Vector3d sliding = Eigen::Vector3d::Zero();       ///< p [N]
 };
 
-/// The ball joint that stands for a closed snare: springs across the shaft, friction along it (Nakanishi et al., ground test).
+/// The ball joint that stands for a closed snare: springs across the shaft, friction along it (Nakanishi et
+/// al., ground test).
 struct SnareJoint {
   std::array<JointAxis, 3> axis;
 

@@ -62,7 +62,8 @@ struct WireFile {
 /// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].  theory.md (R.1)
 [[nodiscard]] double default_travel(const coupling::PushTest& test);
 
-/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws numerics::InputError with
+/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws
+/// numerics::InputError with
 /// every problem found (file, line, key, value, what is allowed).
 [[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file,
                                       const std::vector<numerics::Override>& overrides = {});

@@ -43,7 +43,8 @@ TEST(CubicSpline, ConvergesAtFourthOrder) {
   EXPECT_GT(error(10) / error(20), 13.0);
 }
 
-// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond mid-span.
+// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond
+// mid-span.
 TEST(ForceTable, IsExactForCubicsAndMirrors) {
   const ForceTable::Axes axes{{{0.0, 0.01, 0.02, 0.03}, {0.2, 0.3, 0.35, 0.5}, {0.001, 0.002, 0.004, 0.005}}};
   const auto f = [](double d, double s, double e) {
@@ -108,7 +109,8 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   }
 }
 
-// The default table of the traced wire against the full wire solved anew at 1000 places, each from the straight wire: 0.5 % of the
+// The default table of the traced wire against the full wire solved anew at 1000 places, each from the
+// straight wire: 0.5 % of the
 // range of the force, and never beyond the bound that the table states.
 TEST(SlowTable, AThousandRandomPoints) {
   WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");
