@@ -7,8 +7,8 @@
 #include "reduction/compare.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <omp.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -49,7 +49,8 @@ Comparison from_experiment(const std::filesystem::path& file, const Overrides& o
     one.wire.law_positions = {series.test.contact_position};
     if (series.law) {
       const identification::QuadraticLaw law = *series.law;
-      one.given.push_back({"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
+      one.given.push_back(
+          {"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
     }
     result.cases.push_back(std::move(one));
   }
@@ -66,11 +67,13 @@ Comparison from_wire(const std::filesystem::path& file, const Overrides& overrid
   for (std::size_t c = 0; c < wire.cases.size(); ++c) {
     for (const double position : wire.cases[c].law_positions) {
       StaticCase one;
-      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "", 1e3 * position);
+      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "",
+                             1e3 * position);
       one.wire = wire.cases[c];
       one.wire.law_positions = {position};
       for (int i = 0; i < points; ++i) one.travel.push_back(one.wire.travel.high * i / (points - 1));
-      if (one.wire.dissipates()) one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
+      if (one.wire.dissipates())
+        one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
       result.cases.push_back(std::move(one));
     }
   }
@@ -92,26 +95,33 @@ Comparison read(const std::filesystem::path& file, const Overrides& overrides) {
     if (schema != nullptr && schema->text == kind.schema) return kind.read(file, overrides);
     allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " or ", kind.schema);
   }
-  throw numerics::InputError(numerics::InputProblem{file.string(), schema != nullptr ? schema->line : 0, "schema",
-                                                    schema != nullptr ? schema->written : "",
-                                                    (schema != nullptr ? "must be " : "missing, must be ") + allowed});
+  throw numerics::InputError(numerics::InputProblem{
+      file.string(), schema != nullptr ? schema->line : 0, "schema", schema != nullptr ? schema->written : "",
+      (schema != nullptr ? "must be " : "missing, must be ") + allowed});
 }
 
 nlohmann::json case_json(const CaseComparison& one) {
   nlohmann::json models = nlohmann::json::array();
   for (const reduction::ModelResult& m : one.models) {
-    models.push_back({{"model", m.model}, {"parameters", m.parameters},
-                      {"valid_travel_mm", {1e3 * m.range.low, 1e3 * m.range.high}},
-                      {"error_full_wire", {{"largest_N", m.largest_error}, {"rms_N", m.rms_error},
-                                           {"share", one.force_range > 0.0 ? m.largest_error / one.force_range : 0.0}}},
-                      {"error_measured", m.measured_rms ? nlohmann::json{{"rms_N", *m.measured_rms}} : nlohmann::json()},
-                      {"seconds_per_evaluation", m.seconds}, {"force_N", m.force}});
+    models.push_back(
+        {{"model", m.model},
+         {"parameters", m.parameters},
+         {"valid_travel_mm", {1e3 * m.range.low, 1e3 * m.range.high}},
+         {"error_full_wire",
+          {{"largest_N", m.largest_error},
+           {"rms_N", m.rms_error},
+           {"share", one.force_range > 0.0 ? m.largest_error / one.force_range : 0.0}}},
+         {"error_measured", m.measured_rms ? nlohmann::json{{"rms_N", *m.measured_rms}} : nlohmann::json()},
+         {"seconds_per_evaluation", m.seconds},
+         {"force_N", m.force}});
   }
   std::vector<double> travel = one.travel;
   for (double& d : travel) d *= 1e3;
-  return {{"case", one.name}, {"displacement_mm", travel},
+  return {{"case", one.name},
+          {"displacement_mm", travel},
           {"measured_N", one.measured.empty() ? nlohmann::json() : nlohmann::json(one.measured)},
-          {"force_range_N", one.force_range}, {"models", models},
+          {"force_range_N", one.force_range},
+          {"models", models},
           {"stopped", one.report.usable() ? nlohmann::json() : nlohmann::json(one.report.message)}};
 }
 
@@ -139,8 +149,11 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
     status = ExitStatus::solver_stopped;
   }
   console.end_progress();
-  nlohmann::json json{{"schema", "snare-comparison/1"}, {"version", version()}, {"title", comparison.title},
-                      {"kind", "static"}, {"cases", nlohmann::json::array()}};
+  nlohmann::json json{{"schema", "snare-comparison/1"},
+                      {"version", version()},
+                      {"title", comparison.title},
+                      {"kind", "static"},
+                      {"cases", nlohmann::json::array()}};
   for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
   numerics::write_text(options.out / "compare.json", json.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
@@ -150,8 +163,9 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
   }
   for (const CaseComparison& one : results) {
     for (const reduction::ModelResult& m : one.models) {
-      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name, m.model,
-                              m.largest_error, m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-", m.seconds,
+      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers",
+                              one.name, m.model, m.largest_error,
+                              m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-", m.seconds,
                               m.parameters));
     }
   }

@@ -8,6 +8,7 @@
 namespace snare::app {
 
 /// report.html of a comparison: accuracy and cost of every model, a table and two plots a case.
-[[nodiscard]] std::string compare_report_html(const std::string& title, const std::vector<reduction::CaseComparison>& cases);
+[[nodiscard]] std::string compare_report_html(const std::string& title,
+                                              const std::vector<reduction::CaseComparison>& cases);
 
 }  // namespace snare::app

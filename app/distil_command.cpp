@@ -6,8 +6,8 @@
 #include "reduction/law_export.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <omp.h>
+#include <nlohmann/json.hpp>
 
 #include <iostream>
 
@@ -17,8 +17,9 @@ namespace {
 
 /// Every node of every table: places and forces, in SI-based units and in dimensionless groups.
 void write_table(const std::filesystem::path& file, const reduction::Distillation& distillation) {
-  numerics::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m", "unloading_N",
-                                 "d_over_L", "s_over_L", "slack_over_L", "F_L2_over_EI", "EA_L2_over_EI", "R_over_L", "friction"});
+  numerics::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m",
+                                 "unloading_N", "d_over_L", "s_over_L", "slack_over_L", "F_L2_over_EI",
+                                 "EA_L2_over_EI", "R_over_L", "friction"});
   for (std::size_t c = 0; c < distillation.cases.size(); ++c) {
     const reduction::DistilledCase& one = distillation.cases[c];
     const reduction::ForceTable& t = *one.table.loading;
@@ -30,10 +31,11 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
           const double* numbers = &t.nodes()[reduction::ForceTable::numbers_a_node * node];
           numerics::CsvCell back;
           if (one.table.unloading)
-            back = t.force_scale() * one.table.unloading->nodes()[reduction::ForceTable::numbers_a_node * node];
-          csv.row({static_cast<long long>(c + 1), 1e3 * d * span, 1e3 * s * span, 1e3 * e * span, t.force_scale() * numbers[0],
-                   t.force_scale() / span * numbers[1], back, d, s, e, numbers[0], one.groups.axial, one.groups.radius,
-                   one.groups.friction});
+            back =
+                t.force_scale() * one.table.unloading->nodes()[reduction::ForceTable::numbers_a_node * node];
+          csv.row({static_cast<long long>(c + 1), 1e3 * d * span, 1e3 * s * span, 1e3 * e * span,
+                   t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e,
+                   numbers[0], one.groups.axial, one.groups.radius, one.groups.friction});
           ++node;
         }
       }
@@ -42,7 +44,8 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
   csv.commit();
 }
 
-void write_exports(const std::filesystem::path& out, const reduction::WireFile& file, const reduction::DistilledCase& one) {
+void write_exports(const std::filesystem::path& out, const reduction::WireFile& file,
+                   const reduction::DistilledCase& one) {
   const std::string title = file.title.empty() ? file.file.filename().string() : file.title;
   numerics::write_text(out / "law.hpp", reduction::cpp_header(one, title));
   numerics::write_text(out / "law.c", reduction::c_source(one, title));
@@ -60,13 +63,15 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   if (options.threads > 0) omp_set_num_threads(options.threads);
 
   const std::filesystem::path journal = options.out / "distil.journal";
-  const reduction::Distillation result = reduction::distil(wire, journal, [&](std::size_t finished, std::size_t wanted) {
-    console.progress(fmt::format("curve {} of {}", finished, wanted));
-    return !interrupted();
-  });
+  const reduction::Distillation result =
+      reduction::distil(wire, journal, [&](std::size_t finished, std::size_t wanted) {
+        console.progress(fmt::format("curve {} of {}", finished, wanted));
+        return !interrupted();
+      });
   console.end_progress();
   if (!result.report.usable()) {
-    console.complain(fmt::format("{}; the curves that were reached are kept in {}", result.report.message, journal.string()));
+    console.complain(fmt::format("{}; the curves that were reached are kept in {}", result.report.message,
+                                 journal.string()));
     return ExitStatus::solver_stopped;
   }
   const nlohmann::json json = law_json(wire, result);
@@ -84,16 +89,19 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   for (const reduction::DistilledCase& one : result.cases) {
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();
-    console.say(fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire", axes[0].size(),
-                            axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range, e.force_range,
-                            one.table.curves));
+    console.say(
+        fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire",
+                    axes[0].size(), axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range,
+                    e.force_range, one.table.curves));
     if (e.bound > wire.settings.tolerance * e.force_range) {
-      console.say(fmt::format("  above the tolerance of {:g} %: the largest number of knots is reached", 100.0 * wire.settings.tolerance));
+      console.say(fmt::format("  above the tolerance of {:g} %: the largest number of knots is reached",
+                              100.0 * wire.settings.tolerance));
     }
     for (const reduction::DistilledPlace& place : one.places) {
       for (const reduction::FittedLaw& law : place.laws) {
-        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N", 1e3 * place.position,
-                                law.form->name(), law.error.largest_force, law.error.force_range));
+        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N",
+                                1e3 * place.position, law.form->name(), law.error.largest_force,
+                                law.error.force_range));
       }
     }
   }

@@ -20,18 +20,36 @@ std::vector<double> in_mm(std::vector<double> values) {
   return values;
 }
 
-std::string at(const DistilledPlace& place) { return fmt::format("s = {:.4g} mm", 1e3 * place.position); }
+std::string at(const DistilledPlace& place) {
+  return fmt::format("s = {:.4g} mm", 1e3 * place.position);
+}
 
 void add_stiffness(ReportPage& page, const DistilledCase& one) {
-  PlotSpecification secant{"Spring of the linear spring-dashpot law", {"travel", "mm"}, {"stiffness F/d", "N/m"}};
+  PlotSpecification secant{
+      "Spring of the linear spring-dashpot law", {"travel", "mm"}, {"stiffness F/d", "N/m"}};
   PlotSpecification tangent{"Tangent stiffness", {"travel", "mm"}, {"stiffness dF/dd", "N/m"}};
   secant.note = "Larger penetration, larger stiffness; compare Abiko et al., Fig. 11.";
   int colour = 0;
   for (const DistilledPlace& place : one.places) {
-    secant.curves.push_back({at(place), in_mm(place.stiffness.travel), place.stiffness.secant, CurveStyle::line, colour});
-    tangent.curves.push_back({at(place), in_mm(place.stiffness.travel), place.stiffness.tangent, CurveStyle::line, colour++});
+    secant.curves.push_back(
+        {at(place), in_mm(place.stiffness.travel), place.stiffness.secant, CurveStyle::line, colour});
+    tangent.curves.push_back(
+        {at(place), in_mm(place.stiffness.travel), place.stiffness.tangent, CurveStyle::line, colour++});
   }
   page.line_plot(secant);
+  PlotSpecification recorded{
+      "The same over the recorded displacement", {"recorded displacement", "mm"}, {"stiffness F/d", "N/m"}};
+  recorded.note =
+      "With the displacement that the machine had recorded at first touch, as in Abiko et al., Fig. 11.";
+  colour = 0;
+  for (const DistilledPlace& place : one.places) {
+    if (place.recorded) {
+      const reduction::StiffnessCurve& k = place.recorded->stiffness;
+      recorded.curves.push_back({at(place), in_mm(k.travel), k.secant, CurveStyle::line, colour});
+    }
+    ++colour;
+  }
+  if (!recorded.curves.empty()) page.line_plot(recorded);
   page.line_plot(tangent);
 }
 
@@ -43,8 +61,13 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
   for (const double x : d) full.push_back(place.full.value(x));
   force.curves.push_back({"full wire", in_mm(d), full, CurveStyle::line, 0});
   Table table;
-  table.columns = {{"law"}, {"form"}, {"numbers"}, {"largest error, N", ColumnKind::number}, {"rms, N", ColumnKind::number},
-                   {"of the force", ColumnKind::number}, {"stiffness, largest", ColumnKind::number},
+  table.columns = {{"law"},
+                   {"form"},
+                   {"numbers"},
+                   {"largest error, N", ColumnKind::number},
+                   {"rms, N", ColumnKind::number},
+                   {"of the force", ColumnKind::number},
+                   {"stiffness, largest", ColumnKind::number},
                    {"energy, largest", ColumnKind::number}};
   int colour = 1;
   for (const FittedLaw& law : place.laws) {
@@ -58,13 +81,17 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
     std::string numbers;
     const auto names = law.form->parameters();
     for (std::size_t i = 0; i < names.size(); ++i) {
-      numbers += fmt::format("{}{} = {:.5g} {}", i == 0 ? "" : ", ", names[i].name, law.values[static_cast<Eigen::Index>(i)], names[i].unit);
+      numbers += fmt::format("{}{} = {:.5g} {}", i == 0 ? "" : ", ", names[i].name,
+                             law.values[static_cast<Eigen::Index>(i)], names[i].unit);
     }
-    const auto share = [](double x, double of) { return of > 0.0 ? format_significant(100.0 * x / of, 2) + " %" : std::string("-"); };
+    const auto share = [](double x, double of) {
+      return of > 0.0 ? format_significant(100.0 * x / of, 2) + " %" : std::string("-");
+    };
     const reduction::LawError& e = law.error;
     table.rows.push_back({law.form->name(), law.form->formula(), numbers, format_significant(e.largest_force),
                           format_significant(e.rms_force), share(e.largest_force, e.force_range),
-                          share(e.largest_stiffness, e.stiffness_range), share(e.largest_energy, e.energy_range)});
+                          share(e.largest_stiffness, e.stiffness_range),
+                          share(e.largest_energy, e.energy_range)});
   }
   page.subheading(at(place));
   page.table(table);
@@ -73,9 +100,13 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
 }
 
 void add_map(ReportPage& page, const DistilledCase& one) {
-  PlotSpecification plot{"Where the closed forms are within 5 % of the full wire", {"slack", "mm"}, {"travel", "mm"}};
-  plot.note = fmt::format("Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is within 5 %. "
-                          "Negative slack is pretension.", 1e3 * one.map.travel.back());
+  PlotSpecification plot{
+      "Where the closed forms are within 5 % of the full wire", {"slack", "mm"}, {"travel", "mm"}};
+  plot.note = fmt::format(
+      "Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is "
+      "within 5 %. "
+      "Negative slack is pretension.",
+      1e3 * one.map.travel.back());
   Curve stretched{"stretched wire", {}, {}, CurveStyle::points, 1};
   Curve tensioned{"tensioned wire", {}, {}, CurveStyle::points, 2};
   for (const reduction::LawMapRow& row : one.map.rows) {
@@ -102,14 +133,18 @@ std::string distil_report_html(const reduction::WireFile& file, const reduction:
     const DistilledCase& one = distillation.cases[c];
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();
-    page.heading(distillation.cases.size() == 1 ? "The exact table" : fmt::format("Case {}: the exact table", c + 1));
-    page.key_figures({{"Knots", fmt::format("{} x {} x {}", axes[0].size(), axes[1].size(), axes[2].size()), "travel, position, slack"},
+    page.heading(distillation.cases.size() == 1 ? "The exact table"
+                                                : fmt::format("Case {}: the exact table", c + 1));
+    page.key_figures({{"Knots", fmt::format("{} x {} x {}", axes[0].size(), axes[1].size(), axes[2].size()),
+                       "travel, position, slack"},
                       {"Stated bound", format_significant(100.0 * e.bound / e.force_range, 2) + " %",
                        fmt::format("{:.3g} N of {:.4g} N", e.bound, e.force_range),
                        e.bound <= file.settings.tolerance * e.force_range ? Tone::good : Tone::bad},
-                      {"Largest error found", fmt::format("{:.3g} N", e.largest), fmt::format("at {} points off the knots", e.points)},
+                      {"Largest error found", fmt::format("{:.3g} N", e.largest),
+                       fmt::format("at {} points off the knots", e.points)},
                       {"Full wire solved", fmt::format("{} curves", one.table.curves), ""}});
-    page.paragraph("The damping of the laws comes from the loops of friction and strands, not from dynamic runs.");
+    page.paragraph(
+        "The damping of the laws comes from the loops of friction and strands, not from dynamic runs.");
     page.heading("Stiffness");
     add_stiffness(page, one);
     page.heading("Simple laws");

@@ -15,14 +15,21 @@ using namespace reduction;
 
 constexpr double map_share = 0.05;  // of the full force
 
-json interval(const Interval& range, double unit) { return json::array({range.low / unit, range.high / unit}); }
+json interval(const Interval& range, double unit) {
+  return json::array({range.low / unit, range.high / unit});
+}
 
 json error_json(const LawError& e) {
-  return {{"largest_force_N", e.largest_force},         {"rms_force_N", e.rms_force},
-          {"largest_stiffness_N_m", e.largest_stiffness}, {"rms_stiffness_N_m", e.rms_stiffness},
-          {"largest_energy_J", e.largest_energy},       {"rms_energy_J", e.rms_energy},
-          {"force_range_N", e.force_range},             {"stiffness_range_N_m", e.stiffness_range},
-          {"energy_range_J", e.energy_range},           {"points", e.points}};
+  return {{"largest_force_N", e.largest_force},
+          {"rms_force_N", e.rms_force},
+          {"largest_stiffness_N_m", e.largest_stiffness},
+          {"rms_stiffness_N_m", e.rms_stiffness},
+          {"largest_energy_J", e.largest_energy},
+          {"rms_energy_J", e.rms_energy},
+          {"force_range_N", e.force_range},
+          {"stiffness_range_N_m", e.stiffness_range},
+          {"energy_range_J", e.energy_range},
+          {"points", e.points}};
 }
 
 json law_entry(const FittedLaw& law) {
@@ -31,15 +38,18 @@ json law_entry(const FittedLaw& law) {
   json covariance = json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    parameters[names[i].name] = {{"value", law.values[k]}, {"unit", names[i].unit},
+    parameters[names[i].name] = {{"value", law.values[k]},
+                                 {"unit", names[i].unit},
                                  {"stderr", std::sqrt(std::max(0.0, law.covariance(k, k)))}};
     json row = json::array();
-    for (std::size_t j = 0; j < names.size(); ++j) row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
+    for (std::size_t j = 0; j < names.size(); ++j)
+      row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
     covariance.push_back(row);
   }
-  return {{"name", law.form->name()}, {"formula", law.form->formula()}, {"parameters", parameters},
-          {"covariance", covariance}, {"travel_mm", interval(law.range, 1e-3)}, {"converged", law.converged},
-          {"error", error_json(law.error)}};
+  return {
+      {"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
+      {"covariance", covariance},      {"travel_mm", interval(law.range, 1e-3)}, {"converged", law.converged},
+      {"error", error_json(law.error)}};
 }
 
 json place_json(const DistilledPlace& place) {
@@ -49,43 +59,78 @@ json place_json(const DistilledPlace& place) {
   for (const double d : place.stiffness.travel) travel.push_back(1e3 * d);
   json result{{"position_mm", 1e3 * place.position},
               {"laws", laws},
-              {"spring_dashpot", {{"travel_mm", travel}, {"secant_stiffness_N_m", place.stiffness.secant},
-                                  {"tangent_stiffness_N_m", place.stiffness.tangent}}}};
+              {"spring_dashpot",
+               {{"travel_mm", travel},
+                {"secant_stiffness_N_m", place.stiffness.secant},
+                {"tangent_stiffness_N_m", place.stiffness.tangent}}}};
+  if (place.recorded) {
+    json recorded = json::array();
+    for (const double d : place.recorded->stiffness.travel) recorded.push_back(1e3 * d);
+    result["recorded"] = {{"displacement_offset_mm", 1e3 * place.recorded->offset},
+                          {"quadratic", law_entry(place.recorded->quadratic)},
+                          {"displacement_mm", recorded},
+                          {"secant_stiffness_N_m", place.recorded->stiffness.secant}};
+  }
   if (place.dissipation) {
     const Dissipation& d = *place.dissipation;
     result["damping"] = {{"source", "loop of friction and strands over the whole travel; no dynamic run"},
-                         {"loop_J", d.loop}, {"absorbed_J", d.absorbed}, {"loss_factor", d.loss_factor},
+                         {"loop_J", d.loop},
+                         {"absorbed_J", d.absorbed},
+                         {"loss_factor", d.loss_factor},
                          {"damping_times_rate_N_m", d.damping_times_rate}};
     const LoadUnloadFit& f = *place.load_unload;
     result["load_unload"] = {{"formula", "F = L(d) ((1 + r)/2 + z (1 - r)/2), dz = 2 dd/lambda, |z| <= 1"},
-                             {"returned", f.law.returned()}, {"turn_mm", 1e3 * f.law.turn()},
-                             {"largest_error_N", f.largest_error}, {"rms_error_N", f.rms_error}, {"loop_J", f.loop}};
+                             {"returned", f.law.returned()},
+                             {"turn_mm", 1e3 * f.law.turn()},
+                             {"largest_error_N", f.largest_error},
+                             {"rms_error_N", f.rms_error},
+                             {"loop_J", f.loop}};
   } else {
-    result["damping"] = {{"source", "nothing dissipates in this wire; no dynamic run"}, {"damping_times_rate_N_m", 0.0}};
+    result["damping"] = {{"source", "nothing dissipates in this wire; no dynamic run"},
+                         {"damping_times_rate_N_m", 0.0}};
   }
   return result;
 }
 
 json table_error_json(const TableError& e) {
-  return {{"bound_N", e.bound}, {"bound_share", e.force_range > 0.0 ? e.bound / e.force_range : 0.0},
-          {"largest_N", e.largest}, {"rms_N", e.rms}, {"largest_stiffness_N_m", e.largest_stiffness},
-          {"rms_stiffness_N_m", e.rms_stiffness}, {"largest_energy_J", e.largest_energy},
-          {"discretisation_N", e.discretisation}, {"force_range_N", e.force_range}, {"points", e.points},
-          {"worst", {{"travel_mm", 1e3 * e.worst_travel}, {"position_mm", 1e3 * e.worst.position}, {"slack_mm", 1e3 * e.worst.slack}}}};
+  return {{"bound_N", e.bound},
+          {"bound_share", e.force_range > 0.0 ? e.bound / e.force_range : 0.0},
+          {"largest_N", e.largest},
+          {"rms_N", e.rms},
+          {"largest_stiffness_N_m", e.largest_stiffness},
+          {"rms_stiffness_N_m", e.rms_stiffness},
+          {"largest_energy_J", e.largest_energy},
+          {"discretisation_N", e.discretisation},
+          {"force_range_N", e.force_range},
+          {"points", e.points},
+          {"worst",
+           {{"travel_mm", 1e3 * e.worst_travel},
+            {"position_mm", 1e3 * e.worst.position},
+            {"slack_mm", 1e3 * e.worst.slack}}}};
 }
 
 json table_json(const BuiltTable& built) {
   const ForceTable& t = *built.loading;
-  json result{{"interpolation", "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
-                                "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
-              {"travel", t.axes()[0]}, {"position", t.axes()[1]}, {"slack", t.axes()[2]},
-              {"span_m", t.span()}, {"force_scale_N", t.force_scale()}, {"mirrored", t.mirrored()},
-              {"nodes", t.nodes()},
-              {"monotone", t.proven_monotone() ? "proven" : t.least_stiffness(4) >= 0.0 ? "sampled" : "no"},
-              {"error", table_error_json(built.loading_error)},
-              {"refinements", built.rounds}, {"curves", built.curves}};
+  json result{
+      {"interpolation",
+       "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
+       "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
+      {"travel", t.axes()[0]},
+      {"position", t.axes()[1]},
+      {"slack", t.axes()[2]},
+      {"span_m", t.span()},
+      {"force_scale_N", t.force_scale()},
+      {"mirrored", t.mirrored()},
+      {"nodes", t.nodes()},
+      {"monotone", t.proven_monotone()           ? "proven"
+                   : t.least_stiffness(4) >= 0.0 ? "sampled"
+                                                 : "no"},
+      {"error", table_error_json(built.loading_error)},
+      {"refinements", built.rounds},
+      {"curves", built.curves}};
   if (built.unloading) {
-    result["unloading"] = {{"nodes", built.unloading->nodes()}, {"error", table_error_json(built.unloading_error)}};
+    result["unloading"] = {{"nodes", built.unloading->nodes()},
+                           {"error", table_error_json(built.unloading_error)}};
   }
   return result;
 }
@@ -102,27 +147,45 @@ json map_json(const LawMap& map) {
     add("tensioned_wire_mm", &LawMapRow::tensioned);
     rows.push_back(entry);
   }
-  return {{"position_mm", 1e3 * map.position}, {"to_mm", 1e3 * map.travel.back()}, {"within", map_share}, {"rows", rows}};
+  return {{"position_mm", 1e3 * map.position},
+          {"to_mm", 1e3 * map.travel.back()},
+          {"within", map_share},
+          {"rows", rows}};
 }
 
 json case_json(const DistilledCase& one) {
   json places = json::array();
   for (const DistilledPlace& place : one.places) places.push_back(place_json(place));
   const wire::WireSpecification& w = one.wire.test.wire;
-  return {{"groups", {{"EA_L2_over_EI", one.groups.axial}, {"R_over_L", one.groups.radius}, {"friction", one.groups.friction}}},
-          {"wire", {{"bending_stiffness_Nm2", w.bending_stiffness()}, {"axial_stiffness_N", w.axial_stiffness()},
-                    {"length_mm", 1e3 * w.length}, {"span_mm", 1e3 * one.wire.test.mount.span},
-                    {"radius_mm", 1e3 * one.wire.test.pusher.radius}, {"friction", one.wire.test.pusher.friction}}},
-          {"ranges", {{"travel_mm", interval(one.wire.travel, 1e-3)}, {"position_mm", interval(one.wire.position, 1e-3)},
-                      {"slack_mm", interval(one.wire.slack, 1e-3)}}},
-          {"table", table_json(one.table)}, {"positions", places}, {"map", map_json(one.map)}};
+  return {{"groups",
+           {{"EA_L2_over_EI", one.groups.axial},
+            {"R_over_L", one.groups.radius},
+            {"friction", one.groups.friction}}},
+          {"wire",
+           {{"bending_stiffness_Nm2", w.bending_stiffness()},
+            {"axial_stiffness_N", w.axial_stiffness()},
+            {"length_mm", 1e3 * w.length},
+            {"span_mm", 1e3 * one.wire.test.mount.span},
+            {"radius_mm", 1e3 * one.wire.test.pusher.radius},
+            {"friction", one.wire.test.pusher.friction}}},
+          {"ranges",
+           {{"travel_mm", interval(one.wire.travel, 1e-3)},
+            {"position_mm", interval(one.wire.position, 1e-3)},
+            {"slack_mm", interval(one.wire.slack, 1e-3)}}},
+          {"table", table_json(one.table)},
+          {"positions", places},
+          {"map", map_json(one.map)}};
 }
 
 }  // namespace
 
 json law_json(const WireFile& file, const Distillation& distillation) {
-  json result{{"schema", "snare-law/1"}, {"version", version()}, {"title", file.title}, {"source", file.source},
-              {"outside_the_range", "refused, or extrapolated and flagged, as the caller chooses"}, {"cases", json::array()}};
+  json result{{"schema", "snare-law/1"},
+              {"version", version()},
+              {"title", file.title},
+              {"source", file.source},
+              {"outside_the_range", "refused, or extrapolated and flagged, as the caller chooses"},
+              {"cases", json::array()}};
   for (const DistilledCase& one : distillation.cases) result["cases"].push_back(case_json(one));
   return result;
 }

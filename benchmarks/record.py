@@ -73,14 +73,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("result", type=pathlib.Path)
+    parser.add_argument("--programs", nargs="+", default=PROGRAMS, help="benchmarks to run")
     parser.add_argument("--load", type=float, default=0.7, help="highest load of the machine at the start")
     arguments = parser.parse_args()
     source = pathlib.Path(__file__).resolve().parent.parent
 
     wait_for_rest(arguments.load)
+    load = os.getloadavg()[0]
     context = None
     entries = []
-    for program in PROGRAMS:
+    for program in arguments.programs:
         result = run(program, arguments.build)
         context = context or {key: value for key, value in result["context"].items() if key not in PRIVATE}
         for entry in result["benchmarks"]:
@@ -94,7 +96,7 @@ def main():
     flags = re.search(r"^CMAKE_CXX_FLAGS_RELEASE:\w+=(.*)$", cache, re.MULTILINE).group(1)
     context.update(
         processor=processor(), compiler=first_line(compiler, "--version"), flags=flags, commit=commit(source),
-        repetitions=REPETITIONS,
+        repetitions=REPETITIONS, load_at_the_start=round(load, 2),
     )
     arguments.result.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"context": context, "benchmarks": entries}, indent=1)

@@ -53,16 +53,20 @@ wire::WireSpecification read_wire(const TomlTable& table) {
   if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
     wire::Yielding yielding;
     yielding.yield_stress = 1e6 * *stress;
-    yielding.hardening_ratio = table.number_or("hardening_ratio", wire::Yielding::usual_hardening, Range::from(0.002, 0.9));
+    yielding.hardening_ratio =
+        table.number_or("hardening_ratio", wire::Yielding::usual_hardening, Range::from(0.002, 0.9));
     wire.yielding = yielding;
   } else if (table.has("hardening_ratio")) {
     table.fail("hardening_ratio", "only beside yield_stress_MPa");
   }
   const auto extra = table.optional_number("strand_extra_stiffness_Nm2", bending);
   const auto slip = table.optional_number("strand_slip_curvature_1_m", Range::from(1e-4, 1e4));
-  if (extra && slip) wire.strand_friction = wire::StrandFriction{*extra, *slip};
-  else if (extra) table.fail("strand_extra_stiffness_Nm2", "needs strand_slip_curvature_1_m beside it");
-  else if (slip) table.fail("strand_slip_curvature_1_m", "needs strand_extra_stiffness_Nm2 beside it");
+  if (extra && slip)
+    wire.strand_friction = wire::StrandFriction{*extra, *slip};
+  else if (extra)
+    table.fail("strand_extra_stiffness_Nm2", "needs strand_slip_curvature_1_m beside it");
+  else if (slip)
+    table.fail("strand_slip_curvature_1_m", "needs strand_extra_stiffness_Nm2 beside it");
   if (wire.bending_stiffness() < smallest_bending_stiffness)
     table.fail("diameter_mm", fmt::format("gives a bending stiffness of {:.3g} N m^2, must be >= {}",
                                           wire.bending_stiffness(), smallest_bending_stiffness));
@@ -102,8 +106,8 @@ wire::MountSpecification read_mount(const TomlTable& table) {
 
 PusherSpecification read_pusher(const TomlTable& table) {
   static constexpr Choice<bool> shapes[] = {{"cylinder", true}};  // the only one; a knife edge has radius 0
-  static constexpr Choice<PushDirection> directions[] = {
-      {"outward", PushDirection::outward}, {"inward", PushDirection::inward}};
+  static constexpr Choice<PushDirection> directions[] = {{"outward", PushDirection::outward},
+                                                         {"inward", PushDirection::inward}};
   PusherSpecification pusher;
   static_cast<void>(table.choice("shape", shapes));
   pusher.radius = table.number("radius_mm", Range::from(0.0, 100.0), mm);
@@ -157,14 +161,15 @@ PushTest read_push_test(const PushTables& tables) {
 }
 
 PushTables push_tables(const TomlTable& root) {
-  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"), root.table("gravity")};
+  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"),
+          root.table("gravity")};
 }
 
 std::optional<std::string> position_problem(double position, double span) {
   const double margin = mount_margin * span;
   if (position >= margin && position <= span - margin) return std::nullopt;
-  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount", in_mm(margin),
-                     in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
+  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount",
+                     in_mm(margin), in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
 }
 
 }  // namespace snare::coupling

@@ -3,8 +3,8 @@
 #include "coupling/spatial_push.hpp"
 #include "wire/loose_wire.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +39,7 @@ class HeldWire {
  private:
   [[nodiscard]] numerics::SolveReport solve(numerics::PathPoint& trial);
   [[nodiscard]] bool wraps(const numerics::PathPoint& trial) const;
+  [[nodiscard]] double stretch(const wire::SpatialState& s) const;
   void accept(const numerics::PathPoint& point);
 
   std::unique_ptr<wire::SpatialRod> rod_;
@@ -63,7 +64,8 @@ numerics::SolveReport HeldWire::seat(const SnareSpecification& snare) {
   while (at.parameter < snare.seat) {
     numerics::PathPoint trial = at;
     trial.parameter = std::min(snare.seat, at.parameter + step);
-    const numerics::SolveReport report = numerics::correct(*setup.system, trial, workspace_, newton_iterations);
+    const numerics::SolveReport report =
+        numerics::correct(*setup.system, trial, workspace_, newton_iterations);
     if (report.usable()) {
       at = trial;
       continue;
@@ -71,7 +73,8 @@ numerics::SolveReport HeldWire::seat(const SnareSpecification& snare) {
     step *= 0.5;
     if (step < smallest_step) return report;
   }
-  rod_ = std::make_unique<wire::SpatialRod>(spatial_rod(*setup.rod, snare.wire.wire.torsional_stiffness(), 0.0));
+  rod_ =
+      std::make_unique<wire::SpatialRod>(spatial_rod(*setup.rod, snare.wire.wire.torsional_stiffness(), 0.0));
   const wire::PlanarState state = setup.system->state(at);
   SpatialPin pin;
   const Vector2d centre = setup.system->pusher_centre(at);
@@ -94,13 +97,29 @@ numerics::SolveReport HeldWire::seat(const SnareSpecification& snare) {
   return report;
 }
 
+// |dx/dS| of the parabola through the contact and its neighbours.        theory.md (C.1)
+double HeldWire::stretch(const wire::SpatialState& s) const {
+  const int i = rod_->mesh().contact_vertex();
+  const double before = rod_->mesh().rest_length(i - 1, s.controls);
+  const double after = rod_->mesh().rest_length(i, s.controls);
+  const Vector3d e0 = wire::vertex(s, i) - wire::vertex(s, i - 1);
+  const Vector3d e1 = wire::vertex(s, i + 1) - wire::vertex(s, i);
+  return (after / before * e0 + before / after * e1).norm() / (before + after);
+}
+
 void HeldWire::accept(const numerics::PathPoint& point) {
-  const SpatialPushSystem::Geometry g = system_->geometry(point, system_->state(point));
+  const wire::SpatialState state = system_->state(point);
+  const SpatialPushSystem::Geometry g = system_->geometry(point, state);
   SpatialPin& pin = system_->pin;
   slides_ = pin.pressed && pin.friction > 0.0 && system_->slides(g);
+  // What slides over the shaft is stretched wire: (1 + e) dS, of which the slip of the stick condition has dS.
+  const double fed = point.border[3] - pin.last_coordinate;
+  const Vector2d slip =
+      g.slip - (stretch(state) - 1.0) * fed * Vector2d(g.tangent.dot(g.across), g.tangent.dot(pin.axis));
   // Trapezoidal in the force; where the slip has turned round, the force it ends with.
   const bool turned = g.friction.dot(last_friction_) <= 0.0;
-  if (slides_) dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * g.slip.norm();
+  if (slides_)
+    dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * slip.norm();
   last_friction_ = g.friction;
   point_ = point;
   system_->accept(point);
@@ -141,7 +160,8 @@ bool HeldWire::wraps(const numerics::PathPoint& trial) const {
   const Vector3d centre = pin.centre + trial.parameter * pin.motion;
   for (const int j : {i - 1, i + 1}) {
     const Vector3d arm = wire::vertex(s, j) - centre;
-    if ((arm - arm.dot(pin.axis) * pin.axis).norm() < pin.radius - 1e-9 * system_->length_scale()) return true;
+    if ((arm - arm.dot(pin.axis) * pin.axis).norm() < pin.radius - 1e-9 * system_->length_scale())
+      return true;
   }
   return false;
 }
@@ -197,8 +217,9 @@ ShaftPath move_shaft(const SnareSpecification& snare, const std::vector<Eigen::V
     for (std::size_t i = 0; i < wires.size(); ++i) {
       path.report = wires[i].move(from_wire[i].transpose() * (next - now));
       if (!path.report.usable()) {
-        path.report.message = fmt::format("wire {} on the way to ({:.4g}, {:.4g}, {:.4g}) mm: {}", i + 1, 1e3 * next.x(),
-                                          1e3 * next.y(), 1e3 * next.z(), path.report.message);
+        path.report.message =
+            fmt::format("wire {} on the way to ({:.4g}, {:.4g}, {:.4g}) mm: {}", i + 1, 1e3 * next.x(),
+                        1e3 * next.y(), 1e3 * next.z(), path.report.message);
         return path;
       }
       point.force += from_wire[i] * wires[i].force();

@@ -20,7 +20,7 @@ struct GivenLaw {
 /// One push on which the models are compared.
 struct StaticCase {
   std::string name;
-  WireCase wire;                 ///< one position (law_positions.front()), the nominal slack, travel to the largest
+  WireCase wire;  ///< one position (law_positions.front()), the nominal slack, travel to the largest
   std::vector<double> travel;    ///< in the order visited [m]
   std::vector<double> measured;  ///< force at these travels [N]; empty: none
   std::vector<GivenLaw> given;
@@ -30,23 +30,24 @@ struct StaticCase {
 struct ModelResult {
   std::string model;
   int parameters = 0;
-  Interval range;                 ///< of the travel for which it is made [m]
-  double largest_error = 0.0;     ///< against the full wire within the model's range [N]
-  double rms_error = 0.0;         ///< [N]
+  Interval range;                      ///< of the travel for which it is made [m]
+  double largest_error = 0.0;          ///< against the full wire within the model's range [N]
+  double rms_error = 0.0;              ///< [N]
   std::optional<double> measured_rms;  ///< against the measured force [N]
-  double seconds = 0.0;           ///< an evaluation: wall clock, one thread [s]
-  std::vector<double> force;      ///< at the case's travels [N]
+  double seconds = 0.0;                ///< an evaluation: wall clock, one thread [s]
+  std::vector<double> force;           ///< at the case's travels [N]
 };
 
 struct CaseComparison {
   std::string name;
   std::vector<double> travel, measured;  ///< as given
-  double force_range = 0.0;        ///< of the full wire [N]
-  std::vector<ModelResult> models; ///< the full wire first
-  numerics::SolveReport report;    ///< not usable: the full wire did not reach the end; no models then
+  double force_range = 0.0;              ///< of the full wire [N]
+  std::vector<ModelResult> models;       ///< the full wire first
+  numerics::SolveReport report;          ///< not usable: the full wire did not reach the end; no models then
 };
 
-/// Runs the full wire, the table of its curve and every law fitted to it, and the given laws, over the travels of a case.
+/// Runs the full wire, the table of its curve and every law fitted to it, and the given laws, over the travels
+/// of a case.
 [[nodiscard]] CaseComparison compare_static(const StaticCase& one, const DistilSettings& settings);
 
 }  // namespace snare::reduction

@@ -37,7 +37,8 @@ Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper)
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, size);
   if (n == 1) return right;
   if (n <= 3) {
-    for (std::size_t i = 0; i < n; ++i) lagrange_derivative(knots, 0, n, knots[i], right, static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < n; ++i)
+      lagrange_derivative(knots, 0, n, knots[i], right, static_cast<Eigen::Index>(i));
     if (upper == SplineEnd::level) right.row(size - 1).setZero();
     return right;
   }
@@ -67,8 +68,10 @@ Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper)
     }
   };
   not_a_knot(0, 0);
-  if (upper == SplineEnd::not_a_knot) not_a_knot(size - 1, size - 3);
-  else left(size - 1, size - 1) = 1.0;
+  if (upper == SplineEnd::not_a_knot)
+    not_a_knot(size - 1, size - 3);
+  else
+    left(size - 1, size - 1) = 1.0;
   return left.partialPivLu().solve(right);
 }
 
@@ -78,14 +81,16 @@ HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values
   area_.assign(knots_.size(), 0.0);
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];
-    area_[i + 1] = area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
+    area_[i + 1] =
+        area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
   }
 }
 
 HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values)
     : HermiteCurve(knots, values, [&] {
         const Eigen::VectorXd m =
-            spline_slopes(knots) * Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+            spline_slopes(knots) *
+            Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
         return std::vector<double>(m.begin(), m.end());
       }()) {}
 
@@ -103,7 +108,8 @@ double HermiteCurve::slope(double x) const noexcept {
   const double h = knots_[i + 1] - knots_[i];
   const double t = (x - knots_[i]) / h;
   const double u = 1.0 - t;
-  return 6.0 * t * u * (values_[i + 1] - values_[i]) / h + u * (u - 2.0 * t) * slopes_[i] + t * (t - 2.0 * u) * slopes_[i + 1];
+  return 6.0 * t * u * (values_[i + 1] - values_[i]) / h + u * (u - 2.0 * t) * slopes_[i] +
+         t * (t - 2.0 * u) * slopes_[i + 1];
 }
 
 double HermiteCurve::integral(double x) const noexcept {
@@ -114,7 +120,8 @@ double HermiteCurve::integral(double x) const noexcept {
   const double t3 = t2 * t;
   const double t4 = t2 * t2;
   return area_[i] + h * ((t - t3 + 0.5 * t4) * values_[i] + (t3 - 0.5 * t4) * values_[i + 1] +
-                         h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] + (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
+                         h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] +
+                              (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
 }
 
 std::vector<double> monotone_slopes(const std::vector<double>& knots, const std::vector<double>& values,

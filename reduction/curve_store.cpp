@@ -27,15 +27,18 @@ std::uint64_t fnv1a(std::string_view text) {
 }
 
 /// Everything that a curve depends on but its place, as text.
-std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
+std::string identity(const WireCase& wire, const DistilSettings& settings,
+                     const std::vector<double>& travel) {
   const coupling::PushTest& t = wire.test;
   std::string text = fmt::format(
-      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} g {} {} {} "
+      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} "
+      "g {} {} {} "
       "rho {} elements {} {}",
-      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature, t.wire.torsional_stiffness(),
-      t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius, t.pusher.radius, t.pusher.friction,
-      t.pusher.compliance, static_cast<int>(t.pusher.direction), t.pusher.misalignment, t.bulge.mode, t.bulge.plane,
-      t.gravity[0], t.gravity[1], t.gravity[2], t.wire.mass_per_length(), settings.elements, settings.extrapolate);
+      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature,
+      t.wire.torsional_stiffness(), t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius,
+      t.pusher.radius, t.pusher.friction, t.pusher.compliance, static_cast<int>(t.pusher.direction),
+      t.pusher.misalignment, t.bulge.mode, t.bulge.plane, t.gravity[0], t.gravity[1], t.gravity[2],
+      t.wire.mass_per_length(), settings.elements, settings.extrapolate);
   const auto add = [&](const char* name, const std::optional<double>& value) {
     if (value) text += fmt::format(" {} {}", name, *value);
   };
@@ -43,7 +46,8 @@ std::string identity(const WireCase& wire, const DistilSettings& settings, const
   add("kr", t.mount.rotational_stiffness);
   add("slip", t.mount.slip_tension);
   if (t.wire.strand_friction)
-    text += fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness, t.wire.strand_friction->slip_curvature);
+    text += fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness,
+                        t.wire.strand_friction->slip_curvature);
   // The curvature at which metal yields depends on the diameter.
   if (t.wire.yielding)
     text += fmt::format(" yield {} {} {} {}", t.wire.yielding->yield_stress, t.wire.yielding->hardening_ratio,
@@ -60,8 +64,8 @@ void append(std::string& text, const std::vector<double>& values) {
 
 /// One line of the journal: identity, place, curve, and the hash of all that.
 std::string journal_line(const std::string& identity, const CurvePlace& place, const WireCurve& curve) {
-  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack, curve.discretisation_error,
-                                 curve.largest_strain, curve.dissipated);
+  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack,
+                                 curve.discretisation_error, curve.largest_strain, curve.dissipated);
   append(text, curve.loading);
   append(text, curve.unloading);
   return fmt::format("{} {:016x}\n", text, fnv1a(text));
@@ -97,7 +101,10 @@ class NumberReader {
 
 CurveStore::CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
                        std::filesystem::path journal)
-    : wire_(std::move(wire)), settings_(settings), travel_(std::move(travel)), journal_(std::move(journal)),
+    : wire_(std::move(wire)),
+      settings_(settings),
+      travel_(std::move(travel)),
+      journal_(std::move(journal)),
       identity_(identity(wire_, settings_, travel_)) {
   if (!journal_.empty() && std::filesystem::exists(journal_)) read_journal();
 }
@@ -116,7 +123,9 @@ void CurveStore::read_journal() {
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
     const std::size_t last = line.rfind(' ');
-    if (last == std::string_view::npos || line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last)))) continue;
+    if (last == std::string_view::npos ||
+        line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last))))
+      continue;
     if (line.substr(0, identity_.size()) != identity_) continue;
     NumberReader numbers(line.substr(identity_.size(), last - identity_.size()));
     CurvePlace place;
@@ -143,8 +152,10 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
   coupling::PushOptions options;
   options.elements = settings_.elements;
   coupling::ExtrapolatedCurve solution;
-  if (settings_.extrapolate) solution = coupling::solve_push_extrapolated(test, options);
-  else solution.curve = coupling::solve_push(test, options);
+  if (settings_.extrapolate)
+    solution = coupling::solve_push_extrapolated(test, options);
+  else
+    solution.curve = coupling::solve_push(test, options);
 
   WireCurve curve;
   std::vector<double> force;
@@ -158,7 +169,8 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
       break;
     }
     force.push_back(points[i].force);
-    curve.largest_strain = std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
+    curve.largest_strain =
+        std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
     curve.dissipated = points[i].dissipated;
     if (i < solution.discretisation_error.size())
       curve.discretisation_error = std::max(curve.discretisation_error, solution.discretisation_error[i]);
@@ -168,7 +180,8 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
     const std::string reason = !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm",
                                                      1e3 * test.travel[force.size()])
                                        : solution.curve.report.message;
-    curve.stopped = fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position, 1e3 * place.slack, reason);
+    curve.stopped = fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position,
+                                1e3 * place.slack, reason);
   }
   const std::size_t up = std::min(force.size(), travel_.size());
   curve.loading.assign(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(up));
@@ -178,7 +191,8 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
   return curve;
 }
 
-numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, const SamplingObserver& observer) {
+numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
+                                         const SamplingObserver& observer) {
   std::vector<CurvePlace> wanted;
   for (CurvePlace place : places) {
     place.position = folded(place.position);

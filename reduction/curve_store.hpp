@@ -22,13 +22,14 @@ struct CurvePlace {
 
 /// The full wire's force at the store's travels. Dissipative wires are loaded to the end of the travel and unloaded.
 struct WireCurve {
-  std::vector<double> loading;    ///< force [N], one a travel
-  std::vector<double> unloading;  ///< on the way back, at the same travels; empty where nothing dissipates [N]
+  std::vector<double> loading;  ///< force [N], one a travel
+  std::vector<double>
+      unloading;  ///< on the way back, at the same travels; empty where nothing dissipates [N]
   double discretisation_error = 0.0;  ///< largest estimate over the curve [N]
-  double largest_strain = 0.0;    ///< of the wire at the left mount [-]
-  double dissipated = 0.0;        ///< by friction on the pusher over load and unload [J]
-  bool complete = false;          ///< every travel was reached
-  std::string stopped;            ///< why not
+  double largest_strain = 0.0;        ///< of the wire at the left mount [-]
+  double dissipated = 0.0;            ///< by friction on the pusher over load and unload [J]
+  bool complete = false;              ///< every travel was reached
+  std::string stopped;                ///< why not
 };
 
 /// Told after every curve: finished and wanted ones. false stops the sampling.
@@ -40,11 +41,13 @@ class CurveStore {
  public:
   /// travel: ascending from 0 [m]. journal: file to which finished curves are appended; none when empty. What it
   /// holds of the same case and settings is used; a torn last line and curves of other cases are passed over.
-  CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel, std::filesystem::path journal = {});
+  CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
+             std::filesystem::path journal = {});
 
   /// Solves those of the places that are not known yet, by OpenMP over curves. Not usable when the observer stopped it
   /// or a curve did not reach the end of the travel; what was reached is kept.
-  [[nodiscard]] numerics::SolveReport sample(const std::vector<CurvePlace>& places, const SamplingObserver& observer = {});
+  [[nodiscard]] numerics::SolveReport sample(const std::vector<CurvePlace>& places,
+                                             const SamplingObserver& observer = {});
 
   /// A curve that was sampled; throws std::out_of_range for another place.
   [[nodiscard]] const WireCurve& at(const CurvePlace& place) const { return curves_.at(place); }

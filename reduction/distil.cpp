@@ -11,9 +11,17 @@ constexpr int stiffness_points = 40;
 constexpr int map_slacks = 17;
 constexpr int map_travels = 60;
 
+RecordedLaw record(const HermiteCurve& full, double offset, const std::vector<std::size_t>& fit_at) {
+  std::vector<double> force;
+  for (const double d : full.knots()) force.push_back(d > offset ? full.value(d - offset) : 0.0);
+  const HermiteCurve recorded(full.knots(), force);
+  return {offset, fit_law(quadratic_law(), recorded, fit_at), stiffness_curve(recorded, stiffness_points)};
+}
+
 }  // namespace
 
-numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>& places, const SamplingObserver& observer) {
+numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>& places,
+                                 const SamplingObserver& observer) {
   const WireCase& wire = store.wire();
   std::vector<CurvePlace> wanted;
   for (const double s : wire.law_positions) wanted.push_back({s, wire.nominal_slack()});
@@ -23,13 +31,16 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   for (std::size_t i = 0; i < store.travel().size(); i += fit_every) fit_at.push_back(i);
   for (const double s : wire.law_positions) {
     const WireCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
-    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}};
-    const LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length, wire.test.wire.bending_stiffness()};
+    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}};
+    const LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length,
+                            wire.test.wire.bending_stiffness()};
     for (const LawFormPointer& form : law_forms(geometry)) {
       FittedLaw law = fit_law(form, place.full, fit_at);
       if (law.values.size() > 0) place.laws.push_back(std::move(law));
     }
     place.stiffness = stiffness_curve(place.full, stiffness_points);
+    if (!wire.law_offsets.empty())
+      place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
     if (!curve.unloading.empty()) {
       const HermiteCurve back(store.travel(), curve.unloading);
       place.dissipation = dissipation(place.full, back);
@@ -40,7 +51,8 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   return report;
 }
 
-Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer) {
+Distillation distil(const WireFile& file, const std::filesystem::path& journal,
+                    const SamplingObserver& observer) {
   Distillation result;
   for (const WireCase& wire : file.cases) {
     CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal);

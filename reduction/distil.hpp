@@ -11,13 +11,21 @@
 
 namespace snare::reduction {
 
+/// What a machine would have recorded whose displacement is not zero at first touch: no force before it.
+struct RecordedLaw {
+  double offset = 0.0;  ///< displacement at first touch [m]
+  FittedLaw quadratic;  ///< over the record from 0 to the end of the travel: as fits of records are published
+  StiffnessCurve stiffness;  ///< F over the recorded displacement
+};
+
 /// The simple laws at one position, at the nominal slack.
 struct DistilledPlace {
   double position = 0.0;  ///< [m]
   HermiteCurve full;      ///< the full wire, loading
   std::vector<FittedLaw> laws;
   StiffnessCurve stiffness;
-  std::optional<Dissipation> dissipation;       ///< where something dissipates
+  std::optional<RecordedLaw> recorded;     ///< where an offset is given
+  std::optional<Dissipation> dissipation;  ///< where something dissipates
   std::optional<LoadUnloadFit> load_unload;
 };
 

@@ -14,6 +14,8 @@ namespace {
 
 using Basis = std::array<double, 4>;
 
+constexpr std::size_t guide_steps = 8;  // of the cell search, a knot
+
 /// Cubic Hermite basis on a cell of width h at t in [0, 1]: value and slope below, value and slope above.
 Basis hermite(double t, double h) {
   const double u = 1.0 - t;
@@ -26,7 +28,9 @@ Basis hermite_slope(double t, double h) {
 }
 
 /// Knots above a cell's lower one; an axis of one knot has none.
-std::size_t upper(const std::vector<double>& axis, std::size_t lower) { return axis.size() > 1 ? lower + 1 : lower; }
+std::size_t upper(const std::vector<double>& axis, std::size_t lower) {
+  return axis.size() > 1 ? lower + 1 : lower;
+}
 
 /// Bernstein coefficients of a cubic given by value and slope at both ends of a cell of width h.
 std::array<double, 4> bernstein(const double* v, double h) {
@@ -35,9 +39,12 @@ std::array<double, 4> bernstein(const double* v, double h) {
 
 }  // namespace
 
-ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
-                       double bending_stiffness, bool mirrored)
-    : axes_(std::move(axes)), span_(span), force_scale_(bending_stiffness / (span * span)), mirrored_(mirrored) {
+ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes,
+                       double span, double bending_stiffness, bool mirrored)
+    : axes_(std::move(axes)),
+      span_(span),
+      force_scale_(bending_stiffness / (span * span)),
+      mirrored_(mirrored) {
   const std::size_t nd = axes_[0].size();
   const std::size_t ns = axes_[1].size();
   const std::size_t ne = axes_[2].size();
@@ -47,17 +54,34 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
     nodes_[numbers_a_node * n] = values[n] / force_scale_;
     nodes_[numbers_a_node * n + 1] = slopes[n] * span_ / force_scale_;
   }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::vector<double>& knots = axes_[a];
+    if (knots.size() < 2) continue;
+    Lookup& lookup = lookup_[a];
+    const std::size_t steps = guide_steps * knots.size();
+    lookup.low = knots.front();
+    lookup.steps_per_unit = static_cast<double>(steps) / (knots.back() - knots.front());
+    for (std::size_t i = 0; i <= steps; ++i) {
+      lookup.guide.push_back(static_cast<unsigned>(find_cell(
+          knots.data(), knots.size(), lookup.low + static_cast<double>(i) / lookup.steps_per_unit)));
+    }
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      lookup.inverse_widths.push_back(1.0 / (knots[i + 1] - knots[i]));
+  }
   // Along the position, then along the slack: every number gets its slope.
   const bool level = mirrored_ && std::abs(axes_[1].back() - 0.5) < 1e-12;
   const Eigen::MatrixXd by_s = spline_slopes(axes_[1], level ? SplineEnd::level : SplineEnd::not_a_knot);
   const Eigen::MatrixXd by_e = spline_slopes(axes_[2]);
-  const auto index = [&](std::size_t k, std::size_t i, std::size_t j) { return numbers_a_node * (k + nd * (i + ns * j)); };
+  const auto index = [&](std::size_t k, std::size_t i, std::size_t j) {
+    return numbers_a_node * (k + nd * (i + ns * j));
+  };
   for (std::size_t k = 0; k < nd; ++k) {
     for (std::size_t j = 0; j < ne; ++j) {
       for (std::size_t i = 0; i < ns; ++i) {
         for (std::size_t m = 0; m < ns; ++m) {
           const double w = by_s(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m));
-          for (std::size_t c = 0; c < 2; ++c) nodes_[index(k, i, j) + 2 + c] += w * nodes_[index(k, m, j) + c];
+          for (std::size_t c = 0; c < 2; ++c)
+            nodes_[index(k, i, j) + 2 + c] += w * nodes_[index(k, m, j) + c];
         }
       }
     }
@@ -65,7 +89,8 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
       for (std::size_t j = 0; j < ne; ++j) {
         for (std::size_t m = 0; m < ne; ++m) {
           const double w = by_e(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(m));
-          for (std::size_t c = 0; c < 4; ++c) nodes_[index(k, i, j) + 4 + c] += w * nodes_[index(k, i, m) + c];
+          for (std::size_t c = 0; c < 4; ++c)
+            nodes_[index(k, i, j) + 4 + c] += w * nodes_[index(k, i, m) + c];
         }
       }
     }
@@ -78,6 +103,16 @@ std::array<double, 3> ForceTable::reduced(double travel, double position, double
   return {travel / span_, s, slack / span_};
 }
 
+std::size_t ForceTable::Lookup::cell(const std::vector<double>& knots, double x) const noexcept {
+  const double step = (x - low) * steps_per_unit;
+  const auto last = static_cast<double>(guide.size() - 1);
+  std::size_t i = guide[static_cast<std::size_t>(step > 0.0 ? std::min(step, last) : 0.0)];
+  // Round-off may put a step's beginning on either side of a knot.
+  while (i > 0 && x < knots[i]) --i;
+  while (i + 2 < knots.size() && x >= knots[i + 1]) ++i;
+  return i;
+}
+
 ForceTable::Cell ForceTable::locate(const std::array<double, 3>& x) const noexcept {
   Cell cell;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -86,10 +121,9 @@ ForceTable::Cell ForceTable::locate(const std::array<double, 3>& x) const noexce
       cell.basis[a] = {1.0, 0.0, 0.0, 0.0};
       continue;
     }
-    cell.index[a] = find_cell(axis.data(), axis.size(), x[a]);
-    const double low = axis[cell.index[a]];
-    const double h = axis[cell.index[a] + 1] - low;
-    cell.basis[a] = hermite((x[a] - low) / h, h);
+    const std::size_t i = lookup_[a].cell(axis, x[a]);
+    cell.index[a] = i;
+    cell.basis[a] = hermite((x[a] - axis[i]) * lookup_[a].inverse_widths[i], axis[i + 1] - axis[i]);
   }
   return cell;
 }
@@ -143,8 +177,9 @@ LawValue ForceTable::at(double travel, double position, double slack, Outside ou
     if (std::abs(inside[a] - x[a]) <= margin) continue;
     if (outside == Outside::refuse) {
       constexpr std::array<const char*, 3> names{"travel", "position", "slack"};
-      throw std::domain_error(fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm", names[a],
-                                          1e3 * x[a] * span_, 1e3 * axes_[a].front() * span_, 1e3 * axes_[a].back() * span_));
+      throw std::domain_error(
+          fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm", names[a],
+                      1e3 * x[a] * span_, 1e3 * axes_[a].front() * span_, 1e3 * axes_[a].back() * span_));
     }
     result.extrapolated = true;
   }

@@ -31,7 +31,8 @@ std::string numbers(const std::vector<double>& values) {
 }
 
 std::string error_words(const FittedLaw& law) {
-  return fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(), law.error.largest_force, law.error.force_range);
+  return fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(), law.error.largest_force,
+                     law.error.force_range);
 }
 
 std::string head(const DistilledCase& one, const std::string& title, const std::string& comment) {
@@ -45,11 +46,15 @@ std::string head(const DistilledCase& one, const std::string& title, const std::
   std::replace(title_line.begin(), title_line.end(), '\n', ' ');
   std::string text;
   for (const std::string& line :
-       {title_line, std::string("Force of a snare wire on a pusher, distilled from the full wire by snare. SI units: m, N."),
-        "travel d from first touch: " + range(0), "position s along the chord: " + range(1), "slack: " + range(2),
+       {title_line,
+        std::string(
+            "Force of a snare wire on a pusher, distilled from the full wire by snare. SI units: m, N."),
+        "travel d from first touch: " + range(0), "position s along the chord: " + range(1),
+        "slack: " + range(2),
         fmt::format("table within {:.4g} N of the full wire ({:.3g} % of the range of the force)", e.bound,
                     100.0 * e.bound / e.force_range),
-        std::string(one.wire.dissipates() ? "loading only: this wire dissipates, see load_unload in law.json" : "")}) {
+        std::string(one.wire.dissipates() ? "loading only: this wire dissipates, see load_unload in law.json"
+                                          : "")}) {
     if (!line.empty()) text += comment + line + "\n";
   }
   return text;
@@ -67,12 +72,14 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
   array("knots_slack", axes[2]);
   array("nodes", table.nodes());
   text += fmt::format(fmt::runtime(l.table), fmt::arg("nd", axes[0].size()), fmt::arg("ns", axes[1].size()),
-                      fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()), fmt::arg("scale", table.force_scale()),
+                      fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()),
+                      fmt::arg("scale", table.force_scale()),
                       fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"));
   for (const DistilledPlace& place : one.places) {
     for (const FittedLaw& law : place.laws) {
       text += "\n" + l.comment + error_words(law) + "\n";
-      text += fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
+      text +=
+          fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
       text += law.form->expression(law.values, l.prefix) + l.function_close;
     }
   }
@@ -90,7 +97,8 @@ std::string c_table(const std::string& qualifier) {
   return low;
 }}
 
-)" + qualifier + R"(unsigned basis_(const double* knots, unsigned count, double x, double b[4], unsigned* upper) {{
+)" + qualifier +
+         R"(unsigned basis_(const double* knots, unsigned count, double x, double b[4], unsigned* upper) {{
   unsigned i = find_cell_(knots, count, x);
   double h, t, u;
   b[0] = 1.0; b[1] = 0.0; b[2] = 0.0; b[3] = 0.0;
@@ -105,7 +113,8 @@ std::string c_table(const std::string& qualifier) {
 }}
 
 /* force [N] at travel d, position and slack [m] */
-)" + qualifier + R"(double force(double d, double position, double slack) {{
+)" + qualifier +
+         R"(double force(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   double bd[4], bs[4], be[4], total = 0.0;
   unsigned k, k1, i[2], j[2], b, c, p;
@@ -130,7 +139,8 @@ std::string c_table(const std::string& qualifier) {
   return {scale} * total;
 }}
 
-)" + qualifier + R"(int in_range(double d, double position, double slack) {{
+)" + qualifier +
+         R"(int in_range(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   if ({mirror}) s = 1.0 - s;
   return x <= knots_travel[{nd} - 1] + 1e-9 && s >= knots_position[0] - 1e-9 && s <= knots_position[{ns} - 1] + 1e-9 &&
@@ -196,7 +206,8 @@ const FittedLaw* find_law(const DistilledPlace& place, const std::string& name) 
 /// "a, b, c" in lines that ADAMS takes, each continued by a leading comma.
 std::string adams_numbers(const std::string& key, const std::vector<double>& values) {
   std::string text = ", " + key + "=";
-  for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : i % 5 == 0 ? "\n, " : ", ", values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : i % 5 == 0 ? "\n, " : ", ", values[i]);
   return text + "\n";
 }
 
@@ -270,16 +281,20 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
   const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
   // A double hyphen may not stand in a comment of XML.
   std::string words = title;
-  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--")) words.replace(at, 2, "-");
+  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--"))
+    words.replace(at, 2, "-");
   return fmt::format(
-      "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first touch: off the full wire by up to"
-      "\n     {:.3g} N of {:.3g} N. The damping times the angular rate is {:.4g} N/m (from the friction loop; 0: elastic). -->\n"
+      "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first "
+      "touch: off the full wire by up to"
+      "\n     {:.3g} N of {:.3g} N. The damping times the angular rate is {:.4g} N/m (from the friction "
+      "loop; 0: elastic). -->\n"
       "<mujoco model=\"snare_wire\">\n  <worldbody>\n    <body name=\"wire_contact\">\n"
-      "      <joint name=\"wire_travel\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{}\" springref=\"0\" damping=\"0\"\n"
+      "      <joint name=\"wire_travel\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{}\" springref=\"0\" "
+      "damping=\"0\"\n"
       "             limited=\"true\" range=\"0 {}\"/>\n"
       "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\"/>\n    </body>\n  </worldbody>\n</mujoco>\n",
-      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force, linear->error.force_range, loss,
-      linear->values[0], linear->range.high);
+      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force,
+      linear->error.force_range, loss, linear->values[0], linear->range.high);
 }
 
 std::string adams_splines(const DistilledCase& one, const std::string& title) {
@@ -288,15 +303,18 @@ std::string adams_splines(const DistilledCase& one, const std::string& title) {
   for (double& d : travel) d *= table.span();
   std::string words = title;
   std::replace(words.begin(), words.end(), '\n', ' ');
-  std::string text = "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
+  std::string text =
+      "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
   int number = 1;
   for (const DistilledPlace& place : one.places) {
     std::vector<double> force;
     for (const double d : travel) force.push_back(place.full.value(d));
-    text += fmt::format("! s = {:.6g} mm, slack {:.6g} mm\nSPLINE/{}\n", 1e3 * place.position, 1e3 * one.wire.nominal_slack(), number++);
+    text += fmt::format("! s = {:.6g} mm, slack {:.6g} mm\nSPLINE/{}\n", 1e3 * place.position,
+                        1e3 * one.wire.nominal_slack(), number++);
     text += adams_numbers("X", travel) + adams_numbers("Y", force);
   }
-  text += fmt::format("! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n", 1e3 * one.wire.nominal_slack(), number);
+  text += fmt::format("! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n",
+                      1e3 * one.wire.nominal_slack(), number);
   text += adams_numbers("X", travel);
   for (const double s : table.axes()[1]) {
     // The first number of a Y list is its Z.

@@ -1,8 +1,8 @@
 #include "reduction/law_fit.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +22,15 @@ struct Points {
 
 VectorXd misfit(const LawForm& form, const VectorXd& p, const Points& points) {
   VectorXd r(static_cast<Eigen::Index>(points.travel.size()));
-  for (std::size_t i = 0; i < points.travel.size(); ++i) r[static_cast<Eigen::Index>(i)] = form.force(p, points.travel[i]) - points.force[i];
+  for (std::size_t i = 0; i < points.travel.size(); ++i)
+    r[static_cast<Eigen::Index>(i)] = form.force(p, points.travel[i]) - points.force[i];
   return r;
 }
 
 MatrixXd jacobian(const LawForm& form, const VectorXd& p, const Points& points) {
   MatrixXd j(static_cast<Eigen::Index>(points.travel.size()), p.size());
-  for (std::size_t i = 0; i < points.travel.size(); ++i) j.row(static_cast<Eigen::Index>(i)) = form.by_parameters(p, points.travel[i]).transpose();
+  for (std::size_t i = 0; i < points.travel.size(); ++i)
+    j.row(static_cast<Eigen::Index>(i)) = form.by_parameters(p, points.travel[i]).transpose();
   return j;
 }
 
@@ -46,7 +48,8 @@ bool minimise(const LawForm& form, const Points& points, VectorXd& p) {
     bool moved = false;
     for (int k = 0; k < 30 && !moved; ++k, damping *= 8.0) {
       MatrixXd stacked(j.rows() + p.size(), p.size());
-      stacked << j * scale.cwiseInverse().asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
+      stacked << j * scale.cwiseInverse().asDiagonal(),
+          std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
       VectorXd right = VectorXd::Zero(stacked.rows());
       right.head(r.size()) = -r;
       const VectorXd step = stacked.colPivHouseholderQr().solve(right).cwiseQuotient(scale);
@@ -55,7 +58,8 @@ bool minimise(const LawForm& form, const Points& points, VectorXd& p) {
       const VectorXd r_next = misfit(form, next, points);
       if (!r_next.allFinite() || !(r_next.norm() <= r.norm())) continue;
       moved = true;
-      const bool still = r.norm() - r_next.norm() <= 1e-14 * r.norm() && step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
+      const bool still = r.norm() - r_next.norm() <= 1e-14 * r.norm() &&
+                         step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
       p = next;
       r = r_next;
       if (still) return true;
@@ -73,15 +77,18 @@ LawValue FittedLaw::at(double travel, Outside outside) const {
   if (travel < 0.0) return result;
   result.extrapolated = !range.contains(travel);
   if (result.extrapolated && outside == Outside::refuse) {
-    throw std::domain_error(fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
-                                        1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
+    throw std::domain_error(
+        fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
+                    1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
   }
   result.force = form->force(values, travel);
   result.stiffness = form->stiffness(values, travel);
   return result;
 }
 
-double FittedLaw::energy(double travel) const { return travel <= 0.0 ? 0.0 : form->energy(values, travel); }
+double FittedLaw::energy(double travel) const {
+  return travel <= 0.0 ? 0.0 : form->energy(values, travel);
+}
 
 LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law) {
   LawError e;
@@ -121,7 +128,8 @@ LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at,
   return e;
 }
 
-FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve, const std::vector<std::size_t>& fit_at) {
+FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve,
+                  const std::vector<std::size_t>& fit_at) {
   FittedLaw law;
   law.form = form;
   law.range = {curve.knots().front(), curve.knots().back()};
@@ -149,7 +157,8 @@ FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve, const s
   const VectorXd scale = j.colwise().norm().transpose().cwiseMax(1e-300);
   const MatrixXd unit = j * scale.cwiseInverse().asDiagonal();
   const MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  law.covariance = variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
+  law.covariance =
+      variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < curve.knots().size(); ++i) {
     if (!std::binary_search(fit_at.begin(), fit_at.end(), i)) others.push_back(i);

@@ -13,9 +13,9 @@ namespace snare::reduction {
 
 /// How far a law is from the full wire over its range, at travels that the fit did not see.
 struct LawError {
-  double largest_force = 0.0, rms_force = 0.0;          ///< [N]
-  double largest_stiffness = 0.0, rms_stiffness = 0.0;  ///< of dF/dd [N/m]
-  double largest_energy = 0.0, rms_energy = 0.0;        ///< absorbed from first touch [J]
+  double largest_force = 0.0, rms_force = 0.0;                          ///< [N]
+  double largest_stiffness = 0.0, rms_stiffness = 0.0;                  ///< of dF/dd [N/m]
+  double largest_energy = 0.0, rms_energy = 0.0;                        ///< absorbed from first touch [J]
   double force_range = 0.0, stiffness_range = 0.0, energy_range = 0.0;  ///< of the full wire, for the share
   std::size_t points = 0;
 };
@@ -24,7 +24,8 @@ struct LawError {
 struct FittedLaw {
   LawFormPointer form;
   Eigen::VectorXd values;
-  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers of a form that
+  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers
+  /// of a form that
   /// does not fit it exactly; there is no noise in it.
   Eigen::MatrixXd covariance;
   Interval range;  ///< of the travel [m]
@@ -39,12 +40,15 @@ struct FittedLaw {
 /// Least squares of a form through points (travel ascending, >= 0) by Levenberg and Marquardt from the best guess. The
 /// error is taken at all other travels of `curve`, the full wire's.
 /// fit_at: indices of the travels to fit.
-[[nodiscard]] FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve, const std::vector<std::size_t>& fit_at);
+[[nodiscard]] FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve,
+                                const std::vector<std::size_t>& fit_at);
 
 /// Error of a law against the full wire at some of its travels.
-[[nodiscard]] LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law);
+[[nodiscard]] LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at,
+                                const FittedLaw& law);
 
-/// The spring of the linear spring-dashpot law against the travel it is used over: k(d) = F/d.       Abiko et al., Fig. 11
+/// The spring of the linear spring-dashpot law against the travel it is used over: k(d) = F/d.       Abiko et
+/// al., Fig. 11
 struct StiffnessCurve {
   std::vector<double> travel;   ///< > 0 [m]
   std::vector<double> secant;   ///< F/d [N/m]

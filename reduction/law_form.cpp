@@ -30,7 +30,8 @@ std::string digits(double value) {
 /// Polynomials in the travel whose coefficients are the numbers, highest power first.
 class Polynomial final : public LawForm {
  public:
-  Polynomial(std::string name, std::vector<int> powers) : name_(std::move(name)), powers_(std::move(powers)) {}
+  Polynomial(std::string name, std::vector<int> powers)
+      : name_(std::move(name)), powers_(std::move(powers)) {}
 
   std::string name() const override { return name_; }
   std::string formula() const override {
@@ -45,7 +46,9 @@ class Polynomial final : public LawForm {
     if (powers_.size() == 1) return {{"k", "N/m"}};
     std::vector<LawParameter> result;
     for (std::size_t i = 0; i < powers_.size(); ++i) {
-      result.push_back({std::string(1, static_cast<char>('A' + i)), powers_[i] == 2 ? "N/m^2" : powers_[i] == 1 ? "N/m" : "N"});
+      result.push_back({std::string(1, static_cast<char>('A' + i)), powers_[i] == 2   ? "N/m^2"
+                                                                    : powers_[i] == 1 ? "N/m"
+                                                                                      : "N"});
     }
     return result;
   }
@@ -53,14 +56,17 @@ class Polynomial final : public LawForm {
     std::string text;
     for (std::size_t i = 0; i < powers_.size(); ++i) {
       text += (i == 0 ? "" : " + ") + digits(p[static_cast<Eigen::Index>(i)]) +
-              (powers_[i] == 2 ? " * d * d" : powers_[i] == 1 ? " * d" : "");
+              (powers_[i] == 2   ? " * d * d"
+               : powers_[i] == 1 ? " * d"
+                                 : "");
     }
     return text;
   }
   double force(const VectorXd& p, double d) const override { return p.dot(by_parameters(p, d)); }
   std::function<double(double)> with(const VectorXd& p) const override {
     std::array<double, 3> by_power{};
-    for (std::size_t i = 0; i < powers_.size(); ++i) by_power[static_cast<std::size_t>(powers_[i])] = p[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < powers_.size(); ++i)
+      by_power[static_cast<std::size_t>(powers_[i])] = p[static_cast<Eigen::Index>(i)];
     return [c = by_power](double d) { return (c[2] * d + c[1]) * d + c[0]; };
   }
   double stiffness(const VectorXd& p, double d) const override {
@@ -79,7 +85,8 @@ class Polynomial final : public LawForm {
   }
   VectorXd by_parameters(const VectorXd&, double d) const override {
     VectorXd g(static_cast<Eigen::Index>(powers_.size()));
-    for (std::size_t i = 0; i < powers_.size(); ++i) g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
+    for (std::size_t i = 0; i < powers_.size(); ++i)
+      g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
     return g;
   }
   std::vector<VectorXd> guesses(double, double) const override {
@@ -103,8 +110,12 @@ class Power final : public LawForm {
   std::function<double(double)> with(const VectorXd& p) const override {
     return [k = p[0], power = p[1]](double d) { return k * std::pow(d, power); };
   }
-  double stiffness(const VectorXd& p, double d) const override { return p[0] * p[1] * std::pow(d, p[1] - 1.0); }
-  double energy(const VectorXd& p, double d) const override { return p[0] * std::pow(d, p[1] + 1.0) / (p[1] + 1.0); }
+  double stiffness(const VectorXd& p, double d) const override {
+    return p[0] * p[1] * std::pow(d, p[1] - 1.0);
+  }
+  double energy(const VectorXd& p, double d) const override {
+    return p[0] * std::pow(d, p[1] + 1.0) / (p[1] + 1.0);
+  }
   VectorXd by_parameters(const VectorXd& p, double d) const override {
     const double power = std::pow(d, p[1]);
     return vector({power, d > 0.0 ? p[0] * power * std::log(d) : 0.0});
@@ -160,8 +171,10 @@ class Stretched : public LawForm {
     };
     const std::string l1 = length(place_.position);
     const std::string l2 = length(place_.span - place_.position);
-    const std::string strain = fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
-    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix, strain, y, l1, y, l2);
+    const std::string strain =
+        fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
+    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix,
+                       strain, y, l1, y, l2);
   }
   double force(const VectorXd& p, double d) const override {
     const Pieces now = pieces_at(place_, height_ + d - p[1]);
@@ -196,7 +209,9 @@ class Stretched : public LawForm {
     return result;
   }
   // Not so far that the taut wire would hang on the other side of the chord.
-  bool admissible(const VectorXd& p) const override { return p[0] > 0.0 && p[1] <= std::max(height_, 1e-3 * place_.span); }
+  bool admissible(const VectorXd& p) const override {
+    return p[0] > 0.0 && p[1] <= std::max(height_, 1e-3 * place_.span);
+  }
 
  protected:
   LawPlace place_;
@@ -211,7 +226,9 @@ class StretchedLinear final : public LawForm {
     unit_ = taut.lift * taut.lift / place.length + std::max(0.0, taut.stretch) * taut.bend;
   }
   std::string name() const override { return "stretched_wire_linear"; }
-  std::string formula() const override { return "F = K (q/l1 + q/l2)^2/L (d - d0), none before the wire is taut"; }
+  std::string formula() const override {
+    return "F = K (q/l1 + q/l2)^2/L (d - d0), none before the wire is taut";
+  }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
     const std::string x = fmt::format("(d - {})", digits(p[1]));
@@ -250,17 +267,22 @@ class Tensioned final : public LawForm {
   std::string name() const override { return "tensioned_wire"; }
   std::string formula() const override { return "F = k(EI, T, s) d, clamped-clamped under the tension T"; }
   std::vector<LawParameter> parameters() const override { return {{"T", "N"}}; }
-  std::string expression(const VectorXd& p, const std::string&) const override { return digits(at(p).value) + " * d"; }
+  std::string expression(const VectorXd& p, const std::string&) const override {
+    return digits(at(p).value) + " * d";
+  }
   double force(const VectorXd& p, double d) const override { return at(p).value * d; }
   std::function<double(double)> with(const VectorXd& p) const override {
     return [k = at(p).value](double d) { return k * d; };
   }
   double stiffness(const VectorXd& p, double) const override { return at(p).value; }
   double energy(const VectorXd& p, double d) const override { return 0.5 * at(p).value * d * d; }
-  VectorXd by_parameters(const VectorXd& p, double d) const override { return vector({at(p).by_tension * d}); }
+  VectorXd by_parameters(const VectorXd& p, double d) const override {
+    return vector({at(p).by_tension * d});
+  }
   std::vector<VectorXd> guesses(double force_scale, double travel) const override {
     const double s = place_.position;
-    const double string = force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
+    const double string =
+        force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
     return {vector({0.0}), vector({0.3 * string}), vector({string})};
   }
   bool admissible(const VectorXd& p) const override {
@@ -276,19 +298,36 @@ class Tensioned final : public LawForm {
 
 }  // namespace
 
-LawFormPointer quadratic_law() { return std::make_shared<Polynomial>("quadratic", std::vector<int>{2, 1, 0}); }
+LawFormPointer quadratic_law() {
+  return std::make_shared<Polynomial>("quadratic", std::vector<int>{2, 1, 0});
+}
 LawFormPointer quadratic_through_origin() {
   return std::make_shared<Polynomial>("quadratic_through_origin", std::vector<int>{2, 1});
 }
-LawFormPointer linear_law() { return std::make_shared<Polynomial>("linear", std::vector<int>{1}); }
-LawFormPointer power_law() { return std::make_shared<Power>(); }
-LawFormPointer stretched_wire_law(const LawPlace& place) { return std::make_shared<Stretched>(place); }
-LawFormPointer stretched_wire_linearised(const LawPlace& place) { return std::make_shared<StretchedLinear>(place); }
-LawFormPointer tensioned_wire_law(const LawPlace& place) { return std::make_shared<Tensioned>(place); }
+LawFormPointer linear_law() {
+  return std::make_shared<Polynomial>("linear", std::vector<int>{1});
+}
+LawFormPointer power_law() {
+  return std::make_shared<Power>();
+}
+LawFormPointer stretched_wire_law(const LawPlace& place) {
+  return std::make_shared<Stretched>(place);
+}
+LawFormPointer stretched_wire_linearised(const LawPlace& place) {
+  return std::make_shared<StretchedLinear>(place);
+}
+LawFormPointer tensioned_wire_law(const LawPlace& place) {
+  return std::make_shared<Tensioned>(place);
+}
 
 std::vector<LawFormPointer> law_forms(const LawPlace& place) {
-  return {quadratic_law(), quadratic_through_origin(), linear_law(), power_law(), stretched_wire_law(place),
-          stretched_wire_linearised(place), tensioned_wire_law(place)};
+  return {quadratic_law(),
+          quadratic_through_origin(),
+          linear_law(),
+          power_law(),
+          stretched_wire_law(place),
+          stretched_wire_linearised(place),
+          tensioned_wire_law(place)};
 }
 
 }  // namespace snare::reduction

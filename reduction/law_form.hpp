@@ -37,16 +37,17 @@ class LawForm {
   /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python).
   [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
 
-  [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const = 0;      ///< [N]
+  [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const = 0;  ///< [N]
   /// The force as a function of the travel alone, all that depends on the numbers done: for many evaluations.
   [[nodiscard]] virtual std::function<double(double)> with(const Eigen::VectorXd& p) const = 0;
   [[nodiscard]] virtual double stiffness(const Eigen::VectorXd& p, double d) const = 0;  ///< dF/dd [N/m]
-  [[nodiscard]] virtual double energy(const Eigen::VectorXd& p, double d) const = 0;     ///< integral from 0 [J]
+  [[nodiscard]] virtual double energy(const Eigen::VectorXd& p, double d) const = 0;  ///< integral from 0 [J]
   [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;
 
   /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale and travel_scale:
   /// largest force and travel of the points.
-  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale, double travel_scale) const = 0;
+  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale,
+                                                             double travel_scale) const = 0;
   /// Whether numbers make sense (a positive power); a search does not leave them.
   [[nodiscard]] virtual bool admissible(const Eigen::VectorXd& /*p*/) const { return true; }
 

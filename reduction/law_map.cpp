@@ -13,9 +13,11 @@ namespace snare::reduction {
 namespace {
 
 constexpr double pretension_strain = 1e-3;
-constexpr double reach = 3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
+constexpr double reach =
+    3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
 
-LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double>& travel, const DistilSettings& settings) {
+LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double>& travel,
+                 const DistilSettings& settings) {
   LawMapRow row;
   row.slack = slack;
   test.wire.length = test.mount.span + slack;
@@ -28,7 +30,8 @@ LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double
     if (row.full.size() < travel.size() && p.travel == travel[row.full.size()]) row.full.push_back(p.force);
   }
   const double ea = test.wire.axial_stiffness();
-  const LawPlace place{test.mount.span, test.contact_position, test.wire.length, test.wire.bending_stiffness()};
+  const LawPlace place{test.mount.span, test.contact_position, test.wire.length,
+                       test.wire.bending_stiffness()};
   const LawFormPointer stretched = stretched_wire_law(place);
   // The wire stands off by its natural height; it is taut at the height of its two straight pieces.
   const double taut = 0.5 * std::sqrt(std::max(0.0, place.length * place.length - place.span * place.span));
@@ -45,7 +48,8 @@ LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double
 
 }  // namespace
 
-std::optional<Interval> LawMap::within(const LawMapRow& row, const std::vector<double> LawMapRow::*law, double share) const {
+std::optional<Interval> LawMap::within(const LawMapRow& row, const std::vector<double> LawMapRow::*law,
+                                       double share) const {
   std::optional<Interval> best;
   std::size_t longest = 0;
   std::size_t run = 0;
@@ -66,7 +70,8 @@ LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks
   test.wire.strand_friction.reset();
   test.wire.yielding.reset();
   test.mount.slip_tension.reset();
-  for (int i = 1; i <= travels; ++i) map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
+  for (int i = 1; i <= travels; ++i)
+    map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
   const double low = -pretension_strain * test.mount.span;
   const double high = std::max(wire.slack.high, -low);
   map.rows.resize(static_cast<std::size_t>(slacks));
@@ -74,7 +79,8 @@ LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < slacks; ++i) {
     try {
-      map.rows[static_cast<std::size_t>(i)] = row_at(test, low + (high - low) * i / (slacks - 1), map.travel, settings);
+      map.rows[static_cast<std::size_t>(i)] =
+          row_at(test, low + (high - low) * i / (slacks - 1), map.travel, settings);
     } catch (...) {
 #pragma omp critical(snare_law_map)
       failure = std::current_exception();

@@ -14,7 +14,8 @@ struct LoadUnloadState {
 
 /// A wire that dissipates by friction, at any rate alike.                                  theory.md (R.9)
 ///   F = L(d) [(1 + r)/2 + z (1 - r)/2],   dz = 2 dd/lambda, -1 <= z <= 1
-/// L: the loading curve; r: the share of it that is left on the way back, once the turn is over; lambda: the travel that the
+/// L: the loading curve; r: the share of it that is left on the way back, once the turn is over; lambda: the
+/// travel that the
 /// turn takes.
 class LoadUnloadLaw {
  public:
@@ -37,7 +38,8 @@ struct Dissipation {
   double loop = 0.0;         ///< energy lost between load and unload over the whole travel [J]
   double absorbed = 0.0;     ///< energy taken up by loading [J]
   double loss_factor = 0.0;  ///< loop/(2 pi stored), stored = absorbed - loop/2 [-]
-  /// c w of the dashpot that loses as much in one cycle over the whole travel d: loop = pi c w (d/2)^2 [N/m]. Friction does
+  /// c w of the dashpot that loses as much in one cycle over the whole travel d: loop = pi c w (d/2)^2 [N/m].
+  /// Friction does
   /// not know the rate: the damping c follows only for a stated angular rate w.
   double damping_times_rate = 0.0;
 };

@@ -22,7 +22,8 @@ struct JointState {
   Eigen::Vector3d sliding = Eigen::Vector3d::Zero();       ///< p [N]
 };
 
-/// The ball joint that stands for a closed snare: springs across the shaft, friction along it (Nakanishi et al., ground test).
+/// The ball joint that stands for a closed snare: springs across the shaft, friction along it (Nakanishi et
+/// al., ground test).
 struct SnareJoint {
   std::array<JointAxis, 3> axis;
 
@@ -35,11 +36,11 @@ struct JointCycle {
   int axis = 0;
   std::vector<coupling::ShaftPoint> path;  ///< first loading from the centre, then one whole cycle
   std::size_t cycle_begin = 0;             ///< index from which the closed cycle runs
-  double loop = 0.0;         ///< area of the closed cycle, the integral of F du [J]
-  double dissipated = 0.0;   ///< by friction in it, from the contacts [J]
-  double linear_r2 = 0.0;    ///< of a straight line through the cycle's forces
-  double half_width = 0.0;   ///< largest half distance of the branches [N]
-  double force_range = 0.0;  ///< largest less least force [N]
+  double loop = 0.0;                       ///< area of the closed cycle, the integral of F du [J]
+  double dissipated = 0.0;                 ///< by friction in it, from the contacts [J]
+  double linear_r2 = 0.0;                  ///< of a straight line through the cycle's forces
+  double half_width = 0.0;                 ///< largest half distance of the branches [N]
+  double force_range = 0.0;                ///< largest less least force [N]
   JointAxis fitted;
   double rms_error = 0.0;      ///< of the joint over the cycle [N]
   double largest_error = 0.0;  ///< [N]
@@ -47,6 +48,7 @@ struct JointCycle {
 };
 
 /// Moves the shaft along an axis (0, 1, 2) by 0, a, -a, a in `steps` points a leg of length 2 a, and fits the joint.
-[[nodiscard]] JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, double amplitude, int steps);
+[[nodiscard]] JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, double amplitude,
+                                     int steps);
 
 }  // namespace snare::reduction

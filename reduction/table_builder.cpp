@@ -9,8 +9,8 @@ namespace snare::reduction {
 
 namespace {
 
-constexpr int travel_steps = 120;     // intervals of the sampling
-constexpr int pilot_intervals = 24;   // along position and slack
+constexpr int travel_steps = 120;    // intervals of the sampling
+constexpr int pilot_intervals = 24;  // along position and slack
 constexpr int most_rounds = 8;
 
 std::vector<double> spread(const Interval& range, int intervals) {
@@ -57,8 +57,8 @@ class TableBuilder {
   const DistilSettings& settings_;
   const SamplingObserver& observer_;
   BuiltTable built_;
-  std::vector<std::size_t> travel_;      // indices of the knots in the sampling's travels
-  std::vector<double> position_, slack_; // knots
+  std::vector<std::size_t> travel_;       // indices of the knots in the sampling's travels
+  std::vector<double> position_, slack_;  // knots
   // Largest error of the check a cell of each axis, from points off the knots in that axis alone.
   std::array<std::vector<double>, 3> cell_error_;
 };
@@ -100,12 +100,14 @@ bool TableBuilder::place() {
   };
   lines.clear();
   for (const double e : few_e) {
-    for (auto& line : across(all_s, [&](double s) { return CurvePlace{store_.folded(s), e}; })) lines.push_back(std::move(line));
+    for (auto& line : across(all_s, [&](double s) { return CurvePlace{store_.folded(s), e}; }))
+      lines.push_back(std::move(line));
   }
   position_ = pick(all_s, place_knots(all_s, lines, wanted(1)));
   lines.clear();
   for (const double s : few_s) {
-    for (auto& line : across(all_e, [&](double e) { return CurvePlace{store_.folded(s), e}; })) lines.push_back(std::move(line));
+    for (auto& line : across(all_e, [&](double e) { return CurvePlace{store_.folded(s), e}; }))
+      lines.push_back(std::move(line));
   }
   slack_ = pick(all_e, place_knots(all_e, lines, wanted(2)));
   return true;
@@ -130,8 +132,8 @@ std::unique_ptr<ForceTable> TableBuilder::tabulate(Branch branch) const {
   for (std::vector<double>& axis : axes) {
     for (double& x : axis) x /= span;
   }
-  return std::make_unique<ForceTable>(std::move(axes), values, slopes, span, wire.test.wire.bending_stiffness(),
-                                      wire.symmetric());
+  return std::make_unique<ForceTable>(std::move(axes), values, slopes, span,
+                                      wire.test.wire.bending_stiffness(), wire.symmetric());
 }
 
 TableError TableBuilder::check(const ForceTable& table, Branch branch) {
@@ -172,7 +174,8 @@ TableError TableBuilder::check(const ForceTable& table, Branch branch) {
         };
         const bool knot = std::binary_search(travel_.begin(), travel_.end(), k);
         if (i % 2 == 0 && j % 2 == 0 && !knot) {
-          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) - travel_.begin() - 1));
+          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) -
+                                           travel_.begin() - 1));
         } else if (i % 2 == 1 && j % 2 == 0 && knot) {
           note(1, i / 2);
         } else if (i % 2 == 0 && j % 2 == 1 && knot) {
@@ -190,13 +193,15 @@ TableError TableBuilder::check(const ForceTable& table, Branch branch) {
 
 // Halves every cell whose share of the error is more than a quarter of what is allowed, worst axis first.
 bool TableBuilder::refine() {
-  const double allowed =
-      0.25 * settings_.tolerance / bound_factor * std::max(built_.loading_error.force_range, built_.unloading_error.force_range);
+  const double allowed = 0.25 * settings_.tolerance / bound_factor *
+                         std::max(built_.loading_error.force_range, built_.unloading_error.force_range);
   bool added = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<std::size_t> cells(cell_error_[axis].size());
     std::iota(cells.begin(), cells.end(), 0);
-    std::stable_sort(cells.begin(), cells.end(), [&](std::size_t a, std::size_t b) { return cell_error_[axis][a] > cell_error_[axis][b]; });
+    std::stable_sort(cells.begin(), cells.end(), [&](std::size_t a, std::size_t b) {
+      return cell_error_[axis][a] > cell_error_[axis][b];
+    });
     std::size_t room = static_cast<std::size_t>(settings_.most_points[axis]);
     const std::size_t present = axis == 0 ? travel_.size() : (axis == 1 ? position_ : slack_).size();
     room = room > present ? room - present : 0;
@@ -258,8 +263,8 @@ BuiltTable build_table(CurveStore& store, const DistilSettings& settings, const 
   return TableBuilder(store, settings, observer).run();
 }
 
-std::vector<std::size_t> place_knots(const std::vector<double>& candidates, const std::vector<std::vector<double>>& lines,
-                                     std::size_t count) {
+std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
+                                     const std::vector<std::vector<double>>& lines, std::size_t count) {
   const std::size_t n = candidates.size();
   std::vector<std::size_t> chosen{0};
   if (n > 1) chosen.push_back(n - 1);
@@ -271,10 +276,12 @@ std::vector<std::size_t> place_knots(const std::vector<double>& candidates, cons
     std::vector<std::size_t> where(chosen.size() - 1, 0);
     for (const std::vector<double>& line : lines) {
       const std::vector<double> values = pick(line, chosen);
-      const Eigen::VectorXd m = by * Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+      const Eigen::VectorXd m =
+          by * Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
       const HermiteCurve spline(knots, values, std::vector<double>(m.begin(), m.end()));
       for (std::size_t c = 0; c + 1 < chosen.size(); ++c) {
-        for (std::size_t i = chosen[c] + 1; i < chosen[c + 1]; ++i) worst[c] = std::max(worst[c], std::abs(spline.value(candidates[i]) - line[i]));
+        for (std::size_t i = chosen[c] + 1; i < chosen[c + 1]; ++i)
+          worst[c] = std::max(worst[c], std::abs(spline.value(candidates[i]) - line[i]));
       }
     }
     // The middle of the worst cell: the error of a spline is largest there, and cells stay alike.

@@ -13,6 +13,7 @@ struct TensionedStiffness {
   double value = 0.0;       ///< [N/m]
   double by_tension = 0.0;  ///< [1/m]
 };
-[[nodiscard]] TensionedStiffness tensioned_stiffness(double bending_stiffness, double tension, double span, double position);
+[[nodiscard]] TensionedStiffness tensioned_stiffness(double bending_stiffness, double tension, double span,
+                                                     double position);
 
 }  // namespace snare::reduction

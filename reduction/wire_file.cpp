@@ -19,8 +19,8 @@ using numerics::Range;
 using numerics::TomlDocument;
 using numerics::TomlTable;
 
-constexpr double mm = 1e-3;                 // [m]
-constexpr double proof_strain = 0.002;      // [-]
+constexpr double mm = 1e-3;                    // [m]
+constexpr double proof_strain = 0.002;         // [-]
 constexpr double default_low_position = 0.2;   // of the span
 constexpr double default_slack_spread = 0.25;  // of the nominal slack, either way
 constexpr double shortest_length = 0.99;       // of the span: as read_push_test asks of the nominal wire
@@ -60,8 +60,10 @@ const std::array<ListedQuantity, 4> listed_quantities{{
 void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   const double span = nominal.test.mount.span;
   const auto in_mm = [](double metres) { return fmt::format("{:.6g}", metres / mm); };
-  if (table.has("travel_mm")) nominal.travel.high = table.number("travel_mm", Range::above(0.0, 1000.0), mm);
-  else if (travel_known) nominal.travel.high = default_travel(nominal.test);
+  if (table.has("travel_mm"))
+    nominal.travel.high = table.number("travel_mm", Range::above(0.0, 1000.0), mm);
+  else if (travel_known)
+    nominal.travel.high = default_travel(nominal.test);
 
   const bool symmetric = nominal.symmetric();
   nominal.position = {default_low_position * span, (symmetric ? 0.5 : 1.0 - default_low_position) * span};
@@ -79,7 +81,8 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   }
   const double slack = nominal.nominal_slack();
   nominal.slack = {slack, slack};
-  if (slack > 0.0) nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
+  if (slack > 0.0)
+    nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
   if (const auto asked = read_interval(table, "slack_mm", Range::from(-1e3, 1e5))) {
     nominal.slack = *asked;
     if (span + asked->low < shortest_length * span)
@@ -94,7 +97,8 @@ std::vector<WireCase> combine(const TomlTable& table, const WireCase& nominal) {
   std::vector<WireCase> cases{nominal};
   for (const ListedQuantity& quantity : listed_quantities) {
     if (!table.has(quantity.key)) continue;
-    const std::vector<double> values = table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
+    const std::vector<double> values =
+        table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
     if (values.empty()) continue;
     std::vector<WireCase> more;
     for (const WireCase& one : cases) {
@@ -145,13 +149,31 @@ DistilSettings read_settings(const TomlTable& root) {
 
 void read_law_positions(const TomlTable& table, WireCase& nominal) {
   const Interval range = nominal.position;
-  if (range.fixed()) nominal.law_positions = {range.low};
-  else nominal.law_positions = {range.low, range.middle(), range.high};
+  if (range.fixed())
+    nominal.law_positions = {range.low};
+  else
+    nominal.law_positions = {range.low, range.middle(), range.high};
   if (!table.has("positions_mm")) return;
   nominal.law_positions = table.numbers("positions_mm", 1, most_law_positions, Range::above(0.0, 1e5), mm);
   for (std::size_t i = 0; i < nominal.law_positions.size(); ++i) {
     if (const auto problem = coupling::position_problem(nominal.law_positions[i], nominal.test.mount.span)) {
       table.fail_element("positions_mm", i, *problem);
+    }
+  }
+}
+
+void read_law_offsets(const TomlTable& table, WireCase& nominal) {
+  if (!table.has("displacement_offsets_mm")) return;
+  nominal.law_offsets =
+      table.numbers("displacement_offsets_mm", 1, most_law_positions, Range::from(0.0, 1000.0), mm);
+  if (!nominal.law_offsets.empty() && nominal.law_offsets.size() != nominal.law_positions.size()) {
+    table.fail("displacement_offsets_mm",
+               fmt::format("must have one value for each of the {} positions", nominal.law_positions.size()));
+  }
+  for (std::size_t i = 0; i < nominal.law_offsets.size(); ++i) {
+    if (nominal.law_offsets[i] >= nominal.travel.high) {
+      table.fail_element("displacement_offsets_mm", i,
+                         fmt::format("must be < {:.6g}, the end of the travel", nominal.travel.high / mm));
     }
   }
 }
@@ -173,10 +195,12 @@ WireFile read_document(TomlDocument& document, const std::filesystem::path& file
         .fail(nominal.test.pusher.tilt != 0.0 ? "tilt_deg" : "vector_m_s2",
               "must keep the push in the plane of the wire: only such pushes are distilled");
   }
-  const bool numbers_known = std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
+  const bool numbers_known =
+      std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
   const TomlTable ranges = root.table("ranges");
   read_ranges(ranges, nominal, numbers_known);
   read_law_positions(root.table("laws"), nominal);
+  read_law_offsets(root.table("laws"), nominal);
   result.cases = combine(ranges, nominal);
   document.finish();
   return result;
@@ -190,7 +214,8 @@ bool WireCase::symmetric() const noexcept {
 }
 
 bool WireCase::dissipates() const noexcept {
-  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
+  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding ||
+         test.wire.strand_friction;
 }
 
 double default_travel(const coupling::PushTest& test) {
@@ -198,7 +223,9 @@ double default_travel(const coupling::PushTest& test) {
   const double slack = test.wire.length - span;
   // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode: its
   // shortening is pi^2 h^2/(4 span) between clamps and between pins).
-  const auto taut = [&](double length) { return 0.5 * std::sqrt(std::max(0.0, length * length - span * span)); };
+  const auto taut = [&](double length) {
+    return 0.5 * std::sqrt(std::max(0.0, length * length - span * span));
+  };
   const double bulge = 2.0 / std::numbers::pi * std::sqrt(span * std::max(0.0, slack));
   const double stretched = taut((1.0 + proof_strain) * std::max(test.wire.length, span));
   const bool inward = test.pusher.direction == coupling::PushDirection::inward;

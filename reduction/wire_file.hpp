@@ -23,11 +23,13 @@ struct Interval {
 
 /// One wire with its pusher, and the ranges over which its force is asked. SI units.
 struct WireCase {
-  coupling::PushTest test;  ///< nominal; position, length and travel are set by the sampling
-  Interval travel;          ///< from first touch; low is 0 [m]
-  Interval position;        ///< s, of the pusher along the chord from the left mount [m]
-  Interval slack;           ///< length less span [m]
+  coupling::PushTest test;            ///< nominal; position, length and travel are set by the sampling
+  Interval travel;                    ///< from first touch; low is 0 [m]
+  Interval position;                  ///< s, of the pusher along the chord from the left mount [m]
+  Interval slack;                     ///< length less span [m]
   std::vector<double> law_positions;  ///< s at which simple laws are fitted, at the nominal slack [m]
+  /// Displacement that a machine recorded at first touch, one a law position, >= 0; empty: none [m].
+  std::vector<double> law_offsets;
 
   /// Left and right are alike: s beyond mid-span is s from the other end, and half the positions suffice.
   [[nodiscard]] bool symmetric() const noexcept;
@@ -40,11 +42,11 @@ struct WireCase {
 using TablePoints = std::array<int, 3>;
 
 struct DistilSettings {
-  int elements = 256;        ///< edges of the finest mesh, a multiple of 4, >= 16
-  bool extrapolate = true;   ///< from this mesh, the half and the quarter one
-  TablePoints points{20, 9, 5};       ///< to begin with
+  int elements = 256;                   ///< edges of the finest mesh, a multiple of 4, >= 16
+  bool extrapolate = true;              ///< from this mesh, the half and the quarter one
+  TablePoints points{20, 9, 5};         ///< to begin with
   TablePoints most_points{64, 65, 33};  ///< to which knots are added while the error is above the tolerance
-  double tolerance = 0.005;  ///< largest error of the table over the range of the force [-]
+  double tolerance = 0.005;             ///< largest error of the table over the range of the force [-]
 };
 
 /// What `snare distil` works on: a case for every combination of the listed values.
@@ -60,9 +62,11 @@ struct WireFile {
 /// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].  theory.md (R.1)
 [[nodiscard]] double default_travel(const coupling::PushTest& test);
 
-/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws numerics::InputError with
+/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws
+/// numerics::InputError with
 /// every problem found (file, line, key, value, what is allowed).
-[[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file, const std::vector<numerics::Override>& overrides = {});
+[[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file,
+                                      const std::vector<numerics::Override>& overrides = {});
 [[nodiscard]] WireFile parse_wire_file(const std::filesystem::path& file, std::string_view text,
                                        const std::vector<numerics::Override>& overrides = {});
 

@@ -85,8 +85,8 @@ double library_force(const json& table, double d, double s, double e) {
     values.push_back(scale * nodes[n]);
     slopes.push_back(scale / span * nodes[n + 1]);
   }
-  const reduction::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes, span,
-                                      scale * span * span, table["mirrored"]);
+  const reduction::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes,
+                                      span, scale * span * span, table["mirrored"]);
   return rebuilt.force(d, s, e);
 }
 
@@ -111,8 +111,8 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
     calls_py += "print(repr(law.force(" + numbers.str() + ")))\n";
     expected.push_back(library_force(table, d, s, e));
   }
-  for (const char* name : {"quadratic", "quadratic_through_origin", "linear", "power", "stretched_wire", "stretched_wire_linear",
-                           "tensioned_wire"}) {
+  for (const char* name : {"quadratic", "quadratic_through_origin", "linear", "power", "stretched_wire",
+                           "stretched_wire_linear", "tensioned_wire"}) {
     for (const char* place : {"s40", "s52_5"}) {
       const std::string function = std::string(name) + "_" + place;
       calls_c += "  printf(\"%.17g\\n\", N " + function + "(0.002));\n";
@@ -120,32 +120,44 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
     }
   }
   std::ofstream(folder_ / "o" / "run.py") << "import law\n" << calls_py;
-  std::ofstream(folder_ / "o" / "run.cpp") << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\nint main() {\n" << calls_c << "}\n";
+  std::ofstream(folder_ / "o" / "run.cpp")
+      << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\nint main() {\n"
+      << calls_c << "}\n";
   std::ofstream c(folder_ / "o" / "run.c");
   c << "#include <stdio.h>\n#define N\ndouble force(double, double, double);\n";
-  for (const char* name : {"quadratic", "quadratic_through_origin", "linear", "power", "stretched_wire", "stretched_wire_linear", "tensioned_wire"}) {
+  for (const char* name : {"quadratic", "quadratic_through_origin", "linear", "power", "stretched_wire",
+                           "stretched_wire_linear", "tensioned_wire"}) {
     for (const char* place : {"s40", "s52_5"}) c << "double " << name << "_" << place << "(double);\n";
   }
   c << "int main(void) {\n" << calls_c << "  return 0;\n}\n";
   c.close();
-  ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-  ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
-  ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); exec(open('run.py').read())\" > py.txt"), 0);
+  ASSERT_EQ(
+      shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
+  ASSERT_EQ(
+      shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+  ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
+                  "exec(open('run.py').read())\" > py.txt"),
+            0);
   for (const char* file : {"cpp.txt", "c.txt", "py.txt"}) {
     std::ifstream in(folder_ / "o" / file);
     std::vector<double> values;
     for (double v = 0.0; in >> v;) values.push_back(v);
     ASSERT_EQ(values.size(), expected.size() + 14) << file;
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i]))) << file << i;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(values[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i]))) << file << i;
     // Simple laws: from their numbers in law.json, the quadratic and the power by hand here.
     const json& laws = law["cases"][0]["positions"][0]["laws"];
-    const auto number = [&](std::size_t k, const char* name) { return laws[k]["parameters"][name]["value"].get<double>(); };
-    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"), 1e-12 * values[40]);
+    const auto number = [&](std::size_t k, const char* name) {
+      return laws[k]["parameters"][name]["value"].get<double>();
+    };
+    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"),
+                1e-12 * values[40]);
     EXPECT_NEAR(values[46], number(3, "k") * std::pow(0.002, number(3, "p")), 1e-12 * values[46]);
     EXPECT_GT(values[48], 0.0);  // stretched wire
   }
   EXPECT_NE(contents(folder_ / "o" / "law_adams.adm").find("SPLINE/3"), std::string::npos);
-  EXPECT_EQ(contents(folder_ / "o" / "law_mujoco.xml").find("-- with"), std::string::npos);  // no double hyphen in a comment
+  EXPECT_EQ(contents(folder_ / "o" / "law_mujoco.xml").find("-- with"),
+            std::string::npos);  // no double hyphen in a comment
   EXPECT_EQ(shell("python3 -c \"import xml.dom.minidom as m; m.parse('o/law_mujoco.xml')\""), 0);
 }
 
@@ -153,18 +165,25 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
 TEST_F(DistilCommand, ResumesToTheSameBytes) {
   ASSERT_EQ(run("distil w.toml --out whole --quiet --threads 2"), 0) << contents(folder_ / "log.txt");
   // An interrupted run keeps its journal; kill it as soon as there is some of it.
-  ASSERT_EQ(shell(std::string("( '") + SNARE_COMMAND + "' distil w.toml --out part --quiet --threads 1 & pid=$!; "
-                  "for i in $(seq 2000); do [ $(stat -c %s part/distil.journal 2>/dev/null || echo 0) -gt 60000 ] && break; sleep 0.005; done; "
-                  "kill -9 $pid; wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e part/law.json"), 0);
-  fs::resize_file(folder_ / "part" / "distil.journal", fs::file_size(folder_ / "part" / "distil.journal") - 37);
+  ASSERT_EQ(shell(std::string("( '") + SNARE_COMMAND +
+                  "' distil w.toml --out part --quiet --threads 1 & pid=$!; "
+                  "for i in $(seq 2000); do [ $(stat -c %s part/distil.journal 2>/dev/null || echo 0) -gt "
+                  "60000 ] && break; sleep 0.005; done; "
+                  "kill -9 $pid; wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e "
+                  "part/law.json"),
+            0);
+  fs::resize_file(folder_ / "part" / "distil.journal",
+                  fs::file_size(folder_ / "part" / "distil.journal") - 37);
   ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents(folder_ / "log.txt");
-  for (const char* file : {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml", "law_adams.adm", "report.html"}) {
+  for (const char* file : {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml",
+                           "law_adams.adm", "report.html"}) {
     EXPECT_EQ(contents(folder_ / "whole" / file), contents(folder_ / "part" / file)) << file;
   }
 }
 
 TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
-  ASSERT_EQ(run("distil w.toml --out o --quiet --set pusher.friction=0.3 --set laws.positions_mm=[40.0]"), 0) << contents(folder_ / "log.txt");
+  ASSERT_EQ(run("distil w.toml --out o --quiet --set pusher.friction=0.3 --set laws.positions_mm=[40.0]"), 0)
+      << contents(folder_ / "log.txt");
   const json law = json::parse(contents(folder_ / "o" / "law.json"));
   const json& place = law["cases"][0]["positions"][0];
   EXPECT_GT(place["damping"]["loop_J"].get<double>(), 0.0);
@@ -195,13 +214,15 @@ TEST_F(DistilCommand, ComparesModelsOfAWireAndOfAnExperiment) {
   EXPECT_EQ(models.back()["model"], "stretched_wire_published");
   for (std::size_t i = 1; i < models.size(); ++i) {
     EXPECT_GT(models[i]["seconds_per_evaluation"].get<double>(), 0.0);
-    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(), models[0]["seconds_per_evaluation"].get<double>());
+    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(),
+              models[0]["seconds_per_evaluation"].get<double>());
   }
   std::string experiment = wire_text;
   experiment.replace(experiment.find("snare-wire"), 10, "snare-experiment");
   experiment.resize(experiment.find("[table]"));
-  experiment += "[[series]]\nname = \"s40\"\ncontact_position_mm = 40.0\n"
-                "law = { A_N_m2 = 719880.0, B_N_m = -13.578, C_N = 0.0533, R2 = 0.9976, to_mm = 4.0 }\n";
+  experiment +=
+      "[[series]]\nname = \"s40\"\ncontact_position_mm = 40.0\n"
+      "law = { A_N_m2 = 719880.0, B_N_m = -13.578, C_N = 0.0533, R2 = 0.9976, to_mm = 4.0 }\n";
   std::ofstream(folder_ / "e.toml") << experiment;
   ASSERT_EQ(run("compare e.toml --out e --quiet"), 0) << contents(folder_ / "log.txt");
   const json compared = json::parse(contents(folder_ / "e" / "compare.json"))["cases"][0];

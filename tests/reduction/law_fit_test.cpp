@@ -28,7 +28,8 @@ Eigen::VectorXd numbers_of(const std::string& name) {
   return Eigen::Map<const Eigen::VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
 }
 
-// A form fitted to its own curve finds its numbers again. Laws with a kink are not reproduced by the spline that carries the
+// A form fitted to its own curve finds its numbers again. Laws with a kink are not reproduced by the spline
+// that carries the
 // curve, but at its knots, where the fit looks.
 TEST(LawFit, FindsItsOwnNumbers) {
   for (const LawFormPointer& form : law_forms(place)) {
@@ -40,7 +41,8 @@ TEST(LawFit, FindsItsOwnNumbers) {
     for (std::size_t i = 0; i < d.size(); i += 3) at.push_back(i);
     const FittedLaw law = fit_law(form, HermiteCurve(d, force), at);
     ASSERT_EQ(law.values.size(), p.size()) << form->name();
-    for (Eigen::Index i = 0; i < p.size(); ++i) EXPECT_NEAR(law.values[i] / p[i], 1.0, 1e-6) << form->name() << " " << i;
+    for (Eigen::Index i = 0; i < p.size(); ++i)
+      EXPECT_NEAR(law.values[i] / p[i], 1.0, 1e-6) << form->name() << " " << i;
     EXPECT_LT(law.error.largest_force, 1e-8 * law.error.force_range) << form->name();
   }
 }
@@ -70,7 +72,8 @@ TEST(LawFit, DerivativesMatchDifferences) {
   }
 }
 
-// Honda et al., eq. 1, at mid-span: l = 90, L = 87.5 mm, K = EA/l = 5.55e5 N/m; eq. 2: 60810 N/m. Printed to four digits.
+// Honda et al., eq. 1, at mid-span: l = 90, L = 87.5 mm, K = EA/l = 5.55e5 N/m; eq. 2: 60810 N/m. Printed to
+// four digits.
 TEST(StretchedWire, IsHondasLawAtMidSpan) {
   const double k_wire = 5.55e5;
   const LawPlace middle{0.175, 0.0875, 0.180, 0.01};
@@ -84,7 +87,8 @@ TEST(StretchedWire, IsHondasLawAtMidSpan) {
   EXPECT_NEAR(stretched_wire_linearised(middle)->force(p, 1.0), 60810.0, 5.0);
 }
 
-// The scatter of fits to noisy curves is what the covariance says: 200 draws, standard deviation to 5 % (one in 1/sqrt(400)).
+// The scatter of fits to noisy curves is what the covariance says: 200 draws, standard deviation to 5 % (one
+// in 1/sqrt(400)).
 TEST(LawFit, CovarianceIsTheScatterOfNoisyFits) {
   const std::vector<double> d = travels(30, 4e-3);
   std::vector<std::size_t> all(d.size());

@@ -25,7 +25,8 @@ coupling::SnareSpecification small_snare(double friction) {
   return snare;
 }
 
-// Three wires at 120 degrees: a small displacement in any direction of the plane meets the same stiffness. What is left is
+// Three wires at 120 degrees: a small displacement in any direction of the plane meets the same stiffness.
+// What is left is
 // of second order in 1 um over the seat of 5 mm.
 TEST(SnaredShaft, IsIsotropicInItsPlane) {
   for (const double friction : {0.0, 0.1}) {
@@ -44,8 +45,10 @@ TEST(SnaredShaft, IsIsotropicInItsPlane) {
 
 // A wire and the mirror image of the way.
 TEST(SnaredShaft, MirrorsInX) {
-  const coupling::ShaftPath right = coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
-  const coupling::ShaftPath left = coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath right =
+      coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath left =
+      coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
   ASSERT_EQ(right.points.size(), 2u);
   ASSERT_EQ(left.points.size(), 2u);
   const Eigen::Vector3d f = right.points.back().force;
@@ -61,18 +64,20 @@ TEST(SnaredShaft, StoresTheWorkWithoutFriction) {
   const coupling::ShaftPath path = coupling::move_shaft(small_snare(0.0), way);
   ASSERT_EQ(path.points.size(), way.size()) << path.report.message;
   double work = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) work += 0.5 * (path.points[i].force + path.points[i - 1].force).dot(way[i] - way[i - 1]);
+  for (std::size_t i = 1; i < way.size(); ++i)
+    work += 0.5 * (path.points[i].force + path.points[i - 1].force).dot(way[i] - way[i - 1]);
   EXPECT_NEAR(work, path.points.back().energy - path.points.front().energy, 1e-3 * work);
 }
 
-// In a closed cycle the loop's area is what friction takes. The slip between two points is taken as one step and the force as
-// linear in it: 80 steps a leg leave some 1 %.
+// In a closed cycle the loop's area is what friction takes. The slip between two points is taken as one step
+// and the force as
+// linear in it: 80 steps a leg leave some 0.5 %, 240 leave 0.02 %.
 TEST(SnareJoint, LoopIsTheDissipation) {
   for (const int axis : {0, 2}) {
     const JointCycle cycle = cycle_snare(small_snare(0.1), axis, axis == 2 ? 0.01 : 0.003, 80);
     ASSERT_TRUE(cycle.report.usable()) << cycle.report.message;
     EXPECT_GT(cycle.loop, 0.0);
-    EXPECT_NEAR(cycle.dissipated / cycle.loop, 1.0, 0.02) << axis;
+    EXPECT_NEAR(cycle.dissipated / cycle.loop, 1.0, 0.01) << axis;
     // The slider's own loop, 4 f (a - f/q).
     const double a = axis == 2 ? 0.01 : 0.003;
     const double f = cycle.fitted.friction;

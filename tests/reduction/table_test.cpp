@@ -36,17 +36,23 @@ TEST(CubicSpline, ConvergesAtFourthOrder) {
     }
     const HermiteCurve curve(x, v);
     double worst = 0.0;
-    for (double t = 0.0; t <= 1.0; t += 1e-3) worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
+    for (double t = 0.0; t <= 1.0; t += 1e-3)
+      worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
     return worst;
   };
   EXPECT_GT(error(10) / error(20), 13.0);
 }
 
-// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond mid-span.
+// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond
+// mid-span.
 TEST(ForceTable, IsExactForCubicsAndMirrors) {
   const ForceTable::Axes axes{{{0.0, 0.01, 0.02, 0.03}, {0.2, 0.3, 0.35, 0.5}, {0.001, 0.002, 0.004, 0.005}}};
-  const auto f = [](double d, double s, double e) { return d * (1.0 + 50.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e)); };
-  const auto fd = [](double d, double s, double e) { return (1.0 + 100.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e)); };
+  const auto f = [](double d, double s, double e) {
+    return d * (1.0 + 50.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e));
+  };
+  const auto fd = [](double d, double s, double e) {
+    return (1.0 + 100.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e));
+  };
   std::vector<double> values, slopes;
   for (const double e : axes[2]) {
     for (const double s : axes[1]) {
@@ -74,7 +80,8 @@ TEST(ForceTable, IsExactForCubicsAndMirrors) {
   }
   EXPECT_TRUE(table.proven_monotone());
   EXPECT_TRUE(table.at(0.04 * span, 0.3 * span, 0.002 * span, Outside::extrapolate).extrapolated);
-  EXPECT_THROW(static_cast<void>(table.at(0.01 * span, 0.1 * span, 0.002 * span, Outside::refuse)), std::domain_error);
+  EXPECT_THROW(static_cast<void>(table.at(0.01 * span, 0.1 * span, 0.002 * span, Outside::refuse)),
+               std::domain_error);
 }
 
 // The bound that a table states holds at random places, solved anew by the full wire; a coarse table and a coarse mesh.
@@ -95,13 +102,15 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   ASSERT_TRUE(fresh.sample(places).usable());
   for (const CurvePlace& place : places) {
     for (std::size_t k = 0; k < fresh.travel().size(); ++k) {
-      EXPECT_LE(std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) - fresh.at(place).loading[k]),
+      EXPECT_LE(std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) -
+                         fresh.at(place).loading[k]),
                 built.loading_error.bound);
     }
   }
 }
 
-// The default table of the traced wire against the full wire solved anew at 1000 places, each from the straight wire: 0.5 % of the
+// The default table of the traced wire against the full wire solved anew at 1000 places, each from the
+// straight wire: 0.5 % of the
 // range of the force, and never beyond the bound that the table states.
 TEST(SlowTable, AThousandRandomPoints) {
   WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");
@@ -124,7 +133,8 @@ TEST(SlowTable, AThousandRandomPoints) {
     test.travel = {wire.travel.high * u(random)};
     const coupling::PushCurve curve = coupling::solve_push_extrapolated(test, {}).curve;
     ASSERT_EQ(curve.points.size(), 1u) << curve.report.message;
-    worst = std::max(worst, std::abs(built.loading->force(test.travel.front(), test.contact_position, slack) - curve.points.front().force));
+    worst = std::max(worst, std::abs(built.loading->force(test.travel.front(), test.contact_position, slack) -
+                                     curve.points.front().force));
   }
   EXPECT_LE(worst, 0.005 * built.loading_error.force_range);
   EXPECT_LE(worst, built.loading_error.bound);
@@ -133,12 +143,14 @@ TEST(SlowTable, AThousandRandomPoints) {
 TEST(CurveStore, ATornJournalGivesTheSameCurves) {
   const WireFile file = small_wire();
   const WireCase& wire = file.cases.front();
-  const std::filesystem::path journal = std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
+  const std::filesystem::path journal =
+      std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
   std::filesystem::remove(journal);
   const std::vector<CurvePlace> places{{0.05, 4e-4}, {0.06, 5e-4}, {0.08, 6e-4}};
   CurveStore first(wire, file.settings, sampling_travel(wire, file.settings), journal);
   ASSERT_TRUE(first.sample(places).usable());
-  std::filesystem::resize_file(journal, std::filesystem::file_size(journal) - 100);  // as if killed while writing
+  std::filesystem::resize_file(journal,
+                               std::filesystem::file_size(journal) - 100);  // as if killed while writing
   CurveStore second(wire, file.settings, sampling_travel(wire, file.settings), journal);
   ASSERT_TRUE(second.sample(places).usable());
   EXPECT_EQ(second.solved(), 1u);
@@ -149,8 +161,8 @@ TEST(CurveStore, ATornJournalGivesTheSameCurves) {
 TEST(CurveStore, StopsWhereTheObserverSays) {
   const WireFile file = small_wire();
   CurveStore store(file.cases.front(), file.settings, sampling_travel(file.cases.front(), file.settings));
-  const numerics::SolveReport report =
-      store.sample({{0.05, 4e-4}, {0.06, 5e-4}, {0.07, 5e-4}, {0.08, 6e-4}}, [](std::size_t, std::size_t) { return false; });
+  const numerics::SolveReport report = store.sample({{0.05, 4e-4}, {0.06, 5e-4}, {0.07, 5e-4}, {0.08, 6e-4}},
+                                                    [](std::size_t, std::size_t) { return false; });
   EXPECT_EQ(report.termination, numerics::Termination::interrupted);
   EXPECT_LT(store.curves().size(), 4u);
 }

@@ -35,6 +35,8 @@ most_points = [6, 4, 3]
 )" + more;
 }
 
-inline WireFile small_wire(const std::string& more = "") { return parse_wire_file("small.toml", small_wire_text(more)); }
+inline WireFile small_wire(const std::string& more = "") {
+  return parse_wire_file("small.toml", small_wire_text(more));
+}
 
 }  // namespace snare::reduction
