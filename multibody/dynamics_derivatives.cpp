@@ -145,23 +145,47 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
   return d;
 }
 
+Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q) {
+  // Body-fixed turn 2 conj(quat) dquat / |quat|^2; the part along quat changes only its norm.
+  const int i = body.q_index;
+  const double w = q[i + 3];
+  const Eigen::Vector3d u = q.segment<3>(i + 4);
+  const double scale = 2.0 / (w * w + u.squaredNorm());
+  Eigen::Matrix<double, 6, 7> motion = Eigen::Matrix<double, 6, 7>::Zero();
+  motion.block<3, 1>(0, 3) = -scale * u;
+  motion.block<3, 3>(0, 4) = scale * (w * Eigen::Matrix3d::Identity() - skew(u));
+  motion.block<3, 3>(3, 0) = joint_pose(body, q).R.transpose();
+  return motion;
+}
+
 Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q) {
   Eigen::MatrixXd motion = Eigen::MatrixXd::Zero(tree.velocities(), tree.coordinates());
   for (const TreeBody& body : tree.bodies()) {
-    const int i = body.q_index, k = body.v_index;
-    if (body.joint != JointKind::free) {
-      motion(k, i) = 1.0;
-      continue;
+    if (body.joint == JointKind::free) {
+      motion.block<6, 7>(body.v_index, body.q_index) = free_coordinate_motion(body, q);
+    } else {
+      motion(body.v_index, body.q_index) = 1.0;
     }
-    // Body-fixed turn 2 conj(quat) dquat / |quat|^2; the part along quat changes only its norm.
-    const double w = q[i + 3];
-    const Eigen::Vector3d u = q.segment<3>(i + 4);
-    const double scale = 2.0 / (w * w + u.squaredNorm());
-    motion.block<3, 1>(k, i + 3) = -scale * u;
-    motion.block<3, 3>(k, i + 4) = scale * (w * Eigen::Matrix3d::Identity() - skew(u));
-    motion.block<3, 3>(k + 3, i) = joint_pose(body, q).R.transpose();
   }
   return motion;
+}
+
+FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+                                                       const Eigen::VectorXd& v) {
+  const int i = body.q_index, k = body.v_index;
+  const Eigen::Vector3d omega = v.segment<3>(k), linear = v.segment<3>(k + 3);
+  const Eigen::Matrix3d R = joint_pose(body, q).R;
+  FreeRateDerivatives d{Eigen::Matrix<double, 7, 7>::Zero(), Eigen::Matrix<double, 7, 6>::Zero()};
+  // p' = R v, and a turn dtheta of the body changes R v by R (dtheta x v).
+  d.by_coordinates.topRightCorner<3, 4>() = -R * skew(linear) * free_coordinate_motion(body, q).topRightCorner<3, 4>();
+  d.by_velocities.topRightCorner<3, 3>() = R;
+  // w' = -u.omega / 2, u' = (w omega + u x omega) / 2.
+  d.by_coordinates.block<1, 3>(3, 4) = -0.5 * omega.transpose();
+  d.by_coordinates.block<3, 1>(4, 3) = 0.5 * omega;
+  d.by_coordinates.block<3, 3>(4, 4) = -0.5 * skew(omega);
+  d.by_velocities.block<1, 3>(3, 0) = -0.5 * q.segment<3>(i + 4).transpose();
+  d.by_velocities.block<3, 3>(4, 0) = 0.5 * (q[i + 3] * Eigen::Matrix3d::Identity() + skew(q.segment<3>(i + 4)));
+  return d;
 }
 
 }  // namespace snare::multibody

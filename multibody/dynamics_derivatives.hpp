@@ -35,5 +35,15 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
 /// Motion of the coordinates as the velocities count it, for a change of the coordinates: (nv x nq), the left inverse of
 /// N(q) in q' = N(q) v. The derivative with respect to q itself is `position` times this.
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);
+/// The block of one body on a free joint.
+[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q);
+
+/// Derivatives of `free_coordinate_rate`.
+struct FreeRateDerivatives {
+  Eigen::Matrix<double, 7, 7> by_coordinates;
+  Eigen::Matrix<double, 7, 6> by_velocities;
+};
+[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+                                                                     const Eigen::VectorXd& v);
 
 }  // namespace snare::multibody

@@ -91,20 +91,27 @@ Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q) {
   return {};
 }
 
+Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+                                                 const Eigen::VectorXd& v) {
+  const int i = body.q_index, k = body.v_index;
+  const double w = q[i + 3];
+  const Eigen::Vector3d u = q.segment<3>(i + 4), omega = v.segment<3>(k);
+  Eigen::Matrix<double, 7, 1> rate;
+  rate.head<3>() = rotation(q, i + 3) * v.segment<3>(k + 3);
+  rate[3] = -0.5 * u.dot(omega);
+  rate.tail<3>() = 0.5 * (w * omega + u.cross(omega));
+  return rate;
+}
+
 Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
   assert(q.size() == tree.coordinates() && v.size() == tree.velocities());
   Eigen::VectorXd rate(tree.coordinates());
   for (const TreeBody& body : tree.bodies()) {
-    const int i = body.q_index, k = body.v_index;
-    if (body.joint != JointKind::free) {
-      rate[i] = v[k];
-      continue;
+    if (body.joint == JointKind::free) {
+      rate.segment<7>(body.q_index) = free_coordinate_rate(body, q, v);
+    } else {
+      rate[body.q_index] = v[body.v_index];
     }
-    rate.segment<3>(i) = rotation(q, i + 3) * v.segment<3>(k + 3);
-    const double w = q[i + 3];
-    const Eigen::Vector3d u = q.segment<3>(i + 4), omega = v.segment<3>(k);
-    rate[i + 3] = -0.5 * u.dot(omega);
-    rate.segment<3>(i + 4) = 0.5 * (w * omega + u.cross(omega));
   }
   return rate;
 }

@@ -91,6 +91,10 @@ struct TreeState {
 /// q' = N(q) v, with the unit quaternion's rate 1/2 quat * (0, omega).                               theory.md (A.3)
 [[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v);
 
+/// The same of one body on a free joint.
+[[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+                                                               const Eigen::VectorXd& v);
+
 /// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come out unit.
 [[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time);
 

@@ -1,5 +1,6 @@
 #include "tests/multibody/dart_reference.hpp"
 
+#include "multibody/arm_run.hpp"
 #include "multibody/dynamics.hpp"
 #include "multibody/kinematics.hpp"
 
@@ -86,6 +87,48 @@ void compare_random_trees(Base base, unsigned seed) {
 }
 
 }  // namespace
+
+TEST(Dart, AgreesOnTrajectories) {
+  // The same motion twice: DART's accelerations stepped by Runge and Kutta, and our equations integrated by IDA.
+  for (const Base base : {Base::on_the_world, Base::floating}) {
+    std::mt19937 random(31);
+    test::PlainTree plain = test::random_tree(random, base);
+    while (plain.bodies.size() < 5) plain = test::random_tree(random, base);
+    plain.gravity = {0.0, 0.0, -1.0};
+    multibody::ArmScenario run;
+    run.arm.tree = test::make_tree(plain);
+    const multibody::Tree& tree = run.arm.tree;
+    multibody::TreeState state = test::random_state(random, tree);
+    state.v *= 0.3;
+    run.initial = {state.q, state.v, Eigen::VectorXd(0), Eigen::VectorXd(0)};
+    run.end = 1.0;
+    run.ida.relative_tolerance = 1e-11;
+    run.tolerances = {1e-11, 1e-11};
+    const multibody::ArmHistory history = multibody::simulate(run);
+    ASSERT_TRUE(history.report.usable()) << history.report.message;
+
+    test::DartTree dart(plain);
+    const auto acceleration = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) -> Eigen::VectorXd {
+      dart.set(tree, {q, v});
+      return dart.forward_dynamics(Eigen::VectorXd::Zero(tree.velocities()));
+    };
+    const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) { return multibody::coordinate_rate(tree, q, v); };
+    const int steps = 1000;
+    const double h = run.end / steps;
+    for (int i = 0; i < steps; ++i) {
+      const Eigen::VectorXd q1 = rate(state.q, state.v), a1 = acceleration(state.q, state.v);
+      const Eigen::VectorXd v2 = state.v + 0.5 * h * a1, s2 = state.q + 0.5 * h * q1, q2 = rate(s2, v2), a2 = acceleration(s2, v2);
+      const Eigen::VectorXd v3 = state.v + 0.5 * h * a2, s3 = state.q + 0.5 * h * q2, q3 = rate(s3, v3), a3 = acceleration(s3, v3);
+      const Eigen::VectorXd v4 = state.v + h * a3, s4 = state.q + h * q3, q4 = rate(s4, v4), a4 = acceleration(s4, v4);
+      state.q += h / 6.0 * (q1 + 2.0 * q2 + 2.0 * q3 + q4);
+      state.v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    // Runge and Kutta: h^4 times derivatives of some hundreds; IDA: some hundred steps at 1e-11.
+    const multibody::ArmState& end = history.samples.back().state;
+    EXPECT_LT(test::relative_difference(end.q, state.q), 1e-8);
+    EXPECT_LT(test::relative_difference(end.v, state.v), 1e-8);
+  }
+}
 
 TEST(Dart, AgreesOnTreesOnTheWorld) { compare_random_trees(Base::on_the_world, 1); }
 TEST(Dart, AgreesOnFloatingTrees) { compare_random_trees(Base::floating, 2); }
