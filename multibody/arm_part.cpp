@@ -17,6 +17,12 @@ constexpr int slots_per_joint = 17;
 
 }  // namespace
 
+BaseEquations best_base_equations(const Tree& tree) {
+  bool one_base = tree.size() > 0 && tree.body(0).joint == JointKind::free && tree.gravity.isZero(0.0);
+  for (int i = 1; i < tree.size(); ++i) one_base = one_base && tree.body(i).parent >= 0;
+  return one_base ? BaseEquations::momentum : BaseEquations::newton_euler;
+}
+
 double TimedLoad::share(double time) const {
   if (time < begin || time > begin + duration) return 0.0;
   return shape == Shape::constant ? 1.0 : std::sin(std::numbers::pi * (time - begin) / duration);
@@ -33,12 +39,13 @@ struct ElasticArmPart::Terms {
 };
 
 ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
-                               const ArmTolerances& tolerances)
+                               const ArmTolerances& tolerances, BaseEquations base)
     : arm_(arm),
       drives_(std::move(drives)),
       loads_(std::move(loads)),
       modes_(at(arm.motors())),
       tolerances_(tolerances),
+      base_(base),
       interval_begin_(-std::numeric_limits<double>::infinity()),
       interval_end_(std::numeric_limits<double>::infinity()),
       workspace_(arm.tree),
@@ -59,6 +66,9 @@ void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   motor_ = layout.add({"motor angle [rad]", {}, m, numerics::DaeKind::differential, motion});
   rate_ = layout.add({"motor rate [rad/s]", {}, m, numerics::DaeKind::differential, motion});
   work_ = layout.add({"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
+  if (base_ == BaseEquations::momentum) {
+    momentum_ = layout.add({"momentum", {}, 6, numerics::DaeKind::differential, motion * arm_.tree.mass()});
+  }
 }
 
 void ElasticArmPart::couple(std::vector<std::pair<int, int>>& entries) const {
@@ -86,10 +96,18 @@ void ElasticArmPart::couple(std::vector<std::pair<int, int>>& entries) const {
     for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(work_ + 1, q_ + j);
     for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(work_ + 1, v_ + j);
   }
+  if (base_ == BaseEquations::momentum) {
+    for (int i = 0; i < 6; ++i) {
+      entries.emplace_back(v_ + i, momentum_ + i);
+      entries.emplace_back(momentum_ + i, momentum_ + i);
+      for (int j = 0; i < 3 && !loads_.empty() && j < arm_.tree.coordinates(); ++j) entries.emplace_back(momentum_ + i, q_ + j);
+    }
+  }
 }
 
 void ElasticArmPart::bind(const numerics::SparseMatrix& pattern) {
-  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_, &work_by_v_}) {
+  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_, &work_by_v_,
+                      &momentum_slots_, &momentum_by_q_}) {
     slots->clear();
   }
   const auto keep = [&pattern](std::vector<int>& slots, int i, int j) { slots.push_back(pattern.slot(i, j)); };
@@ -127,6 +145,15 @@ void ElasticArmPart::bind(const numerics::SparseMatrix& pattern) {
   if (!loads_.empty()) {
     for (int j = 0; j < arm_.tree.coordinates(); ++j) keep(work_by_q_, work_ + 1, q_ + j);
     for (int j = 0; j < arm_.tree.velocities(); ++j) keep(work_by_v_, work_ + 1, v_ + j);
+  }
+  if (base_ == BaseEquations::momentum) {
+    for (int i = 0; i < 6; ++i) {
+      keep(momentum_slots_, v_ + i, momentum_ + i);
+      keep(momentum_slots_, momentum_ + i, momentum_ + i);
+    }
+    for (int j = 0; !loads_.empty() && j < arm_.tree.coordinates(); ++j) {
+      for (int i = 0; i < 3; ++i) keep(momentum_by_q_, momentum_ + i, q_ + j);
+    }
   }
 }
 
@@ -210,6 +237,7 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
   }
   rows.segment(v_, tree.velocities()) += inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
   rows.segment(work_, 3) += point.rate.segment(work_, 3);
+  if (base_ == BaseEquations::momentum) use_momentum(point, loaded, rows);
 
   for (int k = 0; k < arm_.motors(); ++k) {
     const Terms t = terms(point.time, point.y, k);
@@ -252,6 +280,7 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
 
   differentiate_inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, derivatives_);
   if (loaded) add_load_derivatives(point.time, values);
+  if (base_ == BaseEquations::momentum) add_momentum_derivatives(point.time, c, values);
   for (const TreeBody& body : tree.bodies()) {
     for (int i = 0; i < nv; ++i) {
       if (body.joint != JointKind::free) {

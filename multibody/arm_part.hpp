@@ -37,6 +37,14 @@ struct ArmWork {
   double lost = 0.0;    ///< in dampers, friction and brakes; never falls
 };
 
+/// How the motion of a free body that carries all others is written.
+enum class BaseEquations {
+  newton_euler,  ///< balance of forces on it; other parts may add theirs to its rows
+  momentum       ///< momentum as an unknown, h' = loads; the base follows from h = P(q, v). Keeps h exactly.  theory.md (A.16)
+};
+/// `momentum` for a tree on one free body without gravity, else `newton_euler`.
+[[nodiscard]] BaseEquations best_base_equations(const Tree& tree);
+
 /// Absolute tolerances of the integration.
 struct ArmTolerances {
   double motion = 1e-7;  ///< of coordinates [rad, m] and rates [rad/s, m/s], > 0
@@ -51,7 +59,7 @@ class ElasticArmPart : public numerics::DaePart {
  public:
   /// The arm stays the caller's and outlives the part.
   ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
-                 const ArmTolerances& tolerances = {});
+                 const ArmTolerances& tolerances = {}, BaseEquations base = BaseEquations::newton_euler);
 
   void declare(numerics::DaeLayout& layout) override;
   void couple(std::vector<std::pair<int, int>>& entries) const override;
@@ -105,6 +113,8 @@ class ElasticArmPart : public numerics::DaePart {
   [[nodiscard]] bool fixed(int joint) const;
   [[nodiscard]] double inside(double time) const;
   bool place_loads(double time, numerics::VectorView y);
+  void use_momentum(const numerics::DaePoint& at, bool loaded, Eigen::Ref<Eigen::VectorXd> rows);
+  void add_momentum_derivatives(double time, double c, std::vector<double>& values);
   void add_load_derivatives(double time, std::vector<double>& values);
 
   const ElasticArm& arm_;
@@ -112,10 +122,11 @@ class ElasticArmPart : public numerics::DaePart {
   std::vector<TimedLoad> loads_;
   std::vector<JointMode> modes_;
   ArmTolerances tolerances_;
+  BaseEquations base_;
   int watched_joint_ = -1;
   double watched_torque_ = 0.0;
   double interval_begin_, interval_end_;
-  int q_ = 0, v_ = 0, motor_ = 0, rate_ = 0, work_ = 0;
+  int q_ = 0, v_ = 0, motor_ = 0, rate_ = 0, work_ = 0, momentum_ = 0;
 
   DynamicsWorkspace workspace_;
   InverseDynamicsDerivatives derivatives_;
@@ -123,7 +134,7 @@ class ElasticArmPart : public numerics::DaePart {
   std::vector<Wrench> wrenches_;  // empty while no load acts
   Eigen::VectorXd q_values_, v_values_, a_values_;
 
-  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, joint_slots_, work_by_q_, work_by_v_;
+  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, joint_slots_, work_by_q_, work_by_v_, momentum_slots_, momentum_by_q_;
 };
 
 }  // namespace snare::multibody

@@ -42,8 +42,9 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
 
     const double d = point.y[q_ + arm_.tree.body(joint.body).q_index] - point.y[motor_ + k];
     const double low = joint.spring.lower_end(mode.branch), high = joint.spring.upper_end(mode.branch);
-    if (std::isfinite(low)) g[0] = d - low;
-    if (std::isfinite(high)) g[1] = high - d;
+    const double scale = joint.spring.pieces().size() > 1 ? joint.spring.pieces()[1].from : 1.0;
+    if (std::isfinite(low)) g[0] = (d - low) / scale;
+    if (std::isfinite(high)) g[1] = (high - d) / scale;
 
     const FrictionLaw law = friction(k);
     if (drive.mode != DriveMode::locked && law.sticks()) {
@@ -52,7 +53,7 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
         g[2] = (law.breakaway - applied) / law.breakaway;
         g[3] = (law.breakaway + applied) / law.breakaway;
       } else {
-        g[2] = mode.turning * point.y[rate_ + k];
+        g[2] = mode.turning * point.y[rate_ + k] / law.stribeck_velocity;
       }
     }
     if (drive.mode == DriveMode::servo && std::isfinite(drive.limit)) {
@@ -137,6 +138,12 @@ void ElasticArmPart::write_state(const ArmState& state, Eigen::Ref<Eigen::Vector
   y.segment(motor_, arm_.motors()) = state.motor;
   y.segment(rate_, arm_.motors()) = state.motor_rate;
   y.segment(work_, 3).setZero();
+  if (base_ == BaseEquations::momentum) {
+    Kinematics kinematics(arm_.tree);
+    place(arm_.tree, state.q, kinematics);
+    set_moving(arm_.tree, state.v, kinematics);
+    y.segment<6>(momentum_) = momentum(arm_.tree, kinematics).vector();
+  }
 }
 
 ArmState ElasticArmPart::state(numerics::VectorView y) const {
@@ -155,6 +162,7 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
   residual({time, y, none}, rows);
   rate.segment(q_, tree.coordinates()) = -rows.segment(q_, tree.coordinates());
   rate.segment(work_, 3) = -rows.segment(work_, 3);
+  if (base_ == BaseEquations::momentum) rate.segment<6>(momentum_) = -rows.segment<6>(momentum_);
   rate.segment(motor_, arm_.motors()) = y.segment(rate_, arm_.motors());
   for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
 

@@ -8,6 +8,8 @@ namespace snare::multibody {
 
 namespace {
 
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 const char* name_of_event(int event) {
   switch (event % ElasticArmPart::events_per_joint) {
     case 0:
@@ -23,7 +25,8 @@ class Run {
  public:
   explicit Run(const ArmScenario& scenario)
       : scenario_(scenario),
-        part_(scenario.arm, scenario.drives, scenario.loads, scenario.tolerances),
+        part_(scenario.arm, scenario.drives, scenario.loads, scenario.tolerances,
+              best_base_equations(scenario.arm.tree)),
         system_({&part_}),
         ida_(system_, scenario.ida),
         y_(Eigen::VectorXd::Zero(system_.size())),
@@ -68,11 +71,7 @@ class Run {
       }
       if (!keep_samples()) return false;
       if (done == numerics::IdaAdvance::reached_limit) return true;
-      if (done != numerics::IdaAdvance::event) continue;
-      std::vector<int> fallen;
-      for (std::size_t i = 0; i < ida_.events_found().size(); ++i) {
-        if (ida_.events_found()[i] < 0) fallen.push_back(static_cast<int>(i));
-      }
+      const std::vector<int> fallen = fallen_events(done == numerics::IdaAdvance::event);
       if (fallen.empty()) continue;
       if (std::find(fallen.begin(), fallen.end(), part_.torque_event()) != fallen.end()) {
         torque_reached_ = true;
@@ -85,6 +84,18 @@ class Run {
       part_.leave_modes(ida_.time(), y_, fallen);
       begin(ida_.time());
     }
+  }
+
+  /// Modes that are over: those that IDA found, and those that were left from their very edge, where no sign changes.
+  std::vector<int> fallen_events(bool found) {
+    constexpr double beyond = -1e-9;  // of functions that are scaled to one; far above the accuracy of a found event
+    event_values_.resize(at(system_.event_count()));
+    system_.events({ida_.time(), ida_.y(), ida_.rate()}, event_values_);
+    std::vector<int> fallen;
+    for (int i = 0; i < system_.event_count(); ++i) {
+      if ((found && ida_.events_found()[at(i)] < 0) || event_values_[at(i)] < beyond) fallen.push_back(i);
+    }
+    return fallen;
   }
 
   double next_break(double now) {
@@ -168,6 +179,7 @@ class Run {
   ArmHistory history_;
   std::size_t switch_ = 0;
   double next_sample_ = 0.0;
+  std::vector<double> event_values_;
   bool torque_reached_ = false;
 };
 

@@ -145,6 +145,25 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
   return d;
 }
 
+MomentumDerivatives differentiate_momentum(const Tree& tree, const InverseDynamicsDerivatives& derivatives) {
+  MomentumDerivatives d{Matrix6X::Zero(6, tree.velocities()), Matrix6X::Zero(6, tree.velocities())};
+  std::vector<Wrench> carried(at(tree.size()));  // momentum of each body with all that it carries
+  for (int i = tree.size() - 1; i >= 0; --i) {
+    const TreeBody& body = tree.body(i);
+    const Pose& X_WB = derivatives.kinematics.X_WB[at(i)];
+    carried[at(i)] += body.inertia.to_outer(X_WB) * derivatives.V_W[at(i)];
+    if (body.parent >= 0) carried[at(body.parent)] += carried[at(i)];
+    const Twist V_parent = body.parent < 0 ? Twist{} : derivatives.V_W[at(body.parent)];
+    for (int k = 0; k < body.velocities(); ++k) {
+      const Twist S = axis_in_world(body, X_WB, k);
+      const SpatialInertia& inertia = derivatives.inertia_W[at(i)];
+      d.position.col(body.v_index + k) = (cross(S, carried[at(i)]) + inertia * cross(V_parent, S)).vector();
+      d.velocity.col(body.v_index + k) = (inertia * S).vector();
+    }
+  }
+  return d;
+}
+
 Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q) {
   // Body-fixed turn 2 conj(quat) dquat / |quat|^2; the part along quat changes only its norm.
   const int i = body.q_index;

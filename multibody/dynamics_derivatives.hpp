@@ -32,6 +32,14 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
                                                                  BodyWrenches wrenches,
                                                                  InverseDynamicsDerivatives& derivatives);
 
+/// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md (A.8)
+struct MomentumDerivatives {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> position;  ///< along velocities, as `moved` moves q
+  Eigen::Matrix<double, 6, Eigen::Dynamic> velocity;
+};
+/// From what `differentiate_inverse_dynamics` left in its storage.
+[[nodiscard]] MomentumDerivatives differentiate_momentum(const Tree& tree, const InverseDynamicsDerivatives& derivatives);
+
 /// Motion of the coordinates as the velocities count it, for a change of the coordinates: (nv x nq), the left inverse of
 /// N(q) in q' = N(q) v. The derivative with respect to q itself is `position` times this.
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);

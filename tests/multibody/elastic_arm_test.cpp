@@ -26,9 +26,11 @@ Eigen::MatrixXd dense(const numerics::SparseMatrix& matrix) {
 }  // namespace
 
 TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
-  for (const Base base : {Base::on_the_world, Base::floating}) {
+  const auto by_forces = multibody::BaseEquations::newton_euler, by_momentum = multibody::BaseEquations::momentum;
+  for (const auto& [base, equations] : {std::pair(Base::on_the_world, by_forces), std::pair(Base::floating, by_forces),
+                                        std::pair(Base::floating, by_momentum)}) {
     multibody::ElasticArm arm = test::chain_arm(4, base, 30.0);
-    arm.tree.gravity = {0.3, -1.0, 2.0};
+    if (equations == by_forces) arm.tree.gravity = {0.3, -1.0, 2.0};
     arm.joints[0].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {0.1, 30.0, 3.0}});
     arm.joints[1].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous,
                                                     multibody::DampingRate::motor);
@@ -36,7 +38,7 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
     const int tip = arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip", {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
     std::vector<Drive> drives{Drive::holding(0.2, 8.0, 3.0), Drive::limp(), Drive::limp(), Drive::locked()};
     std::vector<multibody::TimedLoad> loads{{tip, {{0.5, -0.3, 0.7}, {2.0, 1.0, -1.5}}, 0.0, 10.0, multibody::TimedLoad::Shape::half_sine}};
-    multibody::ElasticArmPart part(arm, drives, loads);
+    multibody::ElasticArmPart part(arm, drives, loads, {}, equations);
     numerics::DaeSystem system({&part});
     std::mt19937 random(5);
     Eigen::VectorXd y = test::random_values(random, system.size(), 1.0), rate = test::random_values(random, system.size(), 1.0);
@@ -54,6 +56,8 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
     EXPECT_LT(error.relative, 1e-9) << error.worst;  // as in derivatives.hpp, entries up to some hundred
 
     // Consistent rates leave no residual.
+    if (base == Base::floating) y.segment<4>(3).normalize();
+    part.write_state(part.state(y), y);
     part.write_rate(2.0, y, rate);
     Eigen::VectorXd rows = Eigen::VectorXd::Zero(system.size());
     system.residual({2.0, y, rate}, rows);
