@@ -1,3 +1,4 @@
+#include "app/arm_command.hpp"
 #include "app/commands.hpp"
 #include "numerics/errors.hpp"
 
@@ -65,6 +66,18 @@ int run(int argc, char** argv) {
   add_common(*validate, validate_options, "out/validate");
   validate->footer("Example: snare validate --out out/validate");
 
+  CommonOptions arm_options;
+  std::filesystem::path arm_file;
+  std::string arm_pose;
+  CLI::App* arm = app.add_subcommand("arm", "robot arms");
+  arm->require_subcommand(1);
+  CLI::App* arm_show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
+  arm_show->add_option("FILE", arm_file, "arm file")->required();
+  arm_show->add_option("--pose", arm_pose, "a pose of the file, or angles in degrees: 0,30,-40");
+  arm_show->add_option("--set", arm_options.overrides, "override a key of the file: key=value (repeatable)")->expected(1)->take_all();
+  arm_show->add_flag("--json", arm_options.json, "as JSON");
+  arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -99,6 +112,8 @@ int run(int argc, char** argv) {
     status = call(fit_options, [&](snare::app::Console& c) { return snare::app::run_fit(fit_file, fit_options, c); });
   } else if (trace->parsed()) {
     status = call(trace_options, [&](snare::app::Console& c) { return snare::app::run_trace(trace_file, trace_options, c); });
+  } else if (arm_show->parsed()) {
+    status = call(arm_options, [&](snare::app::Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   } else if (validate->parsed()) {
     status = call(validate_options, [&](snare::app::Console& c) { return snare::app::run_validate(validate_options, c); });
   }
