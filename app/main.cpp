@@ -1,3 +1,4 @@
+#include "app/arm_command.hpp"
 #include "app/commands.hpp"
 #include "numerics/errors.hpp"
 
@@ -7,12 +8,15 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace {
 
 using snare::app::CommonOptions;
+using snare::app::Console;
 using snare::app::ExitStatus;
 
 void add_common(CLI::App& verb, CommonOptions& options, const std::string& default_out) {
@@ -26,58 +30,88 @@ void add_common(CLI::App& verb, CommonOptions& options, const std::string& defau
   verb.add_flag("--json", options.json, "the result on standard output");
 }
 
+/// A verb that takes one file and the common options.
+struct Verb {
+  const char* name;
+  const char* what;
+  const char* argument;  ///< of the file on the command line; null: the verb takes none
+  const char* meaning;   ///< of the file
+  bool needed;           ///< the file may not be left out
+  const char* example;
+  ExitStatus (*run)(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+};
+
+const Verb verbs[] = {
+    {"reproduce", "the published static wire tests beside the computed curves", "EXPERIMENT.toml",
+     "experiment file; the published tests when left out", false,
+     "snare reproduce --out out/reproduce --set series[s40].law.to_mm=5", snare::app::run_reproduce},
+    {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml", "experiment file", true,
+     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2", snare::app::run_push},
+    {"fit", "calibrate the declared model's free numbers", "EXPERIMENT.toml", "experiment file", true,
+     "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit},
+    {"trace", "find the effect that the declared model lacks", "EXPERIMENT.toml", "experiment file", true,
+     "snare trace data/experiments/published_static.toml --out out/trace", snare::app::run_trace},
+    {"distil", "reduced spring laws and stiffness tables with their error bounds", "WIRE.toml", "wire file", true,
+     "snare distil data/wires/traced_published.toml --out out/distil", snare::app::run_distil},
+    {"compare", "the same case with every wire model: accuracy and cost side by side", "SCENARIO.toml",
+     "experiment or wire file", true, "snare compare data/experiments/published_static.toml --out out/compare",
+     snare::app::run_compare},
+    {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
+     "snare validate --out out/validate",
+     [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
+       return snare::app::run_validate(options, console);
+     }},
+};
+
+/// Runs one verb; what it throws becomes a message and an exit status.
+template <typename Run>
+ExitStatus guarded(const CommonOptions& options, const Run& run) {
+  Console console(options.quiet);
+  try {
+    return run(console);
+  } catch (const snare::numerics::InputError& error) {
+    console.complain(error.what());
+    return ExitStatus::wrong_input;
+  } catch (const std::bad_alloc&) {
+    console.complain("out of memory");
+    return ExitStatus::failure;
+  } catch (const std::exception& error) {
+    console.complain(error.what());
+    return ExitStatus::failure;
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"snare: the mechanics of loose wires under a pin"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "snare " + snare::app::version());
 
-  CommonOptions push_options;
-  std::filesystem::path push_file;
-  CLI::App* push = app.add_subcommand("push", "predict the force-displacement curves of the declared model");
-  push->add_option("EXPERIMENT.toml", push_file, "experiment file")->required();
-  add_common(*push, push_options, "out/push");
-  push->footer("Example: snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2");
+  struct Parsed {
+    CLI::App* command = nullptr;
+    CommonOptions options;
+    std::filesystem::path file;
+  };
+  std::vector<Parsed> parsed(std::size(verbs));  // CLI11 keeps pointers into it
+  for (std::size_t k = 0; k < std::size(verbs); ++k) {
+    const Verb& verb = verbs[k];
+    Parsed& p = parsed[k];
+    p.command = app.add_subcommand(verb.name, verb.what);
+    if (verb.argument != nullptr) p.command->add_option(verb.argument, p.file, verb.meaning)->required(verb.needed);
+    add_common(*p.command, p.options, std::string("out/") + verb.name);
+    p.command->footer(std::string("Example: ") + verb.example);
+  }
 
-  CommonOptions fit_options;
-  std::filesystem::path fit_file;
-  CLI::App* fit = app.add_subcommand("fit", "calibrate the declared model's free numbers");
-  fit->add_option("EXPERIMENT.toml", fit_file, "experiment file")->required();
-  add_common(*fit, fit_options, "out/fit");
-  fit->footer("Example: snare fit data/experiments/published_static.toml --out out/fit");
-
-  CommonOptions trace_options;
-  std::filesystem::path trace_file;
-  CLI::App* trace = app.add_subcommand("trace", "find the effect that the declared model lacks");
-  trace->add_option("EXPERIMENT.toml", trace_file, "experiment file")->required();
-  add_common(*trace, trace_options, "out/trace");
-  trace->footer("Example: snare trace data/experiments/published_static.toml --out out/trace");
-
-  CommonOptions reproduce_options;
-  std::filesystem::path reproduce_file;
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "the published static wire tests beside the computed curves");
-  reproduce->add_option("EXPERIMENT.toml", reproduce_file, "experiment file; the published tests when left out");
-  add_common(*reproduce, reproduce_options, "out/reproduce");
-  reproduce->footer("Example: snare reproduce --out out/reproduce --set series[s40].law.to_mm=5");
-
-  CommonOptions distil_options;
-  std::filesystem::path distil_file;
-  CLI::App* distil = app.add_subcommand("distil", "reduced spring laws and stiffness tables with their error bounds");
-  distil->add_option("WIRE.toml", distil_file, "wire file")->required();
-  add_common(*distil, distil_options, "out/distil");
-  distil->footer("Example: snare distil data/wires/traced_published.toml --out out/distil");
-
-  CommonOptions compare_options;
-  std::filesystem::path compare_file;
-  CLI::App* compare = app.add_subcommand("compare", "the same case with every wire model: accuracy and cost side by side");
-  compare->add_option("SCENARIO.toml", compare_file, "experiment or wire file")->required();
-  add_common(*compare, compare_options, "out/compare");
-  compare->footer("Example: snare compare data/experiments/published_static.toml --out out/compare");
-
-  CommonOptions validate_options;
-  CLI::App* validate = app.add_subcommand("validate", "every validation row: reference, value, error, limit, verdict");
-  add_common(*validate, validate_options, "out/validate");
-  validate->footer("Example: snare validate --out out/validate");
+  CommonOptions arm_options;
+  std::filesystem::path arm_file;
+  std::string arm_pose;
+  CLI::App* arm = app.add_subcommand("arm", "robot arms");
+  arm->require_subcommand(1);
+  CLI::App* arm_show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
+  arm_show->add_option("FILE", arm_file, "arm file")->required();
+  arm_show->add_option("--pose", arm_pose, "a pose of the file, or angles in degrees: 0,30,-40");
+  arm_show->add_option("--set", arm_options.overrides, "override a key of the file: key=value (repeatable)")->expected(1)->take_all();
+  arm_show->add_flag("--json", arm_options.json, "as JSON");
+  arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
 
   try {
     app.parse(argc, argv);
@@ -87,39 +121,13 @@ int run(int argc, char** argv) {
   }
 
   snare::app::catch_interrupts();
-  const auto call = [](const CommonOptions& options, const auto& verb) {
-    snare::app::Console console(options.quiet);
-    try {
-      return verb(console);
-    } catch (const snare::numerics::InputError& error) {
-      console.complain(error.what());
-      return ExitStatus::wrong_input;
-    } catch (const std::bad_alloc&) {
-      console.complain("out of memory");
-      return ExitStatus::failure;
-    } catch (const std::exception& error) {
-      console.complain(error.what());
-      return ExitStatus::failure;
-    }
-  };
   ExitStatus status = ExitStatus::failure;
-  if (push->parsed()) {
-    status = call(push_options, [&](snare::app::Console& c) { return snare::app::run_push(push_file, push_options, c); });
-  } else if (reproduce->parsed()) {
-    status = call(reproduce_options, [&](snare::app::Console& c) {
-      return snare::app::run_reproduce(reproduce_file, reproduce_options, c);
-    });
-  } else if (fit->parsed()) {
-    status = call(fit_options, [&](snare::app::Console& c) { return snare::app::run_fit(fit_file, fit_options, c); });
-  } else if (trace->parsed()) {
-    status = call(trace_options, [&](snare::app::Console& c) { return snare::app::run_trace(trace_file, trace_options, c); });
-  } else if (distil->parsed()) {
-    status = call(distil_options, [&](snare::app::Console& c) { return snare::app::run_distil(distil_file, distil_options, c); });
-  } else if (compare->parsed()) {
-    status = call(compare_options,
-                  [&](snare::app::Console& c) { return snare::app::run_compare(compare_file, compare_options, c); });
-  } else if (validate->parsed()) {
-    status = call(validate_options, [&](snare::app::Console& c) { return snare::app::run_validate(validate_options, c); });
+  if (arm_show->parsed()) {
+    status = guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
+  }
+  for (std::size_t k = 0; k < std::size(verbs); ++k) {
+    const Parsed& p = parsed[k];
+    if (p.command->parsed()) status = guarded(p.options, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
   return static_cast<int>(status);
 }

@@ -26,6 +26,9 @@ if(SNARE_SANITIZE)
   add_compile_options(${SNARE_SANITIZER_FLAGS} -fno-omit-frame-pointer)
   add_link_options(${SNARE_SANITIZER_FLAGS})
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
+  # Under the address sanitizer Eigen would align by itself what malloc aligns already, and could not free what a library
+  # of the system, built without it, returns.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC warns falsely about Eigen's expressions once they are instrumented.
     target_compile_options(snare_build_settings INTERFACE -Wno-maybe-uninitialized)

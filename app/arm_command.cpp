@@ -1,0 +1,142 @@
+#include "app/arm_command.hpp"
+
+#include "multibody/arm_file.hpp"
+#include "numerics/toml_reader.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <iostream>
+#include <numbers>
+
+namespace snare::app {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+const char* to_string(multibody::DriveMode mode) {
+  switch (mode) {
+    case multibody::DriveMode::locked: return "locked";
+    case multibody::DriveMode::servo: return "servo";
+    case multibody::DriveMode::limp: return "limp";
+  }
+  return "";
+}
+
+/// Angles of the elastic joints [rad].
+Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescription& arm) {
+  const int count = arm.arm.motors();
+  if (pose.empty()) return Eigen::VectorXd::Zero(count);
+  for (const multibody::ArmPose& known : arm.poses) {
+    if (known.name == pose) return known.angles;
+  }
+  Eigen::VectorXd angles(count);
+  int found = 0;
+  const char* at = pose.data();
+  const char* const end = at + pose.size();
+  bool sound = true;
+  while (sound && at <= end) {
+    double value = 0.0;
+    const auto [stopped, error] = std::from_chars(at, end, value);
+    sound = error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
+    if (sound) angles[found++] = value * degree;
+    at = stopped + 1;
+  }
+  if (!sound || found != count) {
+    std::string names;
+    for (const multibody::ArmPose& known : arm.poses) names += (names.empty() ? "" : ", ") + known.name;
+    throw numerics::InputError({"", 0, "--pose", pose,
+                                fmt::format("must be {} angles in degrees separated by commas{}", count,
+                                            names.empty() ? "" : ", or one of: " + names)});
+  }
+  return angles;
+}
+
+nlohmann::json frequencies(const multibody::ArmDescription& arm, const Eigen::VectorXd& q,
+                           const std::vector<multibody::Drive>& drives) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const multibody::ArmMode& mode : multibody::natural_modes(arm.arm, q, drives)) {
+    if (mode.frequency > 0.0) list.push_back(mode.frequency);
+  }
+  return list;
+}
+
+/// Stiffness of the last piece of a joint's law: that of a large deflection [N m/rad].
+double outer_stiffness(const multibody::ElasticJoint& joint) { return joint.spring.pieces().back().stiffness; }
+
+nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::VectorXd& angles) {
+  const multibody::Tree& tree = arm.arm.tree;
+  const Eigen::VectorXd q = arm.coordinates(angles);
+  multibody::Kinematics kinematics(tree);
+  multibody::place(tree, q, kinematics);
+  const Eigen::Vector3d tip = multibody::frame_pose(tree, kinematics, arm.tip).p;
+  nlohmann::json result{{"schema", "snare-arm-show/1"}, {"title", arm.title}, {"source", arm.source},
+                        {"arm_mass_kg", arm.arm_mass}, {"moving_mass_kg", tree.mass()}, {"reach_m", multibody::reach(arm)},
+                        {"tip_m", {tip.x(), tip.y(), tip.z()}}, {"joints", nlohmann::json::array()}};
+  for (int k = 0; k < arm.arm.motors(); ++k) {
+    const multibody::ElasticJoint& joint = arm.arm.joints[static_cast<std::size_t>(k)];
+    const multibody::TreeBody& body = tree.body(joint.body);
+    result["joints"].push_back({{"joint", joint.name}, {"link", body.name}, {"angle_deg", angles[k] / degree},
+                                {"link_mass_kg", body.inertia.mass}, {"motor_inertia_kg_m2", joint.motor_inertia},
+                                {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},
+                                {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
+                                {"drive", to_string(arm.drives[static_cast<std::size_t>(k)].mode)}});
+  }
+  const std::vector<multibody::Drive> locked(arm.drives.size(), multibody::Drive::locked());
+  const std::vector<multibody::Drive> limp(arm.drives.size(), multibody::Drive::limp());
+  result["frequencies_locked_Hz"] = frequencies(arm, q, locked);
+  result["frequencies_driven_Hz"] = frequencies(arm, q, arm.drives);
+  result["frequencies_limp_Hz"] = frequencies(arm, q, limp);
+  multibody::ArmDescription outer = arm;
+  bool same = true;
+  for (multibody::ElasticJoint& joint : outer.arm.joints) {
+    same = same && joint.spring.pieces().size() == 1;
+    joint.spring = multibody::DeflectionLaw::linear(outer_stiffness(joint), 0.0);
+  }
+  if (!same) result["frequencies_locked_large_deflection_Hz"] = frequencies(outer, q, locked);
+  return result;
+}
+
+std::string listed(const nlohmann::json& values) {
+  std::string text;
+  for (const nlohmann::json& value : values) text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", value.get<double>());
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options, Console&) {
+  std::vector<numerics::Override> overrides;
+  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
+  const nlohmann::json result = describe(arm, angles_of(pose, arm));
+  if (options.json) {
+    std::cout << result.dump(1) << '\n';
+    return ExitStatus::done;
+  }
+  std::cout << fmt::format("{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
+                           arm.title, result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
+                           result["reach_m"].get<double>(), result["tip_m"][0].get<double>(),
+                           result["tip_m"][1].get<double>(), result["tip_m"][2].get<double>());
+  std::cout << fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
+                           "motor [kg m2]", "stiffness [N m/rad]", "drive");
+  for (const nlohmann::json& joint : result["joints"]) {
+    const double first = joint["stiffness_first_Nm_rad"], outer = joint["stiffness_outer_Nm_rad"];
+    std::cout << fmt::format("{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
+                             joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
+                             joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
+                             first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
+                             joint["drive"].get<std::string>());
+  }
+  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
+  if (result.contains("frequencies_locked_large_deflection_Hz")) {
+    std::cout << fmt::format("  the same, large deflections  {}\n", listed(result["frequencies_locked_large_deflection_Hz"]));
+  }
+  std::cout << fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
+                           listed(result["frequencies_limp_Hz"]));
+  return ExitStatus::done;
+}
+
+}  // namespace snare::app

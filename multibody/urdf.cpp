@@ -1,0 +1,150 @@
+#include "multibody/urdf.hpp"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace snare::multibody {
+
+namespace {
+
+using numerics::InputError;
+using numerics::InputProblem;
+
+/// Keeps what urdfdom would print.
+class Listener : public console_bridge::OutputHandler {
+ public:
+  Listener() { console_bridge::useOutputHandler(this); }
+  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && heard_.empty()) heard_ = text;
+  }
+  [[nodiscard]] const std::string& heard() const { return heard_; }
+
+ private:
+  std::string heard_;
+};
+
+Pose to_pose(const urdf::Pose& pose) {
+  const urdf::Rotation& r = pose.rotation;
+  return {Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix(),
+          {pose.position.x, pose.position.y, pose.position.z}};
+}
+
+SpatialInertia to_inertia(const urdf::Link& link) {
+  if (!link.inertial) return {};
+  const urdf::Inertial& i = *link.inertial;
+  const Pose X = to_pose(i.origin);
+  Eigen::Matrix3d moments;
+  moments << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
+  return SpatialInertia::about_centre(i.mass, X.p, X.R * moments * X.R.transpose());
+}
+
+std::optional<JointKind> to_kind(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::REVOLUTE:
+    case urdf::Joint::CONTINUOUS: return JointKind::revolute;
+    case urdf::Joint::PRISMATIC: return JointKind::prismatic;
+    case urdf::Joint::FLOATING: return JointKind::free;
+    default: return std::nullopt;
+  }
+}
+
+/// Appends the children of a link, depth first, in the order of the joints' names as urdfdom keeps them.
+void append(const urdf::ModelInterface& model, const urdf::Link& link, RobotDescription& robot) {
+  robot.links.push_back({link.name, to_inertia(link)});
+  for (const auto& from : link.child_joints) {
+    RobotJoint joint;
+    joint.name = from->name;
+    joint.parent = from->parent_link_name;
+    joint.child = from->child_link_name;
+    joint.kind = to_kind(*from);
+    joint.axis = {from->axis.x, from->axis.y, from->axis.z};
+    joint.X_PJ = to_pose(from->parent_to_joint_origin_transform);
+    if (from->limits) {
+      if (from->type != urdf::Joint::CONTINUOUS) {
+        joint.lower = from->limits->lower;
+        joint.upper = from->limits->upper;
+      }
+      joint.effort = from->limits->effort;
+      joint.speed = from->limits->velocity;
+    }
+    robot.joints.push_back(joint);
+    append(model, *model.getLink(joint.child), robot);
+  }
+}
+
+/// A body on a moving joint with nothing massive behind it has no inertia to accelerate.
+std::vector<InputProblem> massless_ends(const std::string& file, const RobotDescription& robot) {
+  std::map<std::string, double> carried;  // mass that hangs rigidly or otherwise on a link
+  for (std::size_t i = robot.links.size(); i-- > 0;) {
+    carried[robot.links[i].name] += robot.links[i].inertia.mass;
+    if (i > 0) carried[robot.joints[i - 1].parent] += carried[robot.links[i].name];
+  }
+  std::vector<InputProblem> problems;
+  for (const RobotJoint& joint : robot.joints) {
+    if (joint.kind && !(carried[joint.child] > 0.0)) {
+      problems.push_back({file, 0, "joint[" + joint.name + "].child", "\"" + joint.child + "\"",
+                          "must carry mass: neither this link nor any behind it has an <inertial>"});
+    }
+  }
+  return problems;
+}
+
+}  // namespace
+
+RobotDescription parse_urdf(const std::string& file, const std::string& text) {
+  std::vector<InputProblem> problems = check_urdf(file, text);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  const Listener listener;
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  if (!model) throw InputError({file, 0, "", "", "is refused by urdfdom: " + listener.heard()});
+  RobotDescription robot;
+  robot.name = model->getName();
+  robot.root = model->getRoot()->name;
+  append(*model, *model->getRoot(), robot);
+  problems = massless_ends(file, robot);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return robot;
+}
+
+RobotDescription read_urdf(const std::filesystem::path& file) {
+  constexpr std::uintmax_t size_limit = 4u << 20u;  // of a description without meshes [byte]
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw InputError({file.string(), 0, "", "", "cannot be read"});
+  if (size > size_limit) throw InputError({file.string(), 0, "", "", "must not be larger than 4 MiB"});
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_urdf(file.string(), text.str());
+}
+
+void add_robot(Tree& tree, int frame, RootJoint root, const RobotDescription& robot) {
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const RobotLink& link = robot.links[i];
+    if (i == 0) {
+      if (root == RootJoint::free) {
+        tree.add_moving(frame, link.name, JointKind::free, {}, {}, link.inertia);
+      } else {
+        tree.add_fixed(frame, link.name, {}, link.inertia);
+      }
+      continue;
+    }
+    const RobotJoint& joint = robot.joints[i - 1];
+    const int parent = tree.find_frame(joint.parent);
+    if (joint.kind) {
+      tree.add_moving(parent, link.name, *joint.kind, joint.axis, joint.X_PJ, link.inertia);
+    } else {
+      tree.add_fixed(parent, link.name, joint.X_PJ, link.inertia);
+    }
+  }
+}
+
+}  // namespace snare::multibody

@@ -1,0 +1,75 @@
+#include "numerics/dae.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace snare::numerics {
+
+int DaeLayout::add(DaeBlock block) {
+  assert(block.count >= 0 && block.absolute_tolerance > 0.0);
+  block.first = size_;
+  size_ += block.count;
+  blocks_.push_back(std::move(block));
+  return blocks_.back().first;
+}
+
+std::string DaeLayout::name_of(int unknown) const {
+  for (const DaeBlock& b : blocks_) {
+    if (unknown < b.first || unknown >= b.first + b.count) continue;
+    const int k = unknown - b.first;
+    const auto each = std::max<int>(1, static_cast<int>(b.components.size()));
+    std::string name = b.name;
+    if (b.count > each) name += fmt::format(", no. {}", k / each);
+    if (!b.components.empty()) name += ", " + b.components[static_cast<std::size_t>(k % each)];
+    return name;
+  }
+  return fmt::format("unknown {}", unknown);
+}
+
+DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
+  for (DaePart* part : parts_) {
+    part->declare(layout_);
+    event_count_ += part->event_count();
+  }
+  make_pattern_anew();
+}
+
+void DaeSystem::make_pattern_anew() {
+  std::vector<std::pair<int, int>> entries;
+  for (const DaePart* part : parts_) part->couple(entries);
+  matrix_ = make_pattern(size(), std::move(entries));
+  for (DaePart* part : parts_) part->bind(matrix_);
+  ++pattern_version_;
+  stale_pattern_ = false;
+}
+
+void DaeSystem::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  rows.setZero();
+  for (DaePart* part : parts_) part->residual(at, rows);
+}
+
+const SparseMatrix& DaeSystem::jacobian(const DaePoint& at, double c) {
+  if (stale_pattern_) make_pattern_anew();
+  std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
+  for (DaePart* part : parts_) part->jacobian(at, c, matrix_.value);
+  return matrix_;
+}
+
+void DaeSystem::events(const DaePoint& at, std::span<double> values) {
+  std::size_t first = 0;
+  for (DaePart* part : parts_) {
+    const auto count = static_cast<std::size_t>(part->event_count());
+    part->events(at, values.subspan(first, count));
+    first += count;
+  }
+}
+
+void DaeSystem::accept(const DaePoint& at) {
+  for (DaePart* part : parts_) {
+    if (part->accept(at)) stale_pattern_ = true;
+  }
+}
+
+}  // namespace snare::numerics

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "numerics/sparse_matrix.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace snare::numerics {
+
+/// A vector that somebody else stores.
+using VectorView = Eigen::Ref<const Eigen::VectorXd>;
+
+/// Whether the rate of an unknown appears in F(t, y, y') = 0.
+enum class DaeKind { differential, algebraic };
+
+/// Unknowns that belong together, for tolerances and for messages.
+struct DaeBlock {
+  std::string name;                     ///< "wire a position [m]"
+  std::vector<std::string> components;  ///< names that repeat along the block, e.g. x, y, z; empty: none
+  int count = 0;                        ///< of unknowns
+  DaeKind kind = DaeKind::differential;
+  double absolute_tolerance = 1e-8;     ///< of one unknown, in its unit, > 0
+  int first = 0;                        ///< set by DaeLayout
+};
+
+/// The unknowns of all parts, one block behind another.
+class DaeLayout {
+ public:
+  /// Appends a block; returns the index of its first unknown.
+  int add(DaeBlock block);
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] const std::vector<DaeBlock>& blocks() const noexcept { return blocks_; }
+  /// "wire a position [m], vertex 12, y".
+  [[nodiscard]] std::string name_of(int unknown) const;
+
+ private:
+  std::vector<DaeBlock> blocks_;
+  int size_ = 0;
+};
+
+/// Where a residual is wanted: time [s], unknowns and their rates.
+struct DaePoint {
+  double time = 0.0;
+  VectorView y;
+  VectorView rate;
+};
+
+/// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
+///
+/// Order of calls: `declare` once, then `couple` and `bind` whenever the pattern is made, then the rest. A part may keep
+/// workspace; one part serves one integration at a time.
+class DaePart {
+ public:
+  DaePart() = default;
+  virtual ~DaePart() = default;
+  DaePart(const DaePart&) = delete;
+  DaePart& operator=(const DaePart&) = delete;
+
+  /// Appends the part's own blocks.
+  virtual void declare(DaeLayout& layout) = 0;
+  /// Appends the entries (row, column) of dF/dy and dF/dy' to which the part adds; repeated ones are fine.
+  virtual void couple(std::vector<std::pair<int, int>>& entries) const = 0;
+  /// Told the pattern, to look up its slots in it.
+  virtual void bind(const SparseMatrix& pattern) = 0;
+  /// Adds to the rows of F.
+  virtual void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) = 0;
+  /// Adds dF/dy + c dF/dy' to the values of the bound pattern.
+  virtual void jacobian(const DaePoint& at, double c, std::vector<double>& values) = 0;
+  /// Number of functions whose zeros stop the integration.
+  [[nodiscard]] virtual int event_count() const { return 0; }
+  virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
+  /// Told every accepted step. True: `couple` has changed (no restart is needed for that).
+  virtual bool accept(const DaePoint& /*at*/) { return false; }
+};
+
+/// F(t, y, y') = 0 of several parts on one sparse pattern.                                       theory.md (M.1)
+class DaeSystem {
+ public:
+  /// The parts stay the caller's and outlive the system.
+  explicit DaeSystem(std::vector<DaePart*> parts);
+
+  [[nodiscard]] const DaeLayout& layout() const noexcept { return layout_; }
+  [[nodiscard]] int size() const noexcept { return layout_.size(); }
+  [[nodiscard]] int event_count() const noexcept { return event_count_; }
+  /// The matrix of the last `jacobian`, or the pattern with zeros.
+  [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
+
+  /// F into `rows`.
+  void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows);
+  /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first when a part has asked for it.
+  const SparseMatrix& jacobian(const DaePoint& at, double c);
+  void events(const DaePoint& at, std::span<double> values);
+  /// Told every accepted step.
+  void accept(const DaePoint& at);
+  /// How many times the pattern was made.
+  [[nodiscard]] int pattern_version() const noexcept { return pattern_version_; }
+  /// The pattern is made anew before the next Jacobian.
+  void invalidate_pattern() noexcept { stale_pattern_ = true; }
+
+ private:
+  void make_pattern_anew();
+
+  std::vector<DaePart*> parts_;
+  DaeLayout layout_;
+  SparseMatrix matrix_;
+  int event_count_ = 0;
+  int pattern_version_ = 0;
+  bool stale_pattern_ = true;
+};
+
+}  // namespace snare::numerics

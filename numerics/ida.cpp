@@ -1,0 +1,380 @@
+#include "numerics/ida.hpp"
+
+#include "numerics/klu.hpp"
+#include "numerics/sundials.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ida/ida.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <numeric>
+
+namespace snare::numerics {
+
+namespace {
+
+struct IdaDeleter {
+  void operator()(void* memory) const noexcept { IDAFree(&memory); }
+};
+
+Eigen::Map<Eigen::VectorXd> map(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+
+/// Adds the wall time of a scope.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// What the C callbacks reach through their user pointer; an exception waits here until IDA has returned.
+struct Callbacks {
+  DaeSystem& system;
+  IdaStatistics statistics;
+  std::exception_ptr failure;
+  std::unique_ptr<Klu> klu;
+  int analysed_pattern = 0;
+};
+
+/// A false result is positive for IDA: it tries a smaller step.
+template <class Work>
+int guarded(Callbacks& callbacks, const Work& work) {
+  try {
+    return work() ? 0 : 1;
+  } catch (...) {
+    callbacks.failure = std::current_exception();
+    return -1;
+  }
+}
+
+extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vector rows, void* data) {
+  auto& self = *static_cast<Callbacks*>(data);
+  return guarded(self, [&] {
+    const Stopwatch watch(self.statistics.residual_seconds);
+    ++self.statistics.residuals;
+    auto out = map(rows);
+    self.system.residual({t, map(y), map(rate)}, out);
+    return out.allFinite();
+  });
+}
+
+// The values stay in the system's own matrix, where the linear solver finds them; IDA's is a place-holder.
+extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix, void* data,
+                            N_Vector, N_Vector, N_Vector) {
+  auto& self = *static_cast<Callbacks*>(data);
+  return guarded(self, [&] {
+    const Stopwatch watch(self.statistics.jacobian_seconds);
+    ++self.statistics.jacobians;
+    self.system.jacobian({t, map(y), map(rate)}, c);
+    return true;
+  });
+}
+
+extern "C" int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype* values, void* data) {
+  auto& self = *static_cast<Callbacks*>(data);
+  return guarded(self, [&] {
+    self.system.events({t, map(y), map(rate)}, {values, static_cast<std::size_t>(self.system.event_count())});
+    return true;
+  });
+}
+
+Callbacks& content(SUNLinearSolver solver) { return *static_cast<Callbacks*>(solver->content); }
+
+extern "C" SUNLinearSolver_Type snare_klu_type(SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; }
+
+extern "C" int snare_klu_setup(SUNLinearSolver solver, SUNMatrix) {
+  Callbacks& self = content(solver);
+  return guarded(self, [&] {
+    const Stopwatch watch(self.statistics.factor_seconds);
+    if (!self.klu || self.analysed_pattern != self.system.pattern_version()) {
+      self.klu = std::make_unique<Klu>(self.system.matrix());
+      self.analysed_pattern = self.system.pattern_version();
+      ++self.statistics.analyses;
+    }
+    ++self.statistics.factorizations;
+    return self.klu->factorize(self.system.matrix());
+  });
+}
+
+extern "C" int snare_klu_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+  Callbacks& self = content(solver);
+  return guarded(self, [&] {
+    const Stopwatch watch(self.statistics.solve_seconds);
+    auto solution = map(x);
+    solution = map(b);
+    self.klu->solve(solution);
+    return solution.allFinite();
+  });
+}
+
+SunLinearSolver make_linear_solver(Callbacks& callbacks, SUNContext context) {
+  SunLinearSolver solver(made(SUNLinSolNewEmpty(context), "SUNLinSolNewEmpty"));
+  solver->ops->gettype = snare_klu_type;
+  solver->ops->setup = snare_klu_setup;
+  solver->ops->solve = snare_klu_solve;
+  solver->ops->free = [](SUNLinearSolver s) {
+    s->content = nullptr;  // ours
+    SUNLinSolFreeEmpty(s);
+    return 0;
+  };
+  solver->content = &callbacks;
+  return solver;
+}
+
+std::string name_of(int code) {
+  const std::unique_ptr<char, decltype(&std::free)> name(IDAGetReturnFlagName(code), &std::free);
+  return name.get();
+}
+
+Termination meaning(int code) {
+  switch (code) {
+    case IDA_TOO_MUCH_WORK:
+    case IDA_CONV_FAIL: return Termination::iteration_limit;
+    case IDA_LSETUP_FAIL:
+    case IDA_LSOLVE_FAIL: return Termination::singular_matrix;
+    case IDA_RES_FAIL:
+    case IDA_REP_RES_ERR:
+    case IDA_FIRST_RES_FAIL: return Termination::not_finite;
+    default: return Termination::step_too_small;
+  }
+}
+
+}  // namespace
+
+struct Ida::Memory {
+  Callbacks callbacks;
+  IdaOptions options;
+  sundials::Context context;
+  Eigen::VectorXd y, rate, tolerance, identity;
+  SunVector y_view, rate_view, tolerance_view, identity_view;
+  SunMatrix matrix;
+  SunLinearSolver linear;
+  std::unique_ptr<void, IdaDeleter> ida;
+  double time = 0.0;
+  std::vector<int> events;
+  IdaReport report;
+  IdaStatistics counted;  // of earlier starts: IDA counts from each start
+  double previous_time = 0.0;
+
+  Memory(DaeSystem& system, const IdaOptions& chosen);
+  void update_counts();
+  void begin(double at, const Eigen::VectorXd& y0, const Eigen::VectorXd& rate0);
+  void fail(int code, const std::string& function);
+  [[nodiscard]] std::vector<std::string> worst_unknowns();
+};
+
+Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen)
+    : callbacks{system, {}, nullptr, nullptr, 0},
+      options(chosen),
+      y(Eigen::VectorXd::Zero(system.size())),
+      rate(Eigen::VectorXd::Zero(system.size())),
+      tolerance(system.size()),
+      identity(system.size()),
+      y_view(view(y, context)),
+      rate_view(view(rate, context)),
+      tolerance_view(view(tolerance, context)),
+      identity_view(view(identity, context)),
+      matrix(made(SUNSparseMatrix(system.size(), system.size(), 1, CSC_MAT, context), "SUNSparseMatrix")),
+      linear(make_linear_solver(callbacks, context)),
+      ida(made(IDACreate(context), "IDACreate")),
+      events(static_cast<std::size_t>(system.event_count()), 0) {
+  for (const DaeBlock& block : system.layout().blocks()) {
+    tolerance.segment(block.first, block.count).setConstant(block.absolute_tolerance);
+    identity.segment(block.first, block.count).setConstant(block.kind == DaeKind::differential ? 1.0 : 0.0);
+  }
+  void* m = ida.get();
+  check(IDASetErrHandlerFn(m, [](int, const char*, const char*, char*, void*) {}, nullptr), "IDASetErrHandlerFn");
+  check(IDAInit(m, snare_ida_residual, 0.0, y_view.get(), rate_view.get()), "IDAInit");
+  check(IDASetUserData(m, &callbacks), "IDASetUserData");
+  check(IDASVtolerances(m, options.relative_tolerance, tolerance_view.get()), "IDASVtolerances");
+  check(IDASetId(m, identity_view.get()), "IDASetId");
+  check(IDASetSuppressAlg(m, options.test_algebraic ? 0 : 1), "IDASetSuppressAlg");
+  check(IDASetMaxOrd(m, options.max_order), "IDASetMaxOrd");
+  check(IDASetMaxNumSteps(m, -1), "IDASetMaxNumSteps");
+  check(IDASetNonlinConvCoef(m, options.newton_share), "IDASetNonlinConvCoef");
+  check(IDASetMinStep(m, options.smallest_step), "IDASetMinStep");
+  if (std::isfinite(options.max_step)) check(IDASetMaxStep(m, options.max_step), "IDASetMaxStep");
+  check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
+  check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
+  if (system.event_count() > 0) {
+    check(IDARootInit(m, system.event_count(), snare_ida_events), "IDARootInit");
+    check(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");
+  }
+}
+
+void Ida::Memory::update_counts() {
+  IdaStatistics& s = callbacks.statistics;
+  long errors = 0;
+  long iterations = 0;
+  long failures = 0;
+  check(IDAGetNumErrTestFails(ida.get(), &errors), "IDAGetNumErrTestFails");
+  check(IDAGetNonlinSolvStats(ida.get(), &iterations, &failures), "IDAGetNonlinSolvStats");
+  s.error_test_failures = counted.error_test_failures + errors;
+  s.newton_iterations = counted.newton_iterations + iterations;
+  s.newton_failures = counted.newton_failures + failures;
+}
+
+void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::VectorXd& rate0) {
+  y = y0;
+  rate = rate0;
+  time = at;
+  previous_time = at;
+  report = {};
+  report.time = at;
+  counted = callbacks.statistics;
+  ++callbacks.statistics.restarts;
+  check(IDAReInit(ida.get(), at, y_view.get(), rate_view.get()), "IDAReInit");
+  check(IDASetInitStep(ida.get(), options.first_step), "IDASetInitStep");
+  std::fill(events.begin(), events.end(), 0);
+}
+
+std::vector<std::string> Ida::Memory::worst_unknowns() {
+  // The last correction, weighted as the error test does.
+  N_Vector predicted{}, predicted_rate{}, current{}, current_rate{}, rows{};
+  double t = 0.0;
+  double c = 0.0;
+  void* user = nullptr;
+  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows, &c,
+                                &user) != IDA_SUCCESS ||
+      predicted == nullptr || current == nullptr) {
+    return {};
+  }
+  Eigen::VectorXd size = (map(current) - map(predicted)).cwiseAbs();
+  size.array() /= options.relative_tolerance * y.array().abs() + tolerance.array();
+  if (rows != nullptr) {
+    for (Eigen::Index i = 0; i < size.size(); ++i) {
+      if (!std::isfinite(map(rows)[i])) size[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+  for (double& s : size) {
+    if (std::isnan(s)) s = std::numeric_limits<double>::infinity();
+  }
+  std::vector<int> order(static_cast<std::size_t>(size.size()));
+  std::iota(order.begin(), order.end(), 0);
+  const auto shown = std::min<std::ptrdiff_t>(5, size.size());
+  std::partial_sort(order.begin(), order.begin() + shown, order.end(), [&](int a, int b) { return size[a] > size[b]; });
+  std::vector<std::string> names;
+  for (std::ptrdiff_t k = 0; k < shown; ++k) {
+    names.push_back(callbacks.system.layout().name_of(order[static_cast<std::size_t>(k)]));
+  }
+  return names;
+}
+
+void Ida::Memory::fail(int code, const std::string& function) {
+  if (callbacks.failure) std::rethrow_exception(std::exchange(callbacks.failure, nullptr));
+  if (code == IDA_ILL_INPUT || code == IDA_MEM_NULL || code == IDA_NO_MALLOC) check(code, function);
+  report.termination = meaning(code);
+  report.culprits = worst_unknowns();
+  report.time = time;
+  if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS) report.step = 0.0;
+  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function, name_of(code), time,
+                               report.step, fmt::join(report.culprits, "; "));
+}
+
+Ida::Ida(DaeSystem& system, const IdaOptions& options) : memory_(std::make_unique<Memory>(system, options)) {}
+Ida::~Ida() = default;
+Ida::Ida(Ida&&) noexcept = default;
+Ida& Ida::operator=(Ida&&) noexcept = default;
+
+void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate) {
+  memory_->begin(time, y, rate);
+}
+
+IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {
+  Memory& m = *memory_;
+  m.begin(time, y, rate);
+  const int code = IDACalcIC(m.ida.get(), IDA_YA_YDP_INIT, towards);
+  if (code != IDA_SUCCESS) {
+    m.fail(code, "IDACalcIC");
+    return m.report;
+  }
+  check(IDAGetConsistentIC(m.ida.get(), m.y_view.get(), m.rate_view.get()), "IDAGetConsistentIC");
+  const Eigen::VectorXd y0 = m.y;
+  const Eigen::VectorXd rate0 = m.rate;
+  m.update_counts();
+  --m.callbacks.statistics.restarts;
+  m.begin(time, y0, rate0);
+  return m.report;
+}
+
+IdaAdvance Ida::advance(double limit) {
+  Memory& m = *memory_;
+  check(IDASetStopTime(m.ida.get(), limit), "IDASetStopTime");
+  double reached = m.time;
+  const int code = IDASolve(m.ida.get(), limit, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
+  m.update_counts();
+  if (code < 0) {
+    // The views hold the last accepted state.
+    m.fail(code, "IDASolve");
+    return IdaAdvance::failed;
+  }
+  IdaStatistics& s = m.callbacks.statistics;
+  m.previous_time = m.time;
+  m.time = reached;
+  m.report.time = reached;
+  check(IDAGetLastStep(m.ida.get(), &m.report.step), "IDAGetLastStep");
+  ++s.steps;
+  s.smallest_step = std::min(s.smallest_step, m.report.step);
+  s.largest_step = std::max(s.largest_step, m.report.step);
+  m.callbacks.system.accept({m.time, m.y, m.rate});
+  if (code == IDA_ROOT_RETURN) {
+    check(IDAGetRootInfo(m.ida.get(), m.events.data()), "IDAGetRootInfo");
+    return IdaAdvance::event;
+  }
+  std::fill(m.events.begin(), m.events.end(), 0);
+  return code == IDA_TSTOP_RETURN ? IdaAdvance::reached_limit : IdaAdvance::stepped;
+}
+
+double Ida::time() const { return memory_->time; }
+const Eigen::VectorXd& Ida::y() const { return memory_->y; }
+const Eigen::VectorXd& Ida::rate() const { return memory_->rate; }
+const std::vector<int>& Ida::events_found() const { return memory_->events; }
+double Ida::last_step() const { return memory_->report.step; }
+const IdaReport& Ida::report() const { return memory_->report; }
+const IdaStatistics& Ida::statistics() const { return memory_->callbacks.statistics; }
+
+int Ida::last_order() const {
+  int order = 0;
+  check(IDAGetLastOrder(memory_->ida.get(), &order), "IDAGetLastOrder");
+  return order;
+}
+
+Eigen::VectorXd Ida::interpolate(double time, int derivative) const {
+  Eigen::VectorXd result(memory_->y.size());
+  const SunVector out = view(result, memory_->context);
+  check(IDAGetDky(memory_->ida.get(), time, derivative, out.get()), "IDAGetDky");
+  return result;
+}
+
+IdaReport integrate(Ida& ida, double end, const IdaObserver& observer) {
+  while (true) {
+    switch (ida.advance(end)) {
+      case IdaAdvance::failed:
+      case IdaAdvance::reached_limit: return ida.report();
+      case IdaAdvance::stepped:
+      case IdaAdvance::event: break;
+    }
+    if (observer && observer(ida)) {
+      IdaReport report = ida.report();
+      report.termination = Termination::interrupted;
+      report.message = fmt::format("stopped by the observer at {:.9g} s", report.time);
+      return report;
+    }
+  }
+}
+
+}  // namespace snare::numerics

@@ -1,0 +1,106 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "numerics/report.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace snare::numerics {
+
+struct IdaOptions {
+  double relative_tolerance = 1e-5;  ///< of every unknown [-], in (0, 1)
+  /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
+  /// oscillations that the step does not resolve.                                                theory.md (M.2)
+  int max_order = 5;
+  double max_step = std::numeric_limits<double>::infinity();  ///< [s], > 0
+  /// A smaller one is a failure [s], > 0: without it IDA creeps up to a time that it cannot pass, for ever.
+  double smallest_step = 1e-13;
+  double first_step = 0.0;           ///< [s]; 0: IDA chooses
+  bool test_algebraic = false;       ///< algebraic unknowns take part in the error test (index 1 only)
+  double newton_share = 0.33;        ///< of the tolerance that the Newton iteration may leave [-]
+};
+
+/// What was done since the integrator was made.
+struct IdaStatistics {
+  long steps = 0;
+  long residuals = 0;
+  long jacobians = 0;
+  long factorizations = 0;
+  long analyses = 0;             ///< of the sparse pattern
+  long newton_iterations = 0;
+  long newton_failures = 0;
+  long error_test_failures = 0;
+  long restarts = 0;             ///< starts at first order, the first one included
+  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
+  double largest_step = 0.0;                                       ///< [s]
+  double residual_seconds = 0.0; ///< wall time in residuals [s]
+  double jacobian_seconds = 0.0; ///< in Jacobians
+  double factor_seconds = 0.0;   ///< in KLU's analysis and factorisation
+  double solve_seconds = 0.0;    ///< in KLU's solution
+};
+
+/// How an integration ended. On failure `message` names time, step and the worst rows.
+struct [[nodiscard]] IdaReport : SolveReport {
+  double time = 0.0;                  ///< reached [s]
+  double step = 0.0;                  ///< last tried [s]
+  std::vector<std::string> culprits;  ///< unknowns with the largest weighted errors, worst first
+};
+
+/// What one call of `advance` did.
+enum class IdaAdvance {
+  stepped,       ///< one internal step, short of the limit
+  reached_limit, ///< the state is at the limit
+  event,         ///< an event function is zero here: `events_found`
+  failed         ///< see `report`; the state is that of the last accepted step
+};
+
+/// SUNDIALS IDA (variable-order, variable-step BDF) with KLU on an analytic sparse Jacobian; the pattern is analysed
+/// when it changes only.                                                                  theory.md (M.1), (M.2)
+/// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up.
+class Ida {
+ public:
+  Ida(DaeSystem& system, const IdaOptions& options);
+  ~Ida();
+  Ida(Ida&&) noexcept;
+  Ida& operator=(Ida&&) noexcept;
+
+  /// Begins at first order from a consistent (y, y'), after an event too.
+  void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
+  /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns; for index 1.
+  /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
+  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
+                                             double towards);
+
+  /// One internal step, never beyond `limit` [s].
+  [[nodiscard]] IdaAdvance advance(double limit);
+
+  [[nodiscard]] double time() const;
+  [[nodiscard]] const Eigen::VectorXd& y() const;
+  [[nodiscard]] const Eigen::VectorXd& rate() const;
+  /// Derivative k of y at a time within the last step.
+  [[nodiscard]] Eigen::VectorXd interpolate(double time, int derivative = 0) const;
+  /// For every event function: 0, or the direction (-1, +1) in which it passed zero.
+  [[nodiscard]] const std::vector<int>& events_found() const;
+  [[nodiscard]] double last_step() const;
+  [[nodiscard]] int last_order() const;
+  [[nodiscard]] const IdaReport& report() const;
+  [[nodiscard]] const IdaStatistics& statistics() const;
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+/// Called after every step; true: stop here.
+using IdaObserver = std::function<bool(const Ida&)>;
+
+/// Integrates to `end` without regard to events (they only split steps); `interrupted` when the observer says so.
+[[nodiscard]] IdaReport integrate(Ida& ida, double end, const IdaObserver& observer = {});
+
+}  // namespace snare::numerics

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "wire/spatial_rod.hpp"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace snare::wire {
+
+/// Material and mass-proportional damping of a wire.                                     theory.md (M.4)
+struct RodDamping {
+  /// Kelvin-Voigt time of bending: M = EI (kappa + tau dkappa/dt) [s], >= 0. A mode of angular frequency w then has the
+  /// damping ratio tau w/2, that is tau = ln(A_0/A_n)/(pi n w) from n periods of a ring-down.
+  double bending_time = 0.0;
+  double axial_time = 0.0;  ///< of stretching: N = EA (e + tau de/dt) [s], >= 0
+  double mass_rate = 0.0;   ///< force -a m v against motion in the world [1/s], >= 0: damping ratio a/(2 w)
+};
+
+/// Constants of a wire in motion.
+struct RodInMotion {
+  SpatialRodProperties properties;  ///< stiffness, mounts, weight
+  double mass_per_length = 0.0;     ///< [kg/m], > 0
+  double length = 0.0;              ///< unstretched [m], > 0
+  int elements = 60;                ///< >= 4
+  double grading = 0.0;             ///< of the mesh, see MaterialMesh; 0: equal edges
+  RodDamping damping;
+};
+
+/// Tolerances of a wire's unknowns.
+struct RodTolerances {
+  double position = 1e-7;  ///< [m]
+  double velocity = 1e-4;  ///< [m/s]
+  double angle = 1e-6;     ///< of twist [rad]
+};
+
+/// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without inertia.
+///                                                                                  theory.md (M.3), (M.4)
+///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
+/// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. Rigidly held unknowns have x = X, v = 0 instead; the force of
+/// the mount is what the row would have left. Without a mount that holds the twist theta_0 = 0.
+class RodPart final : public numerics::DaePart {
+ public:
+  RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
+
+  void declare(numerics::DaeLayout& layout) override;
+  void couple(std::vector<std::pair<int, int>>& entries) const override;
+  void bind(const numerics::SparseMatrix& pattern) override;
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// Carries the reference frames along.
+  bool accept(const numerics::DaePoint& at) override;
+
+  /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
+  void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
+
+  [[nodiscard]] int vertices() const { return rod_.mesh().vertices(); }
+  [[nodiscard]] int position_of(int vertex) const { return x_ + 3 * vertex; }  ///< first of three unknowns
+  [[nodiscard]] int velocity_of(int vertex) const { return v_ + 3 * vertex; }
+  [[nodiscard]] int angle_of(int edge) const { return theta_ + edge; }
+  [[nodiscard]] double mass_of(int vertex) const { return mass_[static_cast<std::size_t>(vertex)]; }
+  /// Whether component k of a vertex is rigidly held.
+  [[nodiscard]] bool is_held(int vertex, int k) const { return held_[static_cast<std::size_t>(3 * vertex + k)]; }
+  [[nodiscard]] double coordinate(int vertex) const { return rod_.mesh().coordinate(vertex, controls_); }
+  [[nodiscard]] const SpatialRod& rod() const { return rod_; }
+  /// Band index of the rod's own unknown -> unknown of the DAE.
+  [[nodiscard]] int unknown_of(int band) const;
+
+  /// Energies [J] at a point; dissipation is a power [W].
+  struct Energies {
+    double kinetic = 0.0;
+    double strain = 0.0;
+    double potential = 0.0;
+    double dissipation = 0.0;
+  };
+  [[nodiscard]] Energies energies(const numerics::DaePoint& at);
+  /// Forces of the left and the right mount on the wire [N].
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> mount_forces(const numerics::DaePoint& at);
+
+ private:
+  struct ViscousCell;
+  void evaluate(const numerics::DaePoint& at);
+  void add_viscous(const numerics::DaePoint& at, Eigen::VectorXd& gradient);
+  void add_viscous_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
+
+  std::string name_;
+  RodInMotion constants_;
+  RodTolerances tolerances_;
+  SpatialRod rod_;
+  Controls controls_;
+  std::vector<double> mass_;
+  std::vector<bool> held_;        // of 3 components a vertex
+  bool twist_free_ = false;       // no mount holds the twist
+  int x_ = 0, theta_ = 0, v_ = 0;
+  SpatialState base_;             // frames of the last accepted state
+  SpatialState trial_;
+  RodAssembly assembly_;
+  Eigen::VectorXd band_;
+  double viscous_power_ = 0.0;
+  std::vector<int> band_slots_;   // of the lower band in the rows of v and theta, both triangles
+  std::vector<int> rate_slots_;   // the same in the columns of v
+  std::vector<int> diagonal_;     // of x, v: (x,x) (x,v) (v,v)
+};
+
+}  // namespace snare::wire
