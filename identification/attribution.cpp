@@ -168,6 +168,7 @@ std::vector<ChannelFunction> attribute(const Model& model, const Data& data, con
     const double left = (r - current.jacobian * s.free - channel.columns * s.values).squaredNorm();
     f.carried_over = std::min(best, 1.0);
     f.explained = excess > 0.0 ? std::min(1.0, 1.0 - (left - current.dof()) / excess) : 0.0;
+    f.chi2 = left;
     f.chi2_dof = left / std::max(1.0, current.dof() - ChannelColumns::stations / 2.0);
     for (Eigen::Index k = 0; k < s.values.size(); ++k) {
       f.value.push_back(s.values[k] / channel.unit);

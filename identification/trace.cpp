@@ -23,7 +23,7 @@ constexpr double indistinct_bic = 6.0;  // difference of BIC below which the lik
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;  // gain of BIC that an effect must bring
 constexpr double one_cause = 0.9;       // share of an excess that an unknown function must carry over to rival effects
-constexpr double rest_of_rival = 0.003; // P below which an effect has left something in the direction of its rival
+constexpr double rest_of_rival = 0.001; // P below which an effect has left something in the direction of its rival
 constexpr std::size_t most_refits = 6;
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this share of the
 // best gain cannot lead and are not refitted.
@@ -77,7 +77,8 @@ class Tracer {
   void classify(const Fit& current, Round& round, const std::vector<Fit>& fits) const;
   [[nodiscard]] std::optional<double> heldout_rmse(const Fit& fit) const;
   [[nodiscard]] double left_out_rmse(const Fit& fit) const;
-  [[nodiscard]] std::vector<ChannelFunction> rivals_outside(const Fit& base, const std::string& first_effect);
+  [[nodiscard]] std::vector<ChannelFunction> rivals_outside(const Fit& base, const Fit& current,
+                                                             const std::string& first_effect);
   void look_outside(const Fit& base, const Fit& current, const std::vector<std::string>& added);
   void propose();
   [[nodiscard]] bool go_on(const std::string& stage);
@@ -428,20 +429,21 @@ Round Tracer::look(const Fit& current, Fit& better) {
   return round;
 }
 
-// Unknown functions of one channel that explain what the base model leaves and carry over.
-std::vector<ChannelFunction> Tracer::rivals_outside(const Fit& base, const std::string& first_effect) {
+// Unknown functions of one channel that explain what the base model leaves no worse than the effects do, and carry over.
+std::vector<ChannelFunction> Tracer::rivals_outside(const Fit& base, const Fit& current, const std::string& first_effect) {
   if (functions_.empty()) functions_ = attribute(*model_, data_, base);
   std::vector<ChannelFunction> rivals;
   for (const ChannelFunction& f : functions_) {
     // In the channel of the effect itself it is that effect in another dress.
-    if (f.carried_over > one_cause && f.channel != find_effect(first_effect)->channel) rivals.push_back(f);
+    const bool elsewhere = f.channel != find_effect(first_effect)->channel;
+    if (elsewhere && f.carried_over > one_cause && f.chi2 < current.chi2 + indistinct_bic) rivals.push_back(f);
   }
   return rivals;
 }
 
 // What the catalogue explains a cause that it does not have may explain as well: theory.md (I.8).
 void Tracer::look_outside(const Fit& base, const Fit& current, const std::vector<std::string>& added) {
-  std::vector<ChannelFunction> rivals = rivals_outside(base, added.front());
+  std::vector<ChannelFunction> rivals = rivals_outside(base, current, added.front());
   if (rivals.empty()) return;
   // One cause that carries over is simpler than several effects together, and than an effect that leaves something of it.
   bool simpler = added.size() > 1;
@@ -509,7 +511,7 @@ Trace Tracer::run() {
     current = std::move(better);
     tests = test_residuals(data_, current);
     // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
-    if (!tests.acceptable() && options_.attribute && !rivals_outside(base, added.front()).empty()) break;
+    if (!tests.acceptable() && options_.attribute && !rivals_outside(base, current, added.front()).empty()) break;
   }
   result_.significant = !result_.base_tests.acceptable() || !added.empty();
   result_.explained = tests.acceptable();
