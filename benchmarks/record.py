@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the benchmarks and stores what they measured: benchmarks/record.py BUILD_DIRECTORY RESULT.json [--load LIMIT]
+"""Runs the benchmarks and stores what they measured: benchmarks/record.py BUILD_DIRECTORY RESULT.json [--load LIMIT] [PROGRAM...]
 
 BUILD_DIRECTORY is that of the release preset. Each benchmark runs five times and its median is stored, with processor,
 compiler and commit; names of the machine and of its folders are left out. Refuses a busy machine.
@@ -73,6 +73,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("result", type=pathlib.Path)
+    parser.add_argument("programs", nargs="*", default=PROGRAMS, help="of those in BUILD_DIRECTORY/benchmarks")
     parser.add_argument("--load", type=float, default=0.7, help="highest load of the machine at the start")
     arguments = parser.parse_args()
     source = pathlib.Path(__file__).resolve().parent.parent
@@ -80,7 +81,7 @@ def main():
     wait_for_rest(arguments.load)
     context = None
     entries = []
-    for program in PROGRAMS:
+    for program in arguments.programs:
         result = run(program, arguments.build)
         context = context or {key: value for key, value in result["context"].items() if key not in PRIVATE}
         for entry in result["benchmarks"]:
