@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <numbers>
 
@@ -18,9 +19,12 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 const char* to_string(multibody::DriveMode mode) {
   switch (mode) {
-    case multibody::DriveMode::locked: return "locked";
-    case multibody::DriveMode::servo: return "servo";
-    case multibody::DriveMode::limp: return "limp";
+    case multibody::DriveMode::locked:
+      return "locked";
+    case multibody::DriveMode::servo:
+      return "servo";
+    case multibody::DriveMode::limp:
+      return "limp";
   }
   return "";
 }
@@ -40,7 +44,8 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
   while (sound && at <= end) {
     double value = 0.0;
     const auto [stopped, error] = std::from_chars(at, end, value);
-    sound = error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
+    sound =
+        error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
     if (sound) angles[found++] = value * degree;
     at = stopped + 1;
   }
@@ -64,7 +69,9 @@ nlohmann::json frequencies(const multibody::ArmDescription& arm, const Eigen::Ve
 }
 
 /// Stiffness of the last piece of a joint's law: that of a large deflection [N m/rad].
-double outer_stiffness(const multibody::ElasticJoint& joint) { return joint.spring.pieces().back().stiffness; }
+double outer_stiffness(const multibody::ElasticJoint& joint) {
+  return joint.spring.pieces().back().stiffness;
+}
 
 nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::VectorXd& angles) {
   const multibody::Tree& tree = arm.arm.tree;
@@ -72,14 +79,22 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
   multibody::Kinematics kinematics(tree);
   multibody::place(tree, q, kinematics);
   const Eigen::Vector3d tip = multibody::frame_pose(tree, kinematics, arm.tip).p;
-  nlohmann::json result{{"schema", "snare-arm-show/1"}, {"title", arm.title}, {"source", arm.source},
-                        {"arm_mass_kg", arm.arm_mass}, {"moving_mass_kg", tree.mass()}, {"reach_m", multibody::reach(arm)},
-                        {"tip_m", {tip.x(), tip.y(), tip.z()}}, {"joints", nlohmann::json::array()}};
+  nlohmann::json result{{"schema", "snare-arm-show/1"},
+                        {"title", arm.title},
+                        {"source", arm.source},
+                        {"arm_mass_kg", arm.arm_mass},
+                        {"moving_mass_kg", tree.mass()},
+                        {"reach_m", multibody::reach(arm)},
+                        {"tip_m", {tip.x(), tip.y(), tip.z()}},
+                        {"joints", nlohmann::json::array()}};
   for (int k = 0; k < arm.arm.motors(); ++k) {
     const multibody::ElasticJoint& joint = arm.arm.joints[static_cast<std::size_t>(k)];
     const multibody::TreeBody& body = tree.body(joint.body);
-    result["joints"].push_back({{"joint", joint.name}, {"link", body.name}, {"angle_deg", angles[k] / degree},
-                                {"link_mass_kg", body.inertia.mass}, {"motor_inertia_kg_m2", joint.motor_inertia},
+    result["joints"].push_back({{"joint", joint.name},
+                                {"link", body.name},
+                                {"angle_deg", angles[k] / degree},
+                                {"link_mass_kg", body.inertia.mass},
+                                {"motor_inertia_kg_m2", joint.motor_inertia},
                                 {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},
                                 {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
                                 {"drive", to_string(arm.drives[static_cast<std::size_t>(k)].mode)}});
@@ -101,13 +116,15 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
 
 std::string listed(const nlohmann::json& values) {
   std::string text;
-  for (const nlohmann::json& value : values) text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", value.get<double>());
+  for (const nlohmann::json& value : values)
+    text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", value.get<double>());
   return text.empty() ? "none" : text;
 }
 
 }  // namespace
 
-ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options, Console&) {
+ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose,
+                        const CommonOptions& options, Console&) {
   std::vector<numerics::Override> overrides;
   for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
@@ -116,26 +133,30 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
     std::cout << result.dump(1) << '\n';
     return ExitStatus::done;
   }
-  std::cout << fmt::format("{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
-                           arm.title, result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
-                           result["reach_m"].get<double>(), result["tip_m"][0].get<double>(),
-                           result["tip_m"][1].get<double>(), result["tip_m"][2].get<double>());
+  std::cout << fmt::format(
+      "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
+      arm.title, result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
+      result["reach_m"].get<double>(), result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(),
+      result["tip_m"][2].get<double>());
   std::cout << fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
                            "motor [kg m2]", "stiffness [N m/rad]", "drive");
   for (const nlohmann::json& joint : result["joints"]) {
     const double first = joint["stiffness_first_Nm_rad"], outer = joint["stiffness_outer_Nm_rad"];
-    std::cout << fmt::format("{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
-                             joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
-                             joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
-                             first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
-                             joint["drive"].get<std::string>());
+    std::cout << fmt::format(
+        "{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
+        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
+        joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
+        first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
+        joint["drive"].get<std::string>());
   }
-  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
+  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n",
+                           listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {
-    std::cout << fmt::format("  the same, large deflections  {}\n", listed(result["frequencies_locked_large_deflection_Hz"]));
+    std::cout << fmt::format("  the same, large deflections  {}\n",
+                             listed(result["frequencies_locked_large_deflection_Hz"]));
   }
-  std::cout << fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
-                           listed(result["frequencies_limp_Hz"]));
+  std::cout << fmt::format("  as driven      {}\n  limp           {}\n",
+                           listed(result["frequencies_driven_Hz"]), listed(result["frequencies_limp_Hz"]));
   return ExitStatus::done;
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the benchmarks and stores what they measured: benchmarks/record.py BUILD_DIRECTORY RESULT.json [--load LIMIT]
+"""Runs the benchmarks and stores what they measured: benchmarks/record.py BUILD_DIRECTORY RESULT.json [--load LIMIT] [PROGRAM...]
 
 BUILD_DIRECTORY is that of the release preset. Each benchmark runs five times and its median is stored, with processor,
 compiler and commit; names of the machine and of its folders are left out. Refuses a busy machine.

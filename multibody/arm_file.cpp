@@ -18,15 +18,19 @@ using numerics::TomlDocument;
 using numerics::TomlTable;
 
 constexpr double degree = std::numbers::pi / 180.0;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 constexpr Choice<StiffnessReading> readings[] = {{"continuous", StiffnessReading::continuous},
                                                  {"literal", StiffnessReading::literal}};
-constexpr Choice<DampingRate> damping_rates[] = {{"deflection", DampingRate::deflection}, {"motor", DampingRate::motor}};
+constexpr Choice<DampingRate> damping_rates[] = {{"deflection", DampingRate::deflection},
+                                                 {"motor", DampingRate::motor}};
 constexpr Choice<DriveMode> drive_modes[] = {
     {"locked", DriveMode::locked}, {"servo", DriveMode::servo}, {"limp", DriveMode::limp}};
 enum class Law { linear, piecewise, backlash };
-constexpr Choice<Law> laws[] = {{"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
+constexpr Choice<Law> laws[] = {
+    {"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
 enum class BaseKind { fixed, free };
 constexpr Choice<BaseKind> base_kinds[] = {{"fixed", BaseKind::fixed}, {"free", BaseKind::free}};
 
@@ -36,7 +40,8 @@ void know(const TomlTable& table, std::initializer_list<std::string_view> keys) 
 }
 
 /// A URDF file named by a key; nothing after a problem, which goes to the document.
-std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable& table, const std::filesystem::path& folder) {
+std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable& table,
+                                         const std::filesystem::path& folder) {
   const std::string name = table.text("urdf");
   if (name.empty()) return std::nullopt;
   try {
@@ -74,10 +79,11 @@ int frame_of(const TomlTable& table, std::string_view key, const Tree& tree) {
 
 std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   const auto law = table.choice("law", laws);
-  const auto rate = table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
+  const auto rate =
+      table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
   if (!law || !rate) {
-    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "stiffness_Nm_rad", "damping_Nms_rad",
-                 "half_gap_deg"});
+    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "stiffness_Nm_rad",
+                 "damping_Nms_rad", "half_gap_deg"});
     return std::nullopt;
   }
   std::vector<DeflectionPiece> pieces;
@@ -88,8 +94,10 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
     const auto damping = table.numbers("damping_Nms_deg", 2, 20, Range::from(0.0), 1.0 / degree);
     if (table.has("reading")) reading = table.choice("reading", readings);
     if (from.empty() || stiffness.empty() || damping.empty() || !reading) return std::nullopt;
-    if (stiffness.size() != from.size()) table.fail("stiffness_Nm_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
-    if (damping.size() != from.size()) table.fail("damping_Nms_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
+    if (stiffness.size() != from.size())
+      table.fail("stiffness_Nm_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
+    if (damping.size() != from.size())
+      table.fail("damping_Nms_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
     if (stiffness.size() != from.size() || damping.size() != from.size()) return std::nullopt;
     for (std::size_t i = 0; i < from.size(); ++i) {
       if (i == 0 ? from[0] != 0.0 : !(from[i] > from[i - 1])) {
@@ -101,7 +109,8 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   } else {
     const double stiffness = table.number("stiffness_Nm_rad", Range::above(0.0));
     const double damping = table.number("damping_Nms_rad", Range::from(0.0));
-    const double gap = *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
+    const double gap =
+        *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
     if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
     if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0});
     pieces.push_back({gap, stiffness, damping});
@@ -209,7 +218,8 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     }
   }
   const std::size_t count = description.joints.size();
-  if (whole && count == 0) root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
+  if (whole && count == 0)
+    root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
   for (const TomlTable& pose : root.tables("pose")) {
     ArmPose one;
     one.name = pose.text("name");
@@ -219,8 +229,9 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
       for (std::size_t k = 0; k < angles.size(); ++k) {
         const RobotJoint& joint = description.joints[k];
         if (angles[k] >= joint.lower - 1e-9 && angles[k] <= joint.upper + 1e-9) continue;
-        pose.fail_element("angles_deg", k, fmt::format("must be {:.4g} to {:.4g}, the limits of {}", joint.lower / degree,
-                                                       joint.upper / degree, joint.name));
+        pose.fail_element("angles_deg", k,
+                          fmt::format("must be {:.4g} to {:.4g}, the limits of {}", joint.lower / degree,
+                                      joint.upper / degree, joint.name));
       }
     } else {
       static_cast<void>(pose.has("angles_deg"));

@@ -26,8 +26,8 @@ struct ArmDescription {
   std::vector<RobotJoint> joints;  ///< the moving joints of the arm, one an elastic joint
   std::vector<Drive> drives;       ///< at rest, held where they are
   std::vector<ArmPose> poses;
-  int tip = 0;                     ///< frame
-  double arm_mass = 0.0;           ///< of the arm's own URDF [kg]
+  int tip = 0;            ///< frame
+  double arm_mass = 0.0;  ///< of the arm's own URDF [kg]
 
   /// Coordinates with the elastic joints at the given angles; a free base at the origin.
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& angles) const;

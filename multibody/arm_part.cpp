@@ -10,7 +10,9 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 // Unknowns with which the equations of a joint are coupled: its own row of motion, of the motor, and the works.
 constexpr int slots_per_joint = 17;
@@ -31,11 +33,12 @@ double TimedLoad::share(double time) const {
 /// Torques at a joint and their derivatives, in its present mode.
 struct ElasticArmPart::Terms {
   double deflection, deflection_rate, motor_rate;
-  double stiffness, damping;        // of the present branch
-  double torque;                    // of spring and damper on the motor
-  double motor_loss, motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
+  double stiffness, damping;  // of the present branch
+  double torque;              // of spring and damper on the motor
+  double motor_loss,
+      motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
   double drive, drive_by_angle, drive_by_rate;
-  double gear_damping;              // damping on the deflection rate, 0 where it acts on the motor
+  double gear_damping;  // damping on the deflection rate, 0 where it acts on the motor
 };
 
 ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
@@ -65,7 +68,8 @@ void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), numerics::DaeKind::differential, motion});
   motor_ = layout.add({"motor angle [rad]", {}, m, numerics::DaeKind::differential, motion});
   rate_ = layout.add({"motor rate [rad/s]", {}, m, numerics::DaeKind::differential, motion});
-  work_ = layout.add({"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
+  work_ = layout.add(
+      {"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
   if (base_ == BaseEquations::momentum) {
     momentum_ = layout.add({"momentum", {}, 6, numerics::DaeKind::differential, motion * arm_.tree.mass()});
   }
@@ -86,7 +90,8 @@ void ElasticArmPart::couple(std::vector<std::pair<int, int>>& entries) const {
   for (int k = 0; k < arm_.motors(); ++k) {
     const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
     for (const int row : {v_ + body.v_index, rate_ + k, work_, work_ + 2}) {
-      for (const int column : {q_ + body.q_index, v_ + body.v_index, motor_ + k, rate_ + k}) entries.emplace_back(row, column);
+      for (const int column : {q_ + body.q_index, v_ + body.v_index, motor_ + k, rate_ + k})
+        entries.emplace_back(row, column);
     }
     entries.emplace_back(motor_ + k, motor_ + k);
     entries.emplace_back(motor_ + k, rate_ + k);
@@ -100,17 +105,20 @@ void ElasticArmPart::couple(std::vector<std::pair<int, int>>& entries) const {
     for (int i = 0; i < 6; ++i) {
       entries.emplace_back(v_ + i, momentum_ + i);
       entries.emplace_back(momentum_ + i, momentum_ + i);
-      for (int j = 0; i < 3 && !loads_.empty() && j < arm_.tree.coordinates(); ++j) entries.emplace_back(momentum_ + i, q_ + j);
+      for (int j = 0; i < 3 && !loads_.empty() && j < arm_.tree.coordinates(); ++j)
+        entries.emplace_back(momentum_ + i, q_ + j);
     }
   }
 }
 
 void ElasticArmPart::bind(const numerics::SparseMatrix& pattern) {
-  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_, &work_by_v_,
-                      &momentum_slots_, &momentum_by_q_}) {
+  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_,
+                      &work_by_v_, &momentum_slots_, &momentum_by_q_}) {
     slots->clear();
   }
-  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) { slots.push_back(pattern.slot(i, j)); };
+  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) {
+    slots.push_back(pattern.slot(i, j));
+  };
   for (const TreeBody& body : arm_.tree.bodies()) {
     const int q = q_ + body.q_index, v = v_ + body.v_index;
     for (int i = 0; i < body.coordinates(); ++i) {
@@ -159,7 +167,8 @@ void ElasticArmPart::bind(const numerics::SparseMatrix& pattern) {
 
 double ElasticArmPart::inside(double time) const {
   const double margin = 1e-12 * (1.0 + std::abs(time));  // far below every time that matters
-  return std::clamp(time, interval_begin_ + margin, std::max(interval_begin_ + margin, interval_end_ - margin));
+  return std::clamp(time, interval_begin_ + margin,
+                    std::max(interval_begin_ + margin, interval_end_ - margin));
 }
 
 FrictionLaw ElasticArmPart::friction(int joint) const {
@@ -235,7 +244,8 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
       rows[q_ + body.q_index] -= v_values_[body.v_index];
     }
   }
-  rows.segment(v_, tree.velocities()) += inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
+  rows.segment(v_, tree.velocities()) +=
+      inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
   rows.segment(work_, 3) += point.rate.segment(work_, 3);
   if (base_ == BaseEquations::momentum) use_momentum(point, loaded, rows);
 
@@ -345,7 +355,8 @@ void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& valu
         derivatives_.position(i, j) += J.col(i).head<3>().dot(turned_M) + J.col(i).tail<3>().dot(turned_F);
       }
     }
-    // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates of coordinates,
+    // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates of
+    // coordinates,
     // and with the turn of the angular velocity by the axis.
     for (const TreeBody& body : tree.bodies()) {
       for (int l = 0; l < body.velocities(); ++l) {

@@ -16,8 +16,8 @@ namespace snare::multibody {
 struct TimedLoad {
   enum class Shape { constant, half_sine };
   int frame = 0;
-  Wrench peak;                        ///< moment about the frame's origin, force
-  double begin = 0.0, duration = 0.0; ///< [s], duration > 0
+  Wrench peak;                         ///< moment about the frame's origin, force
+  double begin = 0.0, duration = 0.0;  ///< [s], duration > 0
   Shape shape = Shape::half_sine;
 
   [[nodiscard]] double share(double time) const;  ///< of the peak [-]
@@ -40,7 +40,8 @@ struct ArmWork {
 /// How the motion of a free body that carries all others is written.
 enum class BaseEquations {
   newton_euler,  ///< balance of forces on it; other parts may add theirs to its rows
-  momentum       ///< momentum as an unknown, h' = loads; the base follows from h = P(q, v). Keeps h exactly.  theory.md (A.16)
+  /// momentum as an unknown, h' = loads; the base follows from h = P(q, v). Keeps h exactly.  theory.md (A.16)
+  momentum
 };
 /// `momentum` for a tree on one free body without gravity, else `newton_euler`.
 [[nodiscard]] BaseEquations best_base_equations(const Tree& tree);
@@ -51,9 +52,11 @@ struct ArmTolerances {
   double work = 1e-6;    ///< [J], > 0
 };
 
-/// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.                       theory.md (A.9), (A.14)
+/// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.                       theory.md (A.9),
+/// (A.14)
 ///
-/// Other parts attach to a frame of the arm: `body_row` gives the rows of the equations of motion, to which -J^T F is added
+/// Other parts attach to a frame of the arm: `body_row` gives the rows of the equations of motion, to which -J^T F
+/// is added
 /// for a wrench F with the frame's Jacobian of kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
 class ElasticArmPart : public numerics::DaePart {
  public:
@@ -100,8 +103,8 @@ class ElasticArmPart : public numerics::DaePart {
   /// Times that the integration must stop at: ends of courses and of loads.
   [[nodiscard]] std::vector<double> breaks() const;
 
-  [[nodiscard]] int coordinates() const { return q_; }   ///< first of the coordinates
-  [[nodiscard]] int velocities() const { return v_; }    ///< first of the velocities
+  [[nodiscard]] int coordinates() const { return q_; }  ///< first of the coordinates
+  [[nodiscard]] int velocities() const { return v_; }   ///< first of the velocities
   [[nodiscard]] int body_row(int velocity) const { return v_ + velocity; }
 
   static constexpr int events_per_joint = 6;
@@ -134,7 +137,8 @@ class ElasticArmPart : public numerics::DaePart {
   std::vector<Wrench> wrenches_;  // empty while no load acts
   Eigen::VectorXd q_values_, v_values_, a_values_;
 
-  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, joint_slots_, work_by_q_, work_by_v_, momentum_slots_, momentum_by_q_;
+  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, joint_slots_, work_by_q_, work_by_v_,
+      momentum_slots_, momentum_by_q_;
 };
 
 }  // namespace snare::multibody

@@ -6,7 +6,9 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// What an event function shows that is not watched.
 constexpr double never = 1.0;
@@ -57,7 +59,8 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
       }
     }
     if (drive.mode == DriveMode::servo && std::isfinite(drive.limit)) {
-      const double demand = drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
+      const double demand =
+          drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
       if (mode.saturated == 0) {
         g[4] = 1.0 - demand;
         g[5] = 1.0 + demand;
@@ -105,8 +108,12 @@ void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, con
     const int k = event / events_per_joint;
     JointMode& mode = modes_[at(k)];
     switch (event % events_per_joint) {
-      case 0: --mode.branch; break;
-      case 1: ++mode.branch; break;
+      case 0:
+        --mode.branch;
+        break;
+      case 1:
+        ++mode.branch;
+        break;
       case 2:
         if (mode.turning == 0) {
           mode.turning = 1;
@@ -116,9 +123,15 @@ void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, con
           mode.turning = std::abs(applied) <= friction(k).breakaway ? 0 : (applied > 0.0 ? 1 : -1);
         }
         break;
-      case 3: mode.turning = -1; break;
-      case 4: mode.saturated = mode.saturated == 0 ? 1 : 0; break;
-      case 5: mode.saturated = -1; break;
+      case 3:
+        mode.turning = -1;
+        break;
+      case 4:
+        mode.saturated = mode.saturated == 0 ? 1 : 0;
+        break;
+      case 5:
+        mode.saturated = -1;
+        break;
     }
   }
 }
@@ -151,7 +164,9 @@ ArmState ElasticArmPart::state(numerics::VectorView y) const {
           y.segment(motor_, arm_.motors()), y.segment(rate_, arm_.motors())};
 }
 
-ArmWork ElasticArmPart::work(numerics::VectorView y) const { return {y[work_], y[work_ + 1], y[work_ + 2]}; }
+ArmWork ElasticArmPart::work(numerics::VectorView y) const {
+  return {y[work_], y[work_ + 1], y[work_ + 2]};
+}
 
 void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate) {
   // Residual of a vanishing y' less the inertial terms gives every rate but the accelerations of the tree.
@@ -164,11 +179,14 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
   rate.segment(work_, 3) = -rows.segment(work_, 3);
   if (base_ == BaseEquations::momentum) rate.segment<6>(momentum_) = -rows.segment<6>(momentum_);
   rate.segment(motor_, arm_.motors()) = y.segment(rate_, arm_.motors());
-  for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  for (int k = 0; k < arm_.motors(); ++k)
+    rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
 
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(nv);
-  for (int k = 0; k < arm_.motors(); ++k) torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
-  rate.segment(v_, nv) = forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque, wrenches_, workspace_);
+  for (int k = 0; k < arm_.motors(); ++k)
+    torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
+  rate.segment(v_, nv) = forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque,
+                                          wrenches_, workspace_);
 }
 
 std::vector<double> ElasticArmPart::breaks() const {

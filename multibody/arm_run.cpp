@@ -8,15 +8,20 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 const char* name_of_event(int event) {
   switch (event % ElasticArmPart::events_per_joint) {
     case 0:
-    case 1: return "spring";
+    case 1:
+      return "spring";
     case 2:
-    case 3: return "friction";
-    default: return "servo limit";
+    case 3:
+      return "friction";
+    default:
+      return "servo limit";
   }
 }
 
@@ -30,7 +35,8 @@ class Run {
         system_({&part_}),
         ida_(system_, scenario.ida),
         y_(Eigen::VectorXd::Zero(system_.size())),
-        rate_(Eigen::VectorXd::Zero(system_.size())) {}
+        rate_(Eigen::VectorXd::Zero(system_.size())),
+        event_times_(scenario.arm.joints.size()) {}
 
   ArmHistory run() {
     part_.write_state(scenario_.initial, y_);
@@ -77,18 +83,39 @@ class Run {
         torque_reached_ = true;
         return true;
       }
+      if (thrashing(fallen.front() / ElasticArmPart::events_per_joint, ida_.time())) {
+        history_.report.termination = numerics::Termination::step_too_small;
+        history_.report.time = ida_.time();
+        history_.report.message =
+            "joint " + scenario_.arm.joints[at(fallen.front() / ElasticArmPart::events_per_joint)].name +
+            " stays at a jump of its law: a load between the torques on its two sides holds it there";
+        return false;
+      }
       y_ = ida_.y();
       for (const int event : fallen) {
-        history_.events.push_back({ida_.time(), event / ElasticArmPart::events_per_joint, name_of_event(event)});
+        history_.events.push_back(
+            {ida_.time(), event / ElasticArmPart::events_per_joint, name_of_event(event)});
       }
       part_.leave_modes(ida_.time(), y_, fallen);
       begin(ida_.time());
     }
   }
 
+  /// Between torques that point at a jump from both sides the motion ends there, which no sequence of modes
+  /// describes: the
+  /// events of that joint then crowd. A swing passes a jump some tens of times a second at most.
+  bool thrashing(int joint, double time) {
+    constexpr double window = 0.1;  // [s]
+    constexpr std::size_t too_many = 100;
+    std::vector<double>& times = event_times_[at(joint)];
+    times.push_back(time);
+    return times.size() > too_many && time - times[times.size() - 1 - too_many] < window;
+  }
+
   /// Modes that are over: those that IDA found, and those that were left from their very edge, where no sign changes.
   std::vector<int> fallen_events(bool found) {
-    constexpr double beyond = -1e-9;  // of functions that are scaled to one; far above the accuracy of a found event
+    constexpr double beyond =
+        -1e-9;  // of functions that are scaled to one; far above the accuracy of a found event
     event_values_.resize(at(system_.event_count()));
     system_.events({ida_.time(), ida_.y(), ida_.rate()}, event_values_);
     std::vector<int> fallen;
@@ -165,7 +192,8 @@ class Run {
     const double start = history_.samples.front().energy;
     double scale = 0.0, error = 0.0;
     for (const ArmSample& s : history_.samples) {
-      scale = std::max({scale, std::abs(s.energy), std::abs(s.work.motors), std::abs(s.work.loads), s.work.lost});
+      scale =
+          std::max({scale, std::abs(s.energy), std::abs(s.work.motors), std::abs(s.work.loads), s.work.lost});
       error = std::max(error, std::abs(s.energy - start - s.work.motors - s.work.loads + s.work.lost));
     }
     history_.energy_error = scale > 0.0 ? error / scale : 0.0;
@@ -180,6 +208,7 @@ class Run {
   std::size_t switch_ = 0;
   double next_sample_ = 0.0;
   std::vector<double> event_values_;
+  std::vector<std::vector<double>> event_times_;  // of each joint [s]
   bool torque_reached_ = false;
 };
 
@@ -188,7 +217,8 @@ class Run {
 ArmHistory simulate(const ArmScenario& scenario) {
   const int m = scenario.arm.motors();
   const auto fits = [m](const std::vector<Drive>& drives) { return static_cast<int>(drives.size()) == m; };
-  bool fit = fits(scenario.drives) && scenario.initial.motor.size() == m && scenario.initial.motor_rate.size() == m &&
+  bool fit = fits(scenario.drives) && scenario.initial.motor.size() == m &&
+             scenario.initial.motor_rate.size() == m &&
              scenario.initial.q.size() == scenario.arm.tree.coordinates() &&
              scenario.initial.v.size() == scenario.arm.tree.velocities();
   for (const DriveSwitch& change : scenario.switches) fit = fit && fits(change.drives) && change.joint < m;

@@ -14,11 +14,11 @@ namespace snare::multibody {
 struct ArmScenario {
   ElasticArm arm;
   ArmState initial;
-  std::vector<Drive> drives;             ///< at the start, one an elastic joint
-  std::vector<DriveSwitch> switches;     ///< in the order of their times
+  std::vector<Drive> drives;          ///< at the start, one an elastic joint
+  std::vector<DriveSwitch> switches;  ///< in the order of their times
   std::vector<TimedLoad> loads;
-  double begin = 0.0, end = 1.0;         ///< [s]
-  double sample = 0.01;                  ///< interval of the history [s], > 0
+  double begin = 0.0, end = 1.0;  ///< [s]
+  double sample = 0.01;           ///< interval of the history [s], > 0
   numerics::IdaOptions ida;
   ArmTolerances tolerances;
   /// Told every sample's time; false: stop.
@@ -26,20 +26,20 @@ struct ArmScenario {
 };
 
 struct ArmSample {
-  double time = 0.0;                     ///< [s]
+  double time = 0.0;  ///< [s]
   ArmState state;
-  Eigen::VectorXd deflection;            ///< of the elastic joints [rad]
-  Eigen::VectorXd joint_torque;          ///< of springs with their dampers, on the motors [N m]
-  Eigen::VectorXd drive_torque;          ///< [N m]
-  double energy = 0.0;                   ///< kinetic, potential, elastic [J]
+  Eigen::VectorXd deflection;    ///< of the elastic joints [rad]
+  Eigen::VectorXd joint_torque;  ///< of springs with their dampers, on the motors [N m]
+  Eigen::VectorXd drive_torque;  ///< [N m]
+  double energy = 0.0;           ///< kinetic, potential, elastic [J]
   ArmWork work;
-  Wrench momentum;                       ///< of the tree, about the world's origin
+  Wrench momentum;  ///< of the tree, about the world's origin
 };
 
 struct ArmEvent {
-  double time = 0.0;   ///< [s]
-  int joint = -1;      ///< -1: all
-  std::string what;    ///< "spring", "friction", "servo limit", "switch"
+  double time = 0.0;  ///< [s]
+  int joint = -1;     ///< -1: all
+  std::string what;   ///< "spring", "friction", "servo limit", "switch"
 };
 
 /// What came of it. On failure of the integration the samples reached so far are there.

@@ -9,7 +9,9 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 ArmScenario standing(const ArmDescription& description, const Eigen::VectorXd& angles, double end) {
   ArmScenario scenario;
@@ -29,21 +31,23 @@ ArmScenario standing(const ArmDescription& description, const Eigen::VectorXd& a
 
 }  // namespace
 
-ArmScenario joint_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint, double step, double end) {
+ArmScenario joint_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint,
+                       double step, double end) {
   ArmScenario scenario = standing(description, angles, end);
   scenario.initial.motor[joint] += step;
   for (Drive& drive : scenario.drives) drive = Drive::locked();
   return scenario;
 }
 
-ArmScenario commanded_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint, double step,
-                           double end) {
+ArmScenario commanded_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint,
+                           double step, double end) {
   ArmScenario scenario = standing(description, angles, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
     if (k != joint) scenario.drives[at(k)] = Drive::locked();
   }
   Drive& drive = scenario.drives[at(joint)];
-  if (drive.mode != DriveMode::servo) throw std::invalid_argument("the joint of a commanded step needs a servo");
+  if (drive.mode != DriveMode::servo)
+    throw std::invalid_argument("the joint of a commanded step needs a servo");
   drive.course.to = drive.course.from + step;
   return scenario;
 }
@@ -63,8 +67,8 @@ ArmScenario tip_impulse(const ArmDescription& description, const Eigen::VectorXd
   return scenario;
 }
 
-ArmScenario joint_motion(const ArmDescription& description, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
-                         double duration, double end) {
+ArmScenario joint_motion(const ArmDescription& description, const Eigen::VectorXd& from,
+                         const Eigen::VectorXd& to, double duration, double end) {
   ArmScenario scenario = standing(description, from, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
     Drive& drive = scenario.drives[at(k)];

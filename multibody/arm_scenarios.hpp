@@ -7,23 +7,25 @@
 
 namespace snare::multibody {
 
-/// The step test of one joint (Abiko et al., sec. 3.1): its motor jumps by `step` at the start and is then held by its brake,
-/// the other motors are locked; the link, at rest, finds its spring wound up by -step and swings.        theory.md (A.17)
+/// The step test of one joint (Abiko et al., sec. 3.1): its motor jumps by `step` at the start and is then held by
+/// its brake,
+/// the other motors are locked; the link, at rest, finds its spring wound up by -step and swings.        theory.md
+/// (A.17)
 /// joint: index; step [rad].
-[[nodiscard]] ArmScenario joint_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint,
-                                     double step, double end);
+[[nodiscard]] ArmScenario joint_step(const ArmDescription& description, const Eigen::VectorXd& angles,
+                                     int joint, double step, double end);
 
 /// The same with the motor driven by its servo to the new angle, as a command would.
-[[nodiscard]] ArmScenario commanded_step(const ArmDescription& description, const Eigen::VectorXd& angles, int joint,
-                                         double step, double end);
+[[nodiscard]] ArmScenario commanded_step(const ArmDescription& description, const Eigen::VectorXd& angles,
+                                         int joint, double step, double end);
 
 /// Who answers a push at the tip.
 enum class Hold { as_described, limp };
 
 /// An arm at rest, pushed at its tip by half a sine of force, in the world's axes.
 /// impulse: of the force [N s]; duration > 0 [s], from t = 0.
-[[nodiscard]] ArmScenario tip_impulse(const ArmDescription& description, const Eigen::VectorXd& angles, Hold hold,
-                                      const Eigen::Vector3d& impulse, double duration, double end);
+[[nodiscard]] ArmScenario tip_impulse(const ArmDescription& description, const Eigen::VectorXd& angles,
+                                      Hold hold, const Eigen::Vector3d& impulse, double duration, double end);
 
 /// The joints go from one pose to another under their servos; a free base answers.
 /// Throws std::invalid_argument when a joint has no servo.

@@ -33,7 +33,8 @@ enum class DampingRate {
 class DeflectionLaw {
  public:
   /// At least one piece, from 0 on, increasing. Throws std::invalid_argument.
-  explicit DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading = StiffnessReading::continuous,
+  explicit DeflectionLaw(std::vector<DeflectionPiece> pieces,
+                         StiffnessReading reading = StiffnessReading::continuous,
                          DampingRate damping_rate = DampingRate::deflection);
   [[nodiscard]] static DeflectionLaw linear(double stiffness, double damping);
   /// Play of +-half_gap, then a spring. half_gap > 0 [rad].

@@ -21,7 +21,9 @@ Drive Drive::locked() {
   return drive;
 }
 
-Drive Drive::limp() { return {}; }
+Drive Drive::limp() {
+  return {};
+}
 
 Drive Drive::holding(double angle, double proportional, double derivative, double limit) {
   Drive drive;
@@ -34,8 +36,9 @@ Drive Drive::holding(double angle, double proportional, double derivative, doubl
 }
 
 double Drive::demand(double time, double angle, double rate) const {
-  return mode == DriveMode::servo ? proportional * (course.angle(time) - angle) + derivative * (course.rate(time) - rate)
-                                  : 0.0;
+  return mode == DriveMode::servo
+             ? proportional * (course.angle(time) - angle) + derivative * (course.rate(time) - rate)
+             : 0.0;
 }
 
 }  // namespace snare::multibody

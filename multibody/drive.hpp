@@ -28,8 +28,8 @@ enum class DriveMode {
 
 struct Drive {
   DriveMode mode = DriveMode::limp;
-  double proportional = 0.0;  ///< kp [N m/rad], >= 0
-  double derivative = 0.0;    ///< kd [N m s/rad], >= 0
+  double proportional = 0.0;                               ///< kp [N m/rad], >= 0
+  double derivative = 0.0;                                 ///< kd [N m s/rad], >= 0
   double limit = std::numeric_limits<double>::infinity();  ///< [N m], > 0
   Course course;
 
@@ -44,10 +44,10 @@ struct Drive {
 
 /// All drives change at a time, or when the torque of a joint's spring first exceeds a size after that time.
 struct DriveSwitch {
-  double time = 0.0;                ///< [s]
-  int joint = -1;                   ///< -1: at the time itself
-  double torque = 0.0;              ///< [N m], > 0, with a joint
-  std::vector<Drive> drives;        ///< one an elastic joint
+  double time = 0.0;          ///< [s]
+  int joint = -1;             ///< -1: at the time itself
+  double torque = 0.0;        ///< [N m], > 0, with a joint
+  std::vector<Drive> drives;  ///< one an elastic joint
 };
 
 }  // namespace snare::multibody

@@ -8,14 +8,19 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// Velocity of the body against its joint's frame, in its own axes.
 Twist joint_motion(const TreeBody& body, const Eigen::VectorXd& v) {
   switch (body.joint) {
-    case JointKind::revolute: return {v[body.v_index] * body.axis, Eigen::Vector3d::Zero()};
-    case JointKind::prismatic: return {Eigen::Vector3d::Zero(), v[body.v_index] * body.axis};
-    case JointKind::free: return {v.segment<3>(body.v_index), v.segment<3>(body.v_index + 3)};
+    case JointKind::revolute:
+      return {v[body.v_index] * body.axis, Eigen::Vector3d::Zero()};
+    case JointKind::prismatic:
+      return {Eigen::Vector3d::Zero(), v[body.v_index] * body.axis};
+    case JointKind::free:
+      return {v.segment<3>(body.v_index), v.segment<3>(body.v_index + 3)};
   }
   return {};
 }
@@ -27,25 +32,36 @@ Twist velocity_product(const TreeBody& body, const Twist& V, const Eigen::Vector
       const Eigen::Vector3d w = v[body.v_index] * body.axis;
       return {V.angular.cross(w), V.linear.cross(w)};
     }
-    case JointKind::prismatic: return {Eigen::Vector3d::Zero(), V.angular.cross(v[body.v_index] * body.axis)};
-    case JointKind::free: return cross(V, joint_motion(body, v));
+    case JointKind::prismatic:
+      return {Eigen::Vector3d::Zero(), V.angular.cross(v[body.v_index] * body.axis)};
+    case JointKind::free:
+      return cross(V, joint_motion(body, v));
   }
   return {};
 }
 
 void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twist& V) {
   switch (body.joint) {
-    case JointKind::revolute: V.angular += v[body.v_index] * body.axis; break;
-    case JointKind::prismatic: V.linear += v[body.v_index] * body.axis; break;
-    case JointKind::free: V += joint_motion(body, v); break;
+    case JointKind::revolute:
+      V.angular += v[body.v_index] * body.axis;
+      break;
+    case JointKind::prismatic:
+      V.linear += v[body.v_index] * body.axis;
+      break;
+    case JointKind::free:
+      V += joint_motion(body, v);
+      break;
   }
 }
 
 Pose pose_in_parent(const TreeBody& body, const Eigen::VectorXd& q) {
   switch (body.joint) {
-    case JointKind::revolute: return {body.X_PJ.R * joint_pose(body, q).R, body.X_PJ.p};
-    case JointKind::prismatic: return {body.X_PJ.R, body.X_PJ.p + body.X_PJ.R * (q[body.q_index] * body.axis)};
-    case JointKind::free: return body.X_PJ * joint_pose(body, q);
+    case JointKind::revolute:
+      return {body.X_PJ.R * joint_pose(body, q).R, body.X_PJ.p};
+    case JointKind::prismatic:
+      return {body.X_PJ.R, body.X_PJ.p + body.X_PJ.R * (q[body.q_index] * body.axis)};
+    case JointKind::free:
+      return body.X_PJ * joint_pose(body, q);
   }
   return {};
 }
@@ -56,7 +72,8 @@ double along_axis(const TreeBody& body, const Wrench& f) {
 }
 
 Wrench apply(const ArticulatedInertia& inertia, const Twist& v) {
-  return {inertia.I * v.angular + inertia.H * v.linear, inertia.H.transpose() * v.angular + inertia.M * v.linear};
+  return {inertia.I * v.angular + inertia.H * v.linear,
+          inertia.H.transpose() * v.angular + inertia.M * v.linear};
 }
 
 /// The same inertia seen from the parent. After turning, with P = [p]x: H_P = H + P M, I_P = I - H P + P H_P^T.
@@ -219,7 +236,8 @@ const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd&
     left.I.noalias() -= U.moment * moment.transpose();
     left.H.noalias() -= U.moment * force.transpose();
     left.M.noalias() -= U.force * force.transpose();
-    const Wrench passed = workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
+    const Wrench passed =
+        workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
     const Pose& X = workspace.X_PB[at(i)];
     const ArticulatedInertia felt = to_outer(left, X);
     ArticulatedInertia& parent = workspace.articulated[at(body.parent)];
@@ -243,8 +261,7 @@ const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd&
       workspace.acceleration.segment<6>(body.v_index) = total - A.vector();
       A = {total.head<3>(), total.tail<3>()};
     } else {
-      const double rate =
-          (workspace.u[at(i)] - dot(A, workspace.U[at(i)])) / workspace.D[at(i)];
+      const double rate = (workspace.u[at(i)] - dot(A, workspace.U[at(i)])) / workspace.D[at(i)];
       workspace.acceleration[body.v_index] = rate;
       (body.joint == JointKind::revolute ? A.angular : A.linear) += rate * body.axis;
     }

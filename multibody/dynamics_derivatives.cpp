@@ -6,15 +6,23 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// Axis k of a body's joint as a motion in the world.
 Twist axis_in_world(const TreeBody& body, const Pose& X_WB, int k) {
   Twist S;
   switch (body.joint) {
-    case JointKind::revolute: S.angular = body.axis; break;
-    case JointKind::prismatic: S.linear = body.axis; break;
-    case JointKind::free: (k < 3 ? S.angular : S.linear) = Eigen::Vector3d::Unit(k % 3); break;
+    case JointKind::revolute:
+      S.angular = body.axis;
+      break;
+    case JointKind::prismatic:
+      S.linear = body.axis;
+      break;
+    case JointKind::free:
+      (k < 3 ? S.angular : S.linear) = Eigen::Vector3d::Unit(k % 3);
+      break;
   }
   return X_WB.to_outer(S);
 }
@@ -80,8 +88,10 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
     if (!wrenches.empty()) d.wrench_W[at(i)] -= X_WB.to_outer(wrenches[at(i)]);
   }
 
-  // Moving joint axis S_j moves all that it carries rigidly, and changes the velocities there by psi' = V_parent x S_j and
-  // the accelerations by psi'' = A_parent x S_j + V_parent x psi' (+ psi' x V), seen from the bodies. Each column therefore
+  // Moving joint axis S_j moves all that it carries rigidly, and changes the velocities there by psi' = V_parent x
+  // S_j and
+  // the accelerations by psi'' = A_parent x S_j + V_parent x psi' (+ psi' x V), seen from the bodies. Each column
+  // therefore
   // needs one wrench at its own body, which is felt by the joints below; the joints above feel their composite bodies'.
   d.position.setZero();
   d.velocity.setZero();
@@ -118,7 +128,7 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
       }
       // Row of this axis, columns of the joints below: their change of the motion in this body's composite.
       const Vector6 row_quadratic = quadratic_i.transpose() * S.vector();
-      
+
       for (int j = body.parent; j >= 0; j = tree.body(j).parent) {
         const TreeBody& bearer = tree.body(j);
         const bool rooted = bearer.parent < 0;
@@ -196,14 +206,16 @@ FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, con
   const Eigen::Matrix3d R = joint_pose(body, q).R;
   FreeRateDerivatives d{Eigen::Matrix<double, 7, 7>::Zero(), Eigen::Matrix<double, 7, 6>::Zero()};
   // p' = R v, and a turn dtheta of the body changes R v by R (dtheta x v).
-  d.by_coordinates.topRightCorner<3, 4>() = -R * skew(linear) * free_coordinate_motion(body, q).topRightCorner<3, 4>();
+  d.by_coordinates.topRightCorner<3, 4>() =
+      -R * skew(linear) * free_coordinate_motion(body, q).topRightCorner<3, 4>();
   d.by_velocities.topRightCorner<3, 3>() = R;
   // w' = -u.omega / 2, u' = (w omega + u x omega) / 2.
   d.by_coordinates.block<1, 3>(3, 4) = -0.5 * omega.transpose();
   d.by_coordinates.block<3, 1>(4, 3) = 0.5 * omega;
   d.by_coordinates.block<3, 3>(4, 4) = -0.5 * skew(omega);
   d.by_velocities.block<1, 3>(3, 0) = -0.5 * q.segment<3>(i + 4).transpose();
-  d.by_velocities.block<3, 3>(4, 0) = 0.5 * (q[i + 3] * Eigen::Matrix3d::Identity() + skew(q.segment<3>(i + 4)));
+  d.by_velocities.block<3, 3>(4, 0) =
+      0.5 * (q[i + 3] * Eigen::Matrix3d::Identity() + skew(q.segment<3>(i + 4)));
   return d;
 }
 

@@ -13,15 +13,16 @@ namespace snare::multibody {
 struct InverseDynamicsDerivatives {
   explicit InverseDynamicsDerivatives(const Tree& tree);
 
-  Eigen::MatrixXd position;      ///< d tau / d(motion of the coordinates), (nv x nv): along velocities, as `moved` moves q
-  Eigen::MatrixXd velocity;      ///< d tau / d v, (nv x nv)
-  Eigen::MatrixXd mass;          ///< d tau / d v' = H(q), (nv x nv)
+  Eigen::MatrixXd
+      position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities, as `moved` moves q
+  Eigen::MatrixXd velocity;  ///< d tau / d v, (nv x nv)
+  Eigen::MatrixXd mass;      ///< d tau / d v' = H(q), (nv x nv)
 
   Kinematics kinematics;
-  std::vector<Twist> V_W, A_W;                ///< of the bodies, in the world
-  std::vector<SpatialInertia> inertia_W;      ///< of the bodies with what they carry, in the world
-  std::vector<Matrix6> quadratic_W;           ///< 2 B: of the velocities' part, likewise
-  std::vector<Wrench> wrench_W;               ///< through the joints
+  std::vector<Twist> V_W, A_W;            ///< of the bodies, in the world
+  std::vector<SpatialInertia> inertia_W;  ///< of the bodies with what they carry, in the world
+  std::vector<Matrix6> quadratic_W;       ///< 2 B: of the velocities' part, likewise
+  std::vector<Wrench> wrench_W;           ///< through the joints
 };
 
 /// Derivatives of `inverse_dynamics` with wrenches that move with their bodies.                      theory.md (A.8)
@@ -32,26 +33,31 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
                                                                  BodyWrenches wrenches,
                                                                  InverseDynamicsDerivatives& derivatives);
 
-/// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md (A.8)
+/// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md
+/// (A.8)
 struct MomentumDerivatives {
   Eigen::Matrix<double, 6, Eigen::Dynamic> position;  ///< along velocities, as `moved` moves q
   Eigen::Matrix<double, 6, Eigen::Dynamic> velocity;
 };
 /// From what `differentiate_inverse_dynamics` left in its storage.
-[[nodiscard]] MomentumDerivatives differentiate_momentum(const Tree& tree, const InverseDynamicsDerivatives& derivatives);
+[[nodiscard]] MomentumDerivatives differentiate_momentum(const Tree& tree,
+                                                         const InverseDynamicsDerivatives& derivatives);
 
-/// Motion of the coordinates as the velocities count it, for a change of the coordinates: (nv x nq), the left inverse of
+/// Motion of the coordinates as the velocities count it, for a change of the coordinates: (nv x nq), the left
+/// inverse of
 /// N(q) in q' = N(q) v. The derivative with respect to q itself is `position` times this.
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);
 /// The block of one body on a free joint.
-[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q);
+[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body,
+                                                                 const Eigen::VectorXd& q);
 
 /// Derivatives of `free_coordinate_rate`.
 struct FreeRateDerivatives {
   Eigen::Matrix<double, 7, 7> by_coordinates;
   Eigen::Matrix<double, 7, 6> by_velocities;
 };
-[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body,
+                                                                     const Eigen::VectorXd& q,
                                                                      const Eigen::VectorXd& v);
 
 }  // namespace snare::multibody

@@ -16,17 +16,18 @@ namespace snare::multibody {
 /// A motor that turns a joint through an elastic gear; all of it on the output side.           theory.md (A.9)
 struct ElasticJoint {
   std::string name;
-  int body = 0;                  ///< of the tree, on a revolute or prismatic joint
-  double motor_inertia = 0.0;    ///< B = (gear ratio)^2 times that of the rotor [kg m^2], > 0
+  int body = 0;                ///< of the tree, on a revolute or prismatic joint
+  double motor_inertia = 0.0;  ///< B = (gear ratio)^2 times that of the rotor [kg m^2], > 0
   DeflectionLaw spring = DeflectionLaw::linear(0.0, 0.0);
   FrictionLaw friction;
-  double back_drive = 0.0;       ///< added to the dry friction while limp [N m], >= 0
+  double back_drive = 0.0;  ///< added to the dry friction while limp [N m], >= 0
 };
 
 /// A manipulator whose joints are elastic, in the two-mass form of Spong 1987. Constants only.   theory.md (A.9)
 ///
 ///   H(q) q'' + c(q, q') + T(q - qm, .) = J^T F         B qm'' + D qm' + friction - T = tau
-/// Joints without an entry swing freely (a free base among them). The turning of the rotors with the links is left out, as
+/// Joints without an entry swing freely (a free base among them). The turning of the rotors with the links is left
+/// out, as
 /// there: the inertia of a rotor counts against its own link only.
 struct ElasticArm {
   Tree tree;
@@ -37,7 +38,7 @@ struct ElasticArm {
 
 /// Coordinates of links and motors, and their rates.
 struct ArmState {
-  Eigen::VectorXd q, v;          ///< of the tree
+  Eigen::VectorXd q, v;               ///< of the tree
   Eigen::VectorXd motor, motor_rate;  ///< qm [rad], qm' [rad/s]
 };
 

@@ -11,7 +11,8 @@ double FrictionLaw::torque(int direction, double velocity) const {
 
 double FrictionLaw::slope(int direction, double velocity) const {
   const double ratio = velocity / stribeck_velocity;
-  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity + viscous;
+  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity +
+         viscous;
 }
 
 FrictionLaw FrictionLaw::with_back_drive(double torque) const {

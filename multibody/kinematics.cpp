@@ -6,9 +6,12 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
-/// Calls `each(column, S)` with the axis of every velocity that moves the frame's body, as a motion in the world, and the
+/// Calls `each(column, S)` with the axis of every velocity that moves the frame's body, as a motion in the world,
+/// and the
 /// velocity of the body that carries the axis.
 template <class Each>
 void for_axes(const Tree& tree, const Kinematics& kinematics, int body, const Each& each) {
@@ -16,8 +19,12 @@ void for_axes(const Tree& tree, const Kinematics& kinematics, int body, const Ea
     const TreeBody& b = tree.body(i);
     const Pose& X_WB = kinematics.X_WB[at(i)];
     switch (b.joint) {
-      case JointKind::revolute: each(b.v_index, i, X_WB.to_outer(Twist{b.axis, Eigen::Vector3d::Zero()})); break;
-      case JointKind::prismatic: each(b.v_index, i, X_WB.to_outer(Twist{Eigen::Vector3d::Zero(), b.axis})); break;
+      case JointKind::revolute:
+        each(b.v_index, i, X_WB.to_outer(Twist{b.axis, Eigen::Vector3d::Zero()}));
+        break;
+      case JointKind::prismatic:
+        each(b.v_index, i, X_WB.to_outer(Twist{Eigen::Vector3d::Zero(), b.axis}));
+        break;
       case JointKind::free:
         for (int k = 0; k < 3; ++k) {
           const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k);
@@ -31,7 +38,8 @@ void for_axes(const Tree& tree, const Kinematics& kinematics, int body, const Ea
 
 }  // namespace
 
-Kinematics::Kinematics(const Tree& tree) : X_PB(at(tree.size())), X_WB(at(tree.size())), V_B(at(tree.size())) {}
+Kinematics::Kinematics(const Tree& tree)
+    : X_PB(at(tree.size())), X_WB(at(tree.size())), V_B(at(tree.size())) {}
 
 void place(const Tree& tree, const Eigen::VectorXd& q, Kinematics& kinematics) {
   assert(q.size() == tree.coordinates());
@@ -49,8 +57,12 @@ void set_moving(const Tree& tree, const Eigen::VectorXd& v, Kinematics& kinemati
     const TreeBody& body = tree.body(i);
     Twist V = body.parent < 0 ? Twist{} : kinematics.X_PB[at(i)].to_inner(kinematics.V_B[at(body.parent)]);
     switch (body.joint) {
-      case JointKind::revolute: V.angular += v[body.v_index] * body.axis; break;
-      case JointKind::prismatic: V.linear += v[body.v_index] * body.axis; break;
+      case JointKind::revolute:
+        V.angular += v[body.v_index] * body.axis;
+        break;
+      case JointKind::prismatic:
+        V.linear += v[body.v_index] * body.axis;
+        break;
       case JointKind::free:
         V.angular += v.segment<3>(body.v_index);
         V.linear += v.segment<3>(body.v_index + 3);
@@ -137,7 +149,8 @@ BodyWrench wrench_on_frame(const Tree& tree, int frame, const Wrench& F_F) {
   return {f.body, f.X_BF.to_outer(F_F)};
 }
 
-BodyWrench world_wrench_on_frame(const Tree& tree, const Kinematics& kinematics, int frame, const Wrench& F_W) {
+BodyWrench world_wrench_on_frame(const Tree& tree, const Kinematics& kinematics, int frame,
+                                 const Wrench& F_W) {
   const Eigen::Matrix3d R = frame_pose(tree, kinematics, frame).R;
   return wrench_on_frame(tree, frame, {R.transpose() * F_W.moment, R.transpose() * F_W.force});
 }

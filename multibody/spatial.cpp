@@ -2,7 +2,8 @@
 
 namespace snare::multibody {
 
-SpatialInertia SpatialInertia::about_centre(double mass, const Eigen::Vector3d& centre, const Eigen::Matrix3d& inertia) {
+SpatialInertia SpatialInertia::about_centre(double mass, const Eigen::Vector3d& centre,
+                                            const Eigen::Matrix3d& inertia) {
   // Parallel axes: I_O = I_C - m [c]x [c]x.
   const Eigen::Matrix3d c = skew(centre);
   return {mass, mass * centre, inertia - mass * c * c};

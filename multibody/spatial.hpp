@@ -17,7 +17,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Spatial motion: angular velocity and the velocity of the body's point that is at the origin.   theory.md (A.1)
 /// Velocities [rad/s, m/s], accelerations [rad/s^2, m/s^2] or joint axes [rad, m per unit of the coordinate].
-/// A spatial acceleration is the rate of the spatial velocity: its linear part is p'' - w x p', Featherstone 2008, sec. 2.11.
+/// A spatial acceleration is the rate of the spatial velocity: its linear part is p'' - w x p', Featherstone 2008,
+/// sec. 2.11.
 struct Twist {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();
@@ -48,13 +49,21 @@ struct Wrench {
   [[nodiscard]] Vector6 vector() const { return (Vector6() << moment, force).finished(); }
 };
 
-[[nodiscard]] inline Twist operator+(Twist a, const Twist& b) { return a += b; }
+[[nodiscard]] inline Twist operator+(Twist a, const Twist& b) {
+  return a += b;
+}
 [[nodiscard]] inline Twist operator-(const Twist& a, const Twist& b) {
   return {a.angular - b.angular, a.linear - b.linear};
 }
-[[nodiscard]] inline Twist operator*(double s, const Twist& a) { return {s * a.angular, s * a.linear}; }
-[[nodiscard]] inline Wrench operator+(Wrench a, const Wrench& b) { return a += b; }
-[[nodiscard]] inline Wrench operator-(Wrench a, const Wrench& b) { return a -= b; }
+[[nodiscard]] inline Twist operator*(double s, const Twist& a) {
+  return {s * a.angular, s * a.linear};
+}
+[[nodiscard]] inline Wrench operator+(Wrench a, const Wrench& b) {
+  return a += b;
+}
+[[nodiscard]] inline Wrench operator-(Wrench a, const Wrench& b) {
+  return a -= b;
+}
 
 /// Power of a wrench in a motion [W].
 [[nodiscard]] inline double dot(const Twist& v, const Wrench& f) {
@@ -99,16 +108,17 @@ struct Pose {
 
 /// Mass, first moment and moments of inertia of a rigid body about the origin of a frame.          theory.md (A.2)
 struct SpatialInertia {
-  double mass = 0.0;                                             ///< [kg]
-  Eigen::Vector3d first_moment = Eigen::Vector3d::Zero();        ///< mass times centre of mass [kg m]
-  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();          ///< about the origin, symmetric [kg m^2]
+  double mass = 0.0;                                       ///< [kg]
+  Eigen::Vector3d first_moment = Eigen::Vector3d::Zero();  ///< mass times centre of mass [kg m]
+  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();    ///< about the origin, symmetric [kg m^2]
 
   /// From the centre of mass in the frame [m] and the inertia about it, in the frame's axes [kg m^2].
   [[nodiscard]] static SpatialInertia about_centre(double mass, const Eigen::Vector3d& centre,
                                                    const Eigen::Matrix3d& inertia);
   /// Momentum of the motion v, or the wrench that gives the acceleration v at rest.
   [[nodiscard]] Wrench operator*(const Twist& v) const {
-    return {rotational * v.angular + first_moment.cross(v.linear), mass * v.linear - first_moment.cross(v.angular)};
+    return {rotational * v.angular + first_moment.cross(v.linear),
+            mass * v.linear - first_moment.cross(v.angular)};
   }
   /// The same body seen from A, this being seen from B.
   [[nodiscard]] SpatialInertia to_outer(const Pose& X_AB) const;

@@ -16,7 +16,8 @@ namespace snare::multibody {
 /// frame, and the velocities omega (3) [rad/s] and v (3) [m/s] of the body in its own axes.          theory.md (A.3)
 enum class JointKind { revolute, prismatic, free };
 
-/// A moving body and the joint that carries it. At zero of a revolute or prismatic joint the body's frame is the joint's.
+/// A moving body and the joint that carries it. At zero of a revolute or prismatic joint the body's frame is the
+/// joint's.
 struct TreeBody {
   std::string name;
   int parent = -1;  ///< index of the body that carries it; -1: the world
@@ -40,7 +41,8 @@ struct TreeFrame {
 
 /// Rigid bodies in an open tree: constants only. Parents come before children.
 ///
-/// What a fixed joint holds becomes part of the body that carries it: its inertia is added and its frame is kept by name.
+/// What a fixed joint holds becomes part of the body that carries it: its inertia is added and its frame is kept by
+/// name.
 /// Every body's frame is also a named frame. Frame 0 is the world, called "world".
 class Tree {
  public:
@@ -48,9 +50,10 @@ class Tree {
 
   /// Adds a body on a joint whose frame has the pose X_FJ in an existing frame; the axis is made a unit vector. Returns
   /// the index of the body's frame. Throws std::invalid_argument for a name that is taken, or no axis.
-  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis, const Pose& X_FJ,
-                 const SpatialInertia& inertia);
-  /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its mass is nothing.
+  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
+                 const Pose& X_FJ, const SpatialInertia& inertia);
+  /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its mass is
+  /// nothing.
   int add_fixed(int frame, const std::string& name, const Pose& X_FB, const SpatialInertia& inertia = {});
 
   [[nodiscard]] const std::vector<TreeBody>& bodies() const { return bodies_; }
@@ -89,14 +92,16 @@ struct TreeState {
 [[nodiscard]] Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q);
 
 /// q' = N(q) v, with the unit quaternion's rate 1/2 quat * (0, omega).                               theory.md (A.3)
-[[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v);
+[[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q,
+                                              const Eigen::VectorXd& v);
 
 /// The same of one body on a free joint.
 [[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                const Eigen::VectorXd& v);
 
 /// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come out unit.
-[[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time);
+[[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                    double time);
 
 /// Divides the quaternions by their norms.
 void normalise(const Tree& tree, Eigen::VectorXd& q);

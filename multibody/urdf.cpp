@@ -49,10 +49,14 @@ SpatialInertia to_inertia(const urdf::Link& link) {
 std::optional<JointKind> to_kind(const urdf::Joint& joint) {
   switch (joint.type) {
     case urdf::Joint::REVOLUTE:
-    case urdf::Joint::CONTINUOUS: return JointKind::revolute;
-    case urdf::Joint::PRISMATIC: return JointKind::prismatic;
-    case urdf::Joint::FLOATING: return JointKind::free;
-    default: return std::nullopt;
+    case urdf::Joint::CONTINUOUS:
+      return JointKind::revolute;
+    case urdf::Joint::PRISMATIC:
+      return JointKind::prismatic;
+    case urdf::Joint::FLOATING:
+      return JointKind::free;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -131,7 +135,7 @@ void add_robot(Tree& tree, int frame, RootJoint root, const RobotDescription& ro
     const RobotLink& link = robot.links[i];
     if (i == 0) {
       if (root == RootJoint::free) {
-        tree.add_moving(frame, link.name, JointKind::free, {}, {}, link.inertia);
+        tree.add_moving(frame, link.name, JointKind::free, Eigen::Vector3d::UnitZ(), {}, link.inertia);
       } else {
         tree.add_fixed(frame, link.name, {}, link.inertia);
       }

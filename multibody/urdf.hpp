@@ -37,14 +37,16 @@ struct RobotDescription {
   std::vector<RobotJoint> joints;  ///< joint i carries link i + 1
 };
 
-/// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names, numbers, inertias
+/// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names, numbers,
+/// inertias
 /// that no body has, links that nothing carries, loops. docs/arm_files.md lists what is checked.
 [[nodiscard]] RobotDescription read_urdf(const std::filesystem::path& file);
 /// The same from text in memory; `file` stands in messages.
 [[nodiscard]] RobotDescription parse_urdf(const std::string& file, const std::string& text);
 
 /// What is wrong with the text, in the order of the lines. Empty: urdfdom may read it.
-[[nodiscard]] std::vector<numerics::InputProblem> check_urdf(const std::string& file, const std::string& text);
+[[nodiscard]] std::vector<numerics::InputProblem> check_urdf(const std::string& file,
+                                                             const std::string& text);
 
 /// How the root link is joined to the frame that it is put on.
 enum class RootJoint { fixed, free };

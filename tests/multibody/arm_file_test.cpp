@@ -48,8 +48,10 @@ TEST(ArmFile, ThePoseOfAUrdfIsRollPitchYaw) {
   // A link turned by 90 deg about z, then one metre along its own x.
   const std::string text =
       "<robot name='r'><link name='a'/><link name='b'/>"
-      "<joint name='j' type='fixed'><parent link='a'/><child link='b'/><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/></joint>"
-      "<link name='c'/><joint name='k' type='fixed'><parent link='b'/><child link='c'/><origin xyz='1 0 0'/></joint></robot>";
+      "<joint name='j' type='fixed'><parent link='a'/><child link='b'/><origin xyz='1 2 3' rpy='0 0 "
+      "1.5707963267948966'/></joint>"
+      "<link name='c'/><joint name='k' type='fixed'><parent link='b'/><child link='c'/><origin xyz='1 0 "
+      "0'/></joint></robot>";
   multibody::Tree tree;
   multibody::add_robot(tree, 0, multibody::RootJoint::fixed, multibody::parse_urdf("r.urdf", text));
   const Eigen::Vector3d p = tree.frame(tree.find_frame("c")).X_BF.p;
@@ -59,8 +61,9 @@ TEST(ArmFile, ThePoseOfAUrdfIsRollPitchYaw) {
 TEST(ArmFile, HeldSsrmsWithItsCapacityIsNearTheShuttlesFrequency) {
   auto arm = shipped("ssrms_like.toml");
   const int frame = arm.tip;
-  arm.arm.tree.add_fixed(frame, "load", {}, multibody::SpatialInertia::about_centre(116000.0, {3.0, 0.0, 0.0},
-                                                                                   1e6 * Eigen::Matrix3d::Identity()));
+  arm.arm.tree.add_fixed(
+      frame, "load", {},
+      multibody::SpatialInertia::about_centre(116000.0, {3.0, 0.0, 0.0}, 1e6 * Eigen::Matrix3d::Identity()));
   const auto modes = multibody::natural_modes(arm.arm, arm.coordinates(arm.poses[0].angles),
                                               std::vector<multibody::Drive>(7, multibody::Drive::locked()));
   EXPECT_GT(modes[0].frequency, 0.01);  // the stiffness is assumed: order of magnitude only

@@ -121,7 +121,8 @@ TEST(ArmScenarios, FreeBaseAnswersTheArmAndKeepsTheMomentum) {
   multibody::Kinematics before(arm.arm.tree), after(arm.arm.tree);
   multibody::place(arm.arm.tree, first.state.q, before);
   multibody::place(arm.arm.tree, last.state.q, after);
-  const Eigen::Vector3d moved = multibody::centre_of_mass(arm.arm.tree, after) - multibody::centre_of_mass(arm.arm.tree, before);
+  const Eigen::Vector3d moved =
+      multibody::centre_of_mass(arm.arm.tree, after) - multibody::centre_of_mass(arm.arm.tree, before);
   const double base = (last.state.q.head<3>() - first.state.q.head<3>()).norm();
   EXPECT_GT(base, 1e-3);
   EXPECT_LT(moved.norm(), 1e-6 * base);  // a momentum of zero, integrated at 1e-7

@@ -30,8 +30,12 @@ class DartTree {
         joint.mT_ParentBodyToJoint = X;
       };
       switch (b.joint) {
-        case PlainBody::Joint::fixed: add<WeldJoint>(parent, common, WeldJoint::Properties(), body); break;
-        case PlainBody::Joint::free: add<FreeJoint>(parent, common, FreeJoint::Properties(), body); break;
+        case PlainBody::Joint::fixed:
+          add<WeldJoint>(parent, common, WeldJoint::Properties(), body);
+          break;
+        case PlainBody::Joint::free:
+          add<FreeJoint>(parent, common, FreeJoint::Properties(), body);
+          break;
         case PlainBody::Joint::revolute: {
           RevoluteJoint::Properties joint;
           joint.mAxis = b.axis;

@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 
-// Against DART, which shares no code with ours. Both solve problems of order one (condition of the mass matrix up to some
+// Against DART, which shares no code with ours. Both solve problems of order one (condition of the mass matrix up to
+// some
 // 1e4) in double precision: 1e-10 is above what rounding leaves, and below any error of a formula.
 
 namespace snare {
@@ -26,7 +27,8 @@ Eigen::Vector3d moment_of_mass(const test::PlainTree& plain, test::DartTree& dar
 
 Eigen::Vector3d linear_momentum(const test::PlainTree& plain, test::DartTree& dart) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < plain.bodies.size(); ++i) sum += plain.bodies[i].mass * dart.body(i).getCOMLinearVelocity();
+  for (std::size_t i = 0; i < plain.bodies.size(); ++i)
+    sum += plain.bodies[i].mass * dart.body(i).getCOMLinearVelocity();
   return sum;
 }
 
@@ -55,15 +57,19 @@ void compare_random_trees(Base base, unsigned seed) {
     dart.body(loaded).setExtTorque(load.moment, false);
 
     multibody::DynamicsWorkspace workspace(tree);
-    EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace), dart.skeleton().getMassMatrix()), 1e-10);
-    const Eigen::VectorXd bias = multibody::inverse_dynamics(tree, state.q, state.v, Eigen::VectorXd::Zero(tree.velocities()),
-                                                             wrenches, workspace);
+    EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace),
+                                        dart.skeleton().getMassMatrix()),
+              1e-10);
+    const Eigen::VectorXd bias = multibody::inverse_dynamics(
+        tree, state.q, state.v, Eigen::VectorXd::Zero(tree.velocities()), wrenches, workspace);
     EXPECT_LT(test::relative_difference(
                   bias, dart.skeleton().getCoriolisAndGravityForces() - dart.skeleton().getExternalForces()),
               1e-10);
-    const Eigen::VectorXd acceleration = multibody::forward_dynamics(tree, state.q, state.v, torque, wrenches, workspace);
+    const Eigen::VectorXd acceleration =
+        multibody::forward_dynamics(tree, state.q, state.v, torque, wrenches, workspace);
     EXPECT_LT(test::relative_difference(acceleration, dart.forward_dynamics(torque)), 1e-10);
-    const Eigen::VectorXd inverse = multibody::inverse_dynamics(tree, state.q, state.v, acceleration, wrenches, workspace);
+    const Eigen::VectorXd inverse =
+        multibody::inverse_dynamics(tree, state.q, state.v, acceleration, wrenches, workspace);
     EXPECT_LT(test::relative_difference(inverse, torque), 1e-10);
 
     const multibody::Pose pose = multibody::frame_pose(tree, kinematics, frame);
@@ -71,16 +77,22 @@ void compare_random_trees(Base base, unsigned seed) {
     EXPECT_LT(test::relative_difference(pose.R, dart_pose.linear()), 1e-10);
     EXPECT_LT(test::relative_difference(pose.p, dart_pose.translation()), 1e-10);
     const multibody::Matrix6X jacobian = multibody::frame_jacobian(tree, kinematics, frame);
-    EXPECT_LT(test::relative_difference(jacobian, dart.skeleton().getWorldJacobian(&dart.body(loaded))), 1e-10);
+    EXPECT_LT(test::relative_difference(jacobian, dart.skeleton().getWorldJacobian(&dart.body(loaded))),
+              1e-10);
     EXPECT_LT(test::relative_difference(multibody::frame_jacobian_rate(tree, kinematics, frame),
                                         dart.skeleton().getJacobianClassicDeriv(&dart.body(loaded))),
               1e-10);
-    EXPECT_LT(test::relative_difference(jacobian * state.v, dart.body(loaded).getSpatialVelocity(
-                                                                dart::dynamics::Frame::World(), dart::dynamics::Frame::World())),
+    EXPECT_LT(test::relative_difference(jacobian * state.v,
+                                        dart.body(loaded).getSpatialVelocity(dart::dynamics::Frame::World(),
+                                                                             dart::dynamics::Frame::World())),
               1e-10);
 
-    EXPECT_LT(std::abs(multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0), 1e-10);
-    EXPECT_LT(std::abs(multibody::potential_energy(tree, kinematics) + moment_of_mass(plain, dart).dot(plain.gravity)), 1e-9);
+    EXPECT_LT(
+        std::abs(multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0),
+        1e-10);
+    EXPECT_LT(std::abs(multibody::potential_energy(tree, kinematics) +
+                       moment_of_mass(plain, dart).dot(plain.gravity)),
+              1e-9);
     const multibody::Wrench momentum = multibody::momentum(tree, kinematics);
     EXPECT_LT(test::relative_difference(momentum.force, linear_momentum(plain, dart)), 1e-10);
   }
@@ -112,14 +124,19 @@ TEST(Dart, AgreesOnTrajectories) {
       dart.set(tree, {q, v});
       return dart.forward_dynamics(Eigen::VectorXd::Zero(tree.velocities()));
     };
-    const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) { return multibody::coordinate_rate(tree, q, v); };
+    const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
+      return multibody::coordinate_rate(tree, q, v);
+    };
     const int steps = 1000;
     const double h = run.end / steps;
     for (int i = 0; i < steps; ++i) {
       const Eigen::VectorXd q1 = rate(state.q, state.v), a1 = acceleration(state.q, state.v);
-      const Eigen::VectorXd v2 = state.v + 0.5 * h * a1, s2 = state.q + 0.5 * h * q1, q2 = rate(s2, v2), a2 = acceleration(s2, v2);
-      const Eigen::VectorXd v3 = state.v + 0.5 * h * a2, s3 = state.q + 0.5 * h * q2, q3 = rate(s3, v3), a3 = acceleration(s3, v3);
-      const Eigen::VectorXd v4 = state.v + h * a3, s4 = state.q + h * q3, q4 = rate(s4, v4), a4 = acceleration(s4, v4);
+      const Eigen::VectorXd v2 = state.v + 0.5 * h * a1, s2 = state.q + 0.5 * h * q1, q2 = rate(s2, v2),
+                            a2 = acceleration(s2, v2);
+      const Eigen::VectorXd v3 = state.v + 0.5 * h * a2, s3 = state.q + 0.5 * h * q2, q3 = rate(s3, v3),
+                            a3 = acceleration(s3, v3);
+      const Eigen::VectorXd v4 = state.v + h * a3, s4 = state.q + h * q3, q4 = rate(s4, v4),
+                            a4 = acceleration(s4, v4);
       state.q += h / 6.0 * (q1 + 2.0 * q2 + 2.0 * q3 + q4);
       state.v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
     }
@@ -130,7 +147,11 @@ TEST(Dart, AgreesOnTrajectories) {
   }
 }
 
-TEST(Dart, AgreesOnTreesOnTheWorld) { compare_random_trees(Base::on_the_world, 1); }
-TEST(Dart, AgreesOnFloatingTrees) { compare_random_trees(Base::floating, 2); }
+TEST(Dart, AgreesOnTreesOnTheWorld) {
+  compare_random_trees(Base::on_the_world, 1);
+}
+TEST(Dart, AgreesOnFloatingTrees) {
+  compare_random_trees(Base::floating, 2);
+}
 
 }  // namespace snare

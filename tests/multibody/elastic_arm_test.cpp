@@ -16,7 +16,8 @@ using test::Base;
 Eigen::MatrixXd dense(const numerics::SparseMatrix& matrix) {
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
   for (int j = 0; j < matrix.order; ++j) {
-    for (int s = matrix.column_start[static_cast<std::size_t>(j)]; s < matrix.column_start[static_cast<std::size_t>(j) + 1]; ++s) {
+    for (int s = matrix.column_start[static_cast<std::size_t>(j)];
+         s < matrix.column_start[static_cast<std::size_t>(j) + 1]; ++s) {
       m(matrix.row[static_cast<std::size_t>(s)], j) = matrix.value[static_cast<std::size_t>(s)];
     }
   }
@@ -26,22 +27,27 @@ Eigen::MatrixXd dense(const numerics::SparseMatrix& matrix) {
 }  // namespace
 
 TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
-  const auto by_forces = multibody::BaseEquations::newton_euler, by_momentum = multibody::BaseEquations::momentum;
-  for (const auto& [base, equations] : {std::pair(Base::on_the_world, by_forces), std::pair(Base::floating, by_forces),
-                                        std::pair(Base::floating, by_momentum)}) {
+  const auto by_forces = multibody::BaseEquations::newton_euler,
+             by_momentum = multibody::BaseEquations::momentum;
+  for (const auto& [base, equations] :
+       {std::pair(Base::on_the_world, by_forces), std::pair(Base::floating, by_forces),
+        std::pair(Base::floating, by_momentum)}) {
     multibody::ElasticArm arm = test::chain_arm(4, base, 30.0);
     if (equations == by_forces) arm.tree.gravity = {0.3, -1.0, 2.0};
     arm.joints[0].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {0.1, 30.0, 3.0}});
-    arm.joints[1].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous,
-                                                    multibody::DampingRate::motor);
+    arm.joints[1].spring = multibody::DeflectionLaw(
+        {{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous, multibody::DampingRate::motor);
     arm.joints[2].friction = {1.0, 2.0, 0.5, 0.3};
-    const int tip = arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip", {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
+    const int tip = arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip",
+                                       {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
     std::vector<Drive> drives{Drive::holding(0.2, 8.0, 3.0), Drive::limp(), Drive::limp(), Drive::locked()};
-    std::vector<multibody::TimedLoad> loads{{tip, {{0.5, -0.3, 0.7}, {2.0, 1.0, -1.5}}, 0.0, 10.0, multibody::TimedLoad::Shape::half_sine}};
+    std::vector<multibody::TimedLoad> loads{
+        {tip, {{0.5, -0.3, 0.7}, {2.0, 1.0, -1.5}}, 0.0, 10.0, multibody::TimedLoad::Shape::half_sine}};
     multibody::ElasticArmPart part(arm, drives, loads, {}, equations);
     numerics::DaeSystem system({&part});
     std::mt19937 random(5);
-    Eigen::VectorXd y = test::random_values(random, system.size(), 1.0), rate = test::random_values(random, system.size(), 1.0);
+    Eigen::VectorXd y = test::random_values(random, system.size(), 1.0),
+                    rate = test::random_values(random, system.size(), 1.0);
     if (base == Base::floating) y.segment<4>(3) *= 1.3;
     part.settle(2.0, y);
     const double c = 3.7;
@@ -104,7 +110,8 @@ TEST(ElasticArm, MomentumOfAFloatingArmStays) {
   double drift = 0.0;
   for (const auto& sample : history.samples) {
     const auto change = (sample.momentum.vector() - first).eval();
-    drift = std::max({drift, change.head<3>().norm() / first.head<3>().norm(), change.tail<3>().norm() / first.tail<3>().norm()});
+    drift = std::max({drift, change.head<3>().norm() / first.head<3>().norm(),
+                      change.tail<3>().norm() / first.tail<3>().norm()});
   }
   EXPECT_LT(drift / 10.0, 1e-12);
   EXPECT_LT(history.energy_error, 1e-8);
@@ -112,7 +119,8 @@ TEST(ElasticArm, MomentumOfAFloatingArmStays) {
 }
 
 TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
-  // (H + B) q'' + c = tau by Runge and Kutta beside the elastic arm with ever stiffer gears: the difference goes as 1/K.
+  // (H + B) q'' + c = tau by Runge and Kutta beside the elastic arm with ever stiffer gears: the difference goes as
+  // 1/K.
   const double end = 2.0;
   const Eigen::Vector3d torque(8.0, -4.0, 3.0);
   const auto rigid = test::chain_arm(3, Base::on_the_world, 0.0);
@@ -120,7 +128,8 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
   const auto acceleration = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) -> Eigen::VectorXd {
     Eigen::MatrixXd H = multibody::mass_matrix(rigid.tree, q, workspace);
     H.diagonal().array() += 2.0;
-    const Eigen::VectorXd bias = multibody::inverse_dynamics(rigid.tree, q, v, Eigen::VectorXd::Zero(3), {}, workspace);
+    const Eigen::VectorXd bias =
+        multibody::inverse_dynamics(rigid.tree, q, v, Eigen::VectorXd::Zero(3), {}, workspace);
     return H.ldlt().solve(torque - bias);
   };
   Eigen::VectorXd q = Eigen::VectorXd::Zero(3), v = q;
@@ -137,9 +146,11 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
   for (const double stiffness : {1e4, 1e5, 1e6}) {
     auto arm = test::chain_arm(3, Base::on_the_world, stiffness);
     auto run = test::scenario(arm, Drive::limp(), end, 1e-9);
-    for (int k = 0; k < 3; ++k) {  // a servo at its limit is a constant torque; a critical damper lets the gear settle
+    for (int k = 0; k < 3;
+         ++k) {  // a servo at its limit is a constant torque; a critical damper lets the gear settle
       const auto i = static_cast<std::size_t>(k);
-      run.arm.joints[i].spring = multibody::DeflectionLaw::linear(stiffness, 2.0 * std::sqrt(2.0 * stiffness));
+      run.arm.joints[i].spring =
+          multibody::DeflectionLaw::linear(stiffness, 2.0 * std::sqrt(2.0 * stiffness));
       run.drives[i] = Drive::holding(torque[k] > 0.0 ? 1e6 : -1e6, 1.0, 0.0, std::abs(torque[k]));
     }
     const auto history = multibody::simulate(run);
@@ -147,7 +158,8 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
     differences.push_back((history.samples.back().state.q - q).norm());
   }
   EXPECT_LT(differences[2], 1e-4);
-  EXPECT_NEAR(differences[0] / differences[1], 10.0, 1.5);  // first order in 1/K, next order a tenth at the softest
+  EXPECT_NEAR(differences[0] / differences[1], 10.0,
+              1.5);  // first order in 1/K, next order a tenth at the softest
   EXPECT_NEAR(differences[1] / differences[2], 10.0, 0.5);
 }
 

@@ -8,7 +8,8 @@
 namespace snare::test {
 
 /// One link that turns about z with the given moment of inertia, and a motor.
-inline multibody::ElasticArm one_joint(double link_inertia, double motor_inertia, const multibody::DeflectionLaw& law) {
+inline multibody::ElasticArm one_joint(double link_inertia, double motor_inertia,
+                                       const multibody::DeflectionLaw& law) {
   multibody::ElasticArm arm;
   arm.tree.add_moving(0, "link", multibody::JointKind::revolute, Eigen::Vector3d::UnitZ(), {},
                       multibody::SpatialInertia::about_centre(1.0, Eigen::Vector3d::Zero(),
@@ -21,14 +22,15 @@ inline multibody::ElasticArm one_joint(double link_inertia, double motor_inertia
   return arm;
 }
 
-/// Links of 10 kg and 1 m one after another with axes z, y, x, ..., each with a motor; on the world or on a free body of 100 kg.
+/// Links of 10 kg and 1 m one after another with axes z, y, x, ..., each with a motor; on the world or on a free
+/// body of 100 kg.
 inline multibody::ElasticArm chain_arm(int links, Base base, double stiffness) {
   multibody::ElasticArm arm;
   int frame = 0;
   if (base == Base::floating) {
-    frame = arm.tree.add_moving(0, "base", multibody::JointKind::free, {}, {},
-                                multibody::SpatialInertia::about_centre(100.0, {0.1, 0.0, -0.2},
-                                                                        40.0 * Eigen::Matrix3d::Identity()));
+    frame = arm.tree.add_moving(
+        0, "base", multibody::JointKind::free, Eigen::Vector3d::UnitZ(), {},
+        multibody::SpatialInertia::about_centre(100.0, {0.1, 0.0, -0.2}, 40.0 * Eigen::Matrix3d::Identity()));
   }
   for (int i = 0; i < links; ++i) {
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit((i + 2) % 3);
@@ -46,8 +48,8 @@ inline multibody::ElasticArm chain_arm(int links, Base base, double stiffness) {
   return arm;
 }
 
-inline multibody::ArmScenario scenario(const multibody::ElasticArm& arm, const multibody::Drive& drive, double end,
-                                       double tolerance) {
+inline multibody::ArmScenario scenario(const multibody::ElasticArm& arm, const multibody::Drive& drive,
+                                       double end, double tolerance) {
   multibody::ArmScenario s;
   s.arm = arm;
   s.initial = multibody::resting(arm, multibody::zero_state(arm.tree).q);
@@ -59,8 +61,8 @@ inline multibody::ArmScenario scenario(const multibody::ElasticArm& arm, const m
 }
 
 /// Table 2 of Abiko et al. in SI, as the digest converts it.
-inline multibody::DeflectionLaw table2(double damping_factor,
-                                       multibody::StiffnessReading reading = multibody::StiffnessReading::continuous) {
+inline multibody::DeflectionLaw table2(
+    double damping_factor, multibody::StiffnessReading reading = multibody::StiffnessReading::continuous) {
   const double degree = EIGEN_PI / 180.0;
   return multibody::DeflectionLaw({{0.0, 12.5 / degree, damping_factor * 48.9 / degree},
                                    {0.04 * degree, 475.0 / degree, damping_factor * 87.3 / degree},

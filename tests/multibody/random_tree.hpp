@@ -56,7 +56,9 @@ inline PlainTree random_tree(std::mt19937& random, Base base, bool branched = tr
   const int n = count(random);
   for (int i = 0; i < n; ++i) {
     PlainBody body;
-    body.parent = branched && i > 0 ? std::uniform_int_distribution<int>(base == Base::floating ? 0 : -1, i - 1)(random) : i - 1;
+    body.parent = branched && i > 0
+                      ? std::uniform_int_distribution<int>(base == Base::floating ? 0 : -1, i - 1)(random)
+                      : i - 1;
     const int drawn = kind(random);
     body.joint = drawn < 6   ? PlainBody::Joint::revolute
                  : drawn < 8 ? PlainBody::Joint::prismatic
@@ -70,13 +72,16 @@ inline PlainTree random_tree(std::mt19937& random, Base base, bool branched = tr
     // Moments of a cloud of mass: positive definite, triangle inequality.
     const Eigen::Vector3d spread(0.05 + unit(random), 0.05 + unit(random), 0.05 + unit(random));
     const Eigen::Matrix3d R = random_rotation(random);
-    body.inertia = R * (Eigen::Matrix3d::Identity() * spread.sum() - Eigen::Matrix3d(spread.asDiagonal())) * R.transpose();
+    body.inertia = R * (Eigen::Matrix3d::Identity() * spread.sum() - Eigen::Matrix3d(spread.asDiagonal())) *
+                   R.transpose();
     tree.bodies.push_back(body);
   }
   return tree;
 }
 
-inline std::string body_name(std::size_t i) { return "body" + std::to_string(i); }
+inline std::string body_name(std::size_t i) {
+  return "body" + std::to_string(i);
+}
 
 /// Ours; frame i + 1 is that of body i.
 inline multibody::Tree make_tree(const PlainTree& plain) {
@@ -87,7 +92,9 @@ inline multibody::Tree make_tree(const PlainTree& plain) {
     const auto inertia = multibody::SpatialInertia::about_centre(b.mass, b.centre, b.inertia);
     const multibody::Pose X{b.R, b.p};
     switch (b.joint) {
-      case PlainBody::Joint::fixed: tree.add_fixed(b.parent + 1, body_name(i), X, inertia); break;
+      case PlainBody::Joint::fixed:
+        tree.add_fixed(b.parent + 1, body_name(i), X, inertia);
+        break;
       case PlainBody::Joint::revolute:
         tree.add_moving(b.parent + 1, body_name(i), multibody::JointKind::revolute, b.axis, X, inertia);
         break;
@@ -104,7 +111,8 @@ inline multibody::Tree make_tree(const PlainTree& plain) {
 
 /// Joint values in [-3, 3], any attitude of free bodies, velocities in [-2, 2].
 inline multibody::TreeState random_state(std::mt19937& random, const multibody::Tree& tree) {
-  multibody::TreeState state{random_values(random, tree.coordinates(), 3.0), random_values(random, tree.velocities(), 2.0)};
+  multibody::TreeState state{random_values(random, tree.coordinates(), 3.0),
+                             random_values(random, tree.velocities(), 2.0)};
   multibody::normalise(tree, state.q);
   return state;
 }
