@@ -44,6 +44,9 @@ std::string head(const DistilledCase& one, const std::string& title, const std::
   };
   std::string title_line = title;
   std::replace(title_line.begin(), title_line.end(), '\n', ' ');
+  // Nor may it end a comment of C, or go on behind its line.
+  std::replace(title_line.begin(), title_line.end(), '*', ' ');
+  std::replace(title_line.begin(), title_line.end(), '\\', ' ');
   std::string text;
   for (const std::string& line :
        {title_line,
