@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -74,10 +75,13 @@ class RodPart final : public numerics::DaePart {
     double strain = 0.0;
     double potential = 0.0;
     double dissipation = 0.0;
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+    Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+    /// Forces of the left and the right mount that balance the wire's own forces [N].
+    std::array<Eigen::Vector3d, 2> mount_forces{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
-  /// Forces of the left and the right mount on the wire [N].
-  [[nodiscard]] std::array<Eigen::Vector3d, 2> mount_forces(const numerics::DaePoint& at);
+  [[nodiscard]] const RodInMotion& constants() const { return constants_; }
 
  private:
   struct ViscousCell;
