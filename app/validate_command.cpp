@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/report_page.hpp"
 #include "numerics/files.hpp"
+#include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
 #include "validation/trace_checks.hpp"
 
@@ -56,6 +57,7 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
 ExitStatus run_validate(const CommonOptions& options, Console& console) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   std::vector<validation::Check> checks = validation::static_wire_checks();
+  for (validation::Check& check : validation::motion_checks()) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   for (validation::Check& check : validation::tracing_checks(

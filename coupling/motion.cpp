@@ -4,8 +4,8 @@
 #include "coupling/motion_contact.hpp"
 #include "numerics/errors.hpp"
 
-#include <Eigen/LU>
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <chrono>
@@ -42,7 +42,8 @@ void validate(const Motion& motion, const MotionOptions& options) {
   positive("duration", options.duration);
   positive("output_interval", options.output_interval);
   positive("relative_tolerance", options.relative_tolerance);
-  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order, "must be 1 to 5");
+  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order,
+            "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
     positive(w.name + ".length", w.rod.length);
     positive(w.name + ".mass_per_length", w.rod.mass_per_length);
@@ -50,19 +51,20 @@ void validate(const Motion& motion, const MotionOptions& options) {
     positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
     positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
     c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
-    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions", static_cast<double>(w.positions.cols()),
-              "must be one more than the elements");
+    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
+              static_cast<double>(w.positions.cols()), "must be one more than the elements");
     c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
               static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
-    c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""), "must be finite");
+    c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
+              "must be finite");
   }
   for (const MotionBody& b : motion.bodies) {
     positive(b.name + ".mass", b.properties.mass);
     const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
     c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
               "must be positive definite");
-    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
-              "must be a unit quaternion");
+    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
+              b.start.orientation.norm(), "must be a unit quaternion");
   }
   for (const MotionContact& k : motion.contacts) {
     c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
@@ -78,8 +80,8 @@ void validate(const Motion& motion, const MotionOptions& options) {
 
 /// Powers and forces at one time, whose integrals along the run are kept.
 struct Rates {
-  double dissipated = 0.0;   // [W]
-  double work = 0.0;         // [W]
+  double dissipated = 0.0;            // [W]
+  double work = 0.0;                  // [W]
   Vector3d outer = Vector3d::Zero();  // sum of all outer forces on wires and free bodies [N]
   std::vector<Vector3d> contact;      // on the wires [N]
 };
@@ -124,17 +126,20 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
-    rods_.emplace_back(w.name, rod,
-                       wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.angle_tolerance});
+    rods_.emplace_back(
+        w.name, rod,
+        wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.angle_tolerance});
   }
   for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
   for (const MotionContact& c : motion.contacts) {
-    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)], options);
+    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)],
+                           bodies_[static_cast<std::size_t>(c.body)], options);
   }
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
-  for (std::size_t i = 0; i < rods_.size(); ++i) rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
+  for (std::size_t i = 0; i < rods_.size(); ++i)
+    rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
   for (const BodyPart& b : bodies_) b.place(y_);
   for (ContactPart& c : contacts_) {
     y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
@@ -162,7 +167,8 @@ std::vector<numerics::DaePart*> Run::parts() {
 void Run::make_rates() {
   rate_.setZero();
   for (const wire::RodPart& r : rods_) {
-    for (int i = 0; i < r.vertices(); ++i) rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
+    for (int i = 0; i < r.vertices(); ++i)
+      rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
   }
   for (const BodyPart& b : bodies_) {
     rate_.segment<3>(b.position()) = y_.segment<3>(b.velocity());
@@ -201,7 +207,8 @@ void Run::make_rates() {
     missing[i] = -(c.gap_rate_of(y_, rate_) + c.gap_acceleration_at_rest(y_));
     VectorXd unit = VectorXd::Zero(y_.size());
     c.respond(y_, 1.0, unit);
-    for (Eigen::Index j = 0; j < n; ++j) flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+    for (Eigen::Index j = 0; j < n; ++j)
+      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
   const VectorXd force = flexibility.partialPivLu().solve(missing);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -211,8 +218,8 @@ void Run::make_rates() {
   }
 }
 
-// The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0 at
-// all closed contacts. What is lost vanishes with the element's mass.                            theory.md (M.10)
+// The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0
+// at all closed contacts. What is lost vanishes with the element's mass.                            theory.md (M.10)
 void Run::close(int contact) {
   ContactPart& touched = contacts_[static_cast<std::size_t>(contact)];
   if (touched.close(y_)) system_->invalidate_pattern();
@@ -229,7 +236,8 @@ void Run::close(int contact) {
     missing[i] = -constraints[static_cast<std::size_t>(i)]->gap_rate(y_);
     VectorXd unit = VectorXd::Zero(y_.size());
     constraints[static_cast<std::size_t>(i)]->respond(y_, 1.0, unit);
-    for (Eigen::Index j = 0; j < n; ++j) flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+    for (Eigen::Index j = 0; j < n; ++j)
+      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
   const VectorXd impulse = flexibility.partialPivLu().solve(missing);
   const double before = stored({time_, y_, rate_}, nullptr).kinetic;
@@ -308,11 +316,13 @@ Rates Run::rates(const DaePoint& at) {
     }
     if (s.closed) {
       result_.peak_force[k] = std::max(result_.peak_force[k], s.normal_force);
-      if (!contacts_[k].has_law()) result_.largest_penetration = std::max(result_.largest_penetration, -s.gap);
+      if (!contacts_[k].has_law())
+        result_.largest_penetration = std::max(result_.largest_penetration, -s.gap);
     }
   }
   for (const BodyPart& b : bodies_) {
-    result_.largest_drift = std::max(result_.largest_drift, std::abs(at.y.segment<4>(b.quaternion()).norm() - 1.0));
+    result_.largest_drift =
+        std::max(result_.largest_drift, std::abs(at.y.segment<4>(b.quaternion()).norm() - 1.0));
   }
   return r;
 }
@@ -322,7 +332,8 @@ void Run::account(const Rates& now, double time) {
   result_.energy.dissipated += half * (last_.dissipated + now.dissipated);
   result_.energy.work += half * (last_.work + now.work);
   outer_impulse_ += half * (last_.outer + now.outer);
-  for (std::size_t k = 0; k < contacts_.size(); ++k) result_.impulse[k] += half * (last_.contact[k] + now.contact[k]);
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    result_.impulse[k] += half * (last_.contact[k] + now.contact[k]);
   last_ = now;
   last_time_ = time;
 }
@@ -398,7 +409,8 @@ MotionResult Run::go() {
     if (changed) settle();
     if (static_cast<int>(result_.events.size()) > options_.max_events) {
       result_.report.termination = numerics::Termination::iteration_limit;
-      result_.report.message = fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
+      result_.report.message =
+          fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
       break;
     }
   }
@@ -423,7 +435,8 @@ Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& fro
   const wire::MaterialMesh mesh(rod.elements / 2, rod.elements - rod.elements / 2, rod.grading);
   const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};
   Eigen::Matrix3Xd x(3, mesh.vertices());
-  for (int i = 0; i < mesh.vertices(); ++i) x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
+  for (int i = 0; i < mesh.vertices(); ++i)
+    x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
   return x;
 }
 

@@ -15,7 +15,11 @@ using numerics::VectorView;
 
 namespace {
 
-constexpr int window_size = 10;  // vertices in the pattern, more than the four of the curve so that it seldom changes
+constexpr int window_size =
+    10;  // vertices in the pattern, more than the four of the curve so that it seldom changes
+
+// Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
+constexpr double no_tolerance = 1e6;
 
 // A touch is noticed this far inside [m]: a contact that has just let go stands at zero up to round-off, and must be
 // taken for open until it comes back.
@@ -96,7 +100,8 @@ CurveWeights curve_weights(const wire::RodPart& rod, double coordinate) {
   add(e + 1, u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u), 6.0 - 12.0 * u);
   const auto add_slope = [&](int vertex, double value, double slope, double bend) {
     const SlopeWeights m = slope_weights(rod, vertex);
-    for (int k = 0; k < 3; ++k) add(m.first + k, value * h * m.weight[k], slope * h * m.weight[k], bend * h * m.weight[k]);
+    for (int k = 0; k < 3; ++k)
+      add(m.first + k, value * h * m.weight[k], slope * h * m.weight[k], bend * h * m.weight[k]);
   };
   add_slope(e, u * (1.0 - u) * (1.0 - u), (1.0 - u) * (1.0 - 3.0 * u), 6.0 * u - 4.0);
   add_slope(e + 1, u * u * (u - 1.0), u * (3.0 * u - 2.0), 6.0 * u - 2.0);
@@ -107,29 +112,31 @@ struct ContactPart::Geometry {
   CurveWeights weights;
   Vector3d x, slope, bend, v, slope_v;  // X, X', X'', sum N v, sum N' v
   Matrix3d r_wb;
-  Vector3d arm;          // X - p_WB
-  Vector3d normal;       // world
-  Matrix3d hessian;      // world
+  Vector3d arm;      // X - p_WB
+  Vector3d normal;   // world
+  Matrix3d hessian;  // world
   double gap = 0.0;
   Vector3d omega, body_velocity, relative;  // relative: wire less body at X
   double gap_rate = 0.0;
-  Vector3d sliding;      // relative without its normal component
+  Vector3d sliding;  // relative without its normal component
   double lambda = 0.0;
   double mu = 0.0;
   FrictionLaw friction;
-  Vector3d force;        // on the wire
+  Vector3d force;  // on the wire
 };
 
 /// Changes of: vertices (through the weights), body, multipliers.
 struct ContactPart::Direction {
   Vector3d x = Vector3d::Zero(), slope = Vector3d::Zero(), v = Vector3d::Zero();
-  Vector3d p = Vector3d::Zero(), turn = Vector3d::Zero(), body_velocity = Vector3d::Zero(), spin = Vector3d::Zero();
+  Vector3d p = Vector3d::Zero(), turn = Vector3d::Zero(), body_velocity = Vector3d::Zero(),
+           spin = Vector3d::Zero();
   double zeta = 0.0, lambda = 0.0;
 };
 
 struct ContactPart::Change {
   double gap = 0.0, tangency = 0.0, gap_rate = 0.0;
-  Vector3d normal = Vector3d::Zero(), force = Vector3d::Zero(), torque = Vector3d::Zero();  // torque in B on the body
+  Vector3d normal = Vector3d::Zero(), force = Vector3d::Zero(),
+           torque = Vector3d::Zero();  // torque in B on the body
 };
 
 ContactPart::ContactPart(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
@@ -139,9 +146,10 @@ ContactPart::ContactPart(const MotionContact& contact, const wire::RodPart& rod,
 }
 
 void ContactPart::declare(numerics::DaeLayout& layout) {
-  first_ = layout.add({contact_.name + " material coordinate", {}, 1, DaeKind::algebraic, options_.position_tolerance, 0});
+  first_ = layout.add(
+      {contact_.name + " material coordinate", {}, 1, DaeKind::algebraic, options_.position_tolerance, 0});
   layout.add({contact_.name + " normal force", {}, 1, DaeKind::algebraic, options_.force_tolerance, 0});
-  layout.add({contact_.name + " stabiliser", {}, 1, DaeKind::algebraic, options_.force_tolerance, 0});
+  layout.add({contact_.name + " stabiliser", {}, 1, DaeKind::algebraic, no_tolerance, 0});
 }
 
 std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
@@ -176,7 +184,9 @@ void ContactPart::couple(std::vector<std::pair<int, int>>& entries) const {
   for (int k = 0; k < 3; ++k) whole_row(first_ + k);
 }
 
-void ContactPart::bind(const numerics::SparseMatrix& pattern) { pattern_ = &pattern; }
+void ContactPart::bind(const numerics::SparseMatrix& pattern) {
+  pattern_ = &pattern;
+}
 
 ContactPart::Geometry ContactPart::geometry(const VectorView& y) const {
   Geometry g;
@@ -314,7 +324,8 @@ void ContactPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
       e.v = g.weights.value[k] * Vector3d::Unit(a);
       column(rod_.velocity_of(i) + a, e);
       if (!rod_.is_held(i, a)) {
-        add(rod_.position_of(i) + a, stabiliser_unknown(), -g.weights.value[k] * g.normal[a] / rod_.mass_of(i));
+        add(rod_.position_of(i) + a, stabiliser_unknown(),
+            -g.weights.value[k] * g.normal[a] / rod_.mass_of(i));
       }
     }
   }
@@ -351,7 +362,9 @@ ContactPart::Nearest ContactPart::nearest(const VectorView& y) const {
   const Matrix3d r_wb = multibody::rotation(q);
   const Matrix3d r_ws = r_wb * contact_.shape_rotation;
   const Vector3d origin = y.segment<3>(body_.position()) + r_wb * contact_.shape_position;
-  const auto distance = [&](const Vector3d& x) { return contact_.shape->at(r_ws.transpose() * (x - origin)); };
+  const auto distance = [&](const Vector3d& x) {
+    return contact_.shape->at(r_ws.transpose() * (x - origin));
+  };
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= last; ++i) {
@@ -407,7 +420,9 @@ void ContactPart::events(const DaePoint& at, std::span<double> values) {
   }
 }
 
-bool ContactPart::accept(const DaePoint& at) { return closed_ && follow(at.y); }
+bool ContactPart::accept(const DaePoint& at) {
+  return closed_ && follow(at.y);
+}
 
 bool ContactPart::follow(const VectorView& y) {
   const int first = curve_weights(rod_, y[first_]).first;
@@ -420,6 +435,23 @@ bool ContactPart::close(Eigen::VectorXd& y) {
   closed_ = true;
   y[first_] = nearest(y).coordinate;
   y[stabiliser_unknown()] = 0.0;
+  // The wire is moved out by what a touch is noticed late, so that the constraint holds from the start.
+  for (int iteration = 0; iteration < 2 && !has_law(); ++iteration) {
+    const Geometry g = geometry(y);
+    double square = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      for (int a = 0; a < 3; ++a) {
+        if (!rod_.is_held(g.weights.first + k, a)) square += std::pow(g.weights.value[k] * g.normal[a], 2);
+      }
+    }
+    for (int k = 0; k < 4 && square > 0.0; ++k) {
+      const int i = g.weights.first + k;
+      for (int a = 0; a < 3; ++a) {
+        if (!rod_.is_held(i, a))
+          y[rod_.position_of(i) + a] -= g.weights.value[k] * g.normal[a] * g.gap / square;
+      }
+    }
+  }
   return follow(y);
 }
 
@@ -452,7 +484,9 @@ ContactSample ContactPart::sample(const DaePoint& at) const {
   return s;
 }
 
-double ContactPart::gap_rate(const VectorView& y) const { return geometry(y).gap_rate; }
+double ContactPart::gap_rate(const VectorView& y) const {
+  return geometry(y).gap_rate;
+}
 
 double ContactPart::lost_power(const VectorView& y) const {
   if (!closed_) return 0.0;
@@ -472,7 +506,8 @@ void ContactPart::respond(const VectorView& y, double impulse, Eigen::VectorXd& 
   }
   if (!body_.moves_freely()) return;
   dv.segment<3>(body_.velocity()) -= impulse / body_.body().properties.mass * g.normal;
-  dv.segment<3>(body_.spin()) -= impulse * (body_.inverse_inertia() * (g.r_wb.transpose() * g.arm.cross(g.normal)));
+  dv.segment<3>(body_.spin()) -=
+      impulse * (body_.inverse_inertia() * (g.r_wb.transpose() * g.arm.cross(g.normal)));
 }
 
 std::array<Vector3d, 2> ContactPart::force_on_mounts(const VectorView& y) const {
@@ -492,7 +527,8 @@ std::array<Vector3d, 2> ContactPart::force_on_mounts(const VectorView& y) const 
 double ContactPart::gap_rate_of(const VectorView& y, const Eigen::VectorXd& velocities) const {
   const Geometry g = geometry(y);
   Vector3d v = Vector3d::Zero();
-  for (int k = 0; k < 4; ++k) v += g.weights.value[k] * velocities.segment<3>(rod_.velocity_of(g.weights.first + k));
+  for (int k = 0; k < 4; ++k)
+    v += g.weights.value[k] * velocities.segment<3>(rod_.velocity_of(g.weights.first + k));
   return g.normal.dot(v - velocities.segment<3>(body_.velocity()) -
                       (g.r_wb * velocities.segment<3>(body_.spin())).cross(g.arm));
 }

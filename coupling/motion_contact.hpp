@@ -86,7 +86,7 @@ class ContactPart final : public numerics::DaePart {
   bool closed_ = false;
   double kept_coordinate_ = 0.0;
   double touch_gap_ = 0.0;  // of the next touch [m], <= 0
-  int window_ = 0;  // first vertex that the pattern covers
+  int window_ = 0;          // first vertex that the pattern covers
   int first_ = 0;
   const numerics::SparseMatrix* pattern_ = nullptr;
 };

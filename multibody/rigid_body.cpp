@@ -8,10 +8,7 @@ using Eigen::Vector4d;
 
 Eigen::Matrix<double, 4, 3> quaternion_rates(const Vector4d& q) {
   Eigen::Matrix<double, 4, 3> m;
-  m << -q[1], -q[2], -q[3],
-      q[0], -q[3], q[2],
-      q[3], q[0], -q[1],
-      -q[2], q[1], q[0];
+  m << -q[1], -q[2], -q[3], q[0], -q[3], q[2], q[3], q[0], -q[1], -q[2], q[1], q[0];
   return 0.5 * m;
 }
 

@@ -163,7 +163,9 @@ int RodPart::unknown_of(int band) const {
 
 namespace {
 
-bool is_angle(int band) { return band % block == 3; }
+bool is_angle(int band) {
+  return band % block == 3;
+}
 
 }  // namespace
 
@@ -348,8 +350,8 @@ void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<dou
       const double length = d.norm();
       const Vector3d t = d / length;
       const Vector3d w = at.y.segment<3>(velocity_of(e + 1)) - at.y.segment<3>(velocity_of(e));
-      const double factor =
-          constants_.damping.axial_time * rod_.properties().axial_stiffness / rod_.mesh().rest_length(e, controls_);
+      const double factor = constants_.damping.axial_time * rod_.properties().axial_stiffness /
+                            rod_.mesh().rest_length(e, controls_);
       const Matrix3d across = (Matrix3d::Identity() - t * t.transpose()) / length;
       const Matrix3d by_edge = factor * (t * (across * w).transpose() + t.dot(w) * across);
       const Matrix3d by_rate = factor * t * t.transpose();
@@ -428,7 +430,8 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
     const int i = side == 0 ? 0 : vertices() - 1;
     result.mount_forces[side] = assembly_.gradient.segment<3>(block * i);
     if (!is_held(i, 0)) {
-      result.mount_forces[side].x() = -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
+      result.mount_forces[side].x() =
+          -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
     }
   }
   return result;
