@@ -2,6 +2,7 @@
 #include "app/report_page.hpp"
 #include "numerics/files.hpp"
 #include "validation/distil_checks.hpp"
+#include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
 #include "validation/trace_checks.hpp"
 
@@ -58,6 +59,7 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   std::vector<validation::Check> checks = validation::static_wire_checks();
   for (validation::Check& check : validation::distil_checks()) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::motion_checks()) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   for (validation::Check& check : validation::tracing_checks(

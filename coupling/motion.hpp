@@ -18,7 +18,7 @@ namespace snare::coupling {
 /// A wire in motion. The world frame is the wire's own: its mounts are given there.
 struct MotionWire {
   std::string name = "wire";
-  wire::RodInMotion rod;  ///< constants, mounts, damping and mesh
+  wire::RodInMotion rod;        ///< constants, mounts, damping and mesh
   Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
   Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: at rest
 };
@@ -28,9 +28,10 @@ struct MotionBody {
   std::string name = "body";
   multibody::RigidBodyProperties properties;
   multibody::RigidBodyState start;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< constant, in the world frame, at the centre of mass [N]
-  double linear_drag = 0.0;                          ///< force -c v [N s/m], >= 0
-  double angular_drag = 0.0;                         ///< torque -c w [N m s/rad], >= 0
+  Eigen::Vector3d force =
+      Eigen::Vector3d::Zero();  ///< constant, in the world frame, at the centre of mass [N]
+  double linear_drag = 0.0;     ///< force -c v [N s/m], >= 0
+  double angular_drag = 0.0;    ///< torque -c w [N m s/rad], >= 0
   /// Moved as prescribed instead of freely: constant start.velocity and no rotation (a machine).
   bool driven = false;
 };
@@ -46,12 +47,12 @@ struct MotionFriction {
 /// A shape that belongs to a body and may touch a wire at one point.
 struct MotionContact {
   std::string name = "contact";
-  int wire = 0;                              ///< index
-  int body = 0;                              ///< index
-  std::shared_ptr<const ContactShape> shape; ///< in a frame S fixed to the body
-  Eigen::Vector3d shape_position = Eigen::Vector3d::Zero();  ///< p_BS [m]
+  int wire = 0;                                                  ///< index
+  int body = 0;                                                  ///< index
+  std::shared_ptr<const ContactShape> shape;                     ///< in a frame S fixed to the body
+  Eigen::Vector3d shape_position = Eigen::Vector3d::Zero();      ///< p_BS [m]
   Eigen::Matrix3d shape_rotation = Eigen::Matrix3d::Identity();  ///< R_BS
-  double wire_radius = 0.0;                  ///< half the wire's diameter [m], >= 0
+  double wire_radius = 0.0;                                      ///< half the wire's diameter [m], >= 0
   MotionFriction friction;
   /// The papers' contact laws in place of the constraint: normal force [N] of penetration [m] and its rate [m/s], with
   /// the derivatives by both; never negative. Empty: the wire does not penetrate.
@@ -66,17 +67,17 @@ struct Motion {
 };
 
 struct MotionOptions {
-  double duration = 1.0;              ///< [s], > 0
-  double output_interval = 1e-3;      ///< of the samples [s], > 0
+  double duration = 1.0;          ///< [s], > 0
+  double output_interval = 1e-3;  ///< of the samples [s], > 0
   double relative_tolerance = 1e-5;
-  double position_tolerance = 1e-7;   ///< [m]
-  double velocity_tolerance = 1e-4;   ///< [m/s]
-  double angle_tolerance = 1e-7;      ///< [rad], of quaternions
-  double spin_tolerance = 1e-4;       ///< [rad/s]
-  double force_tolerance = 1e-2;      ///< [N], of multipliers: for the Newton iteration only
-  int max_order = 2;                  ///< of IDA: see theory.md (M.2)
+  double position_tolerance = 1e-7;  ///< [m]
+  double velocity_tolerance = 1e-4;  ///< [m/s]
+  double angle_tolerance = 1e-7;     ///< [rad], of quaternions
+  double spin_tolerance = 1e-4;      ///< [rad/s]
+  double force_tolerance = 1e-2;     ///< [N], of multipliers: for the Newton iteration only
+  int max_order = 2;                 ///< of IDA: see theory.md (M.2)
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
-  int max_events = 100000;            ///< more are a failure
+  int max_events = 100000;                                    ///< more are a failure
 };
 
 /// Where everything is at one time. `unknowns` and `rates` belong to the run that made them.
@@ -89,15 +90,15 @@ struct MotionState {
 /// What a contact does at one time.
 struct ContactSample {
   bool closed = false;
-  double gap = 0.0;         ///< [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire, world frame [N]
-  double normal_force = 0.0;                         ///< [N], >= 0
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< on the wire's centreline [m]
-  double arc = 0.0;                                  ///< material coordinate [m]
-  double slip_speed = 0.0;                           ///< [m/s]
+  double gap = 0.0;                                 ///< [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the wire, world frame [N]
+  double normal_force = 0.0;                        ///< [N], >= 0
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the wire's centreline [m]
+  double arc = 0.0;                                 ///< material coordinate [m]
+  double slip_speed = 0.0;                          ///< [m/s]
 };
 
-/// Energies [J] of all wires and bodies. work = of gravity being counted in `potential`, of driven bodies and of forces.
+/// Energies [J] of all wires and free bodies.
 struct EnergyBalance {
   double kinetic = 0.0;
   double strain = 0.0;
@@ -115,8 +116,8 @@ struct MotionSample {
   double time = 0.0;
   std::vector<multibody::RigidBodyState> bodies;
   std::vector<ContactSample> contacts;
-  std::vector<Eigen::Matrix3Xd> wires;       ///< positions of the vertices [m]
-  std::vector<Eigen::Vector3d> mount_forces; ///< on the wire: left, right of each wire [N]
+  std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
+  std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
   EnergyBalance energy;
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
@@ -132,17 +133,18 @@ struct MotionEvent {
 };
 
 struct MotionResult {
-  numerics::IdaReport report;   ///< `message` names time, step and the worst unknowns on failure
+  numerics::IdaReport report;  ///< `message` names time, step and the worst unknowns on failure
   std::vector<MotionEvent> events;
   EnergyBalance energy;
-  Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();  ///< change less the impulse of all outer forces [N s]
-  std::vector<double> peak_force;          ///< of every contact, at accepted steps [N]
-  std::vector<Eigen::Vector3d> impulse;    ///< of every contact on its wire [N s]
-  double largest_penetration = 0.0;        ///< of closed contacts without law [m]
-  double largest_drift = 0.0;              ///< of quaternions' length from one, and of mounts [-], [m]
+  Eigen::Vector3d momentum_error =
+      Eigen::Vector3d::Zero();           ///< change less the impulse of all outer forces [N s]
+  std::vector<double> peak_force;        ///< of every contact, at accepted steps [N]
+  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire [N s]
+  double largest_penetration = 0.0;      ///< of closed contacts without law [m]
+  double largest_drift = 0.0;            ///< of quaternions' length from one, and of mounts [-], [m]
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
-  MotionState last;                        ///< to go on from; kept on failure too
+  MotionState last;  ///< to go on from; kept on failure too
 };
 
 /// Called at every output time, in order; true: stop.
@@ -153,7 +155,8 @@ using MotionObserver = std::function<bool(const MotionSample&)>;
                                              const Eigen::Vector3d& to);
 
 /// Integrates a motion.                                                     theory.md (M.1)-(M.12)
-/// Wrong numbers throw InputError with all of them. A failure of the integration is in `report`; what was reached is kept.
+/// Wrong numbers throw InputError with all of them. A failure of the integration is in `report`; the rest is
+/// what was reached.
 [[nodiscard]] MotionResult simulate(const Motion& motion, const MotionOptions& options,
                                     const MotionObserver& observer = {});
 

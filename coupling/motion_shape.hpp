@@ -8,9 +8,9 @@ namespace snare::coupling {
 
 /// A signed distance with its derivatives at a point, in the shape's own frame.
 struct DistanceField {
-  double distance = 0.0;                               ///< [m], negative inside
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();   ///< its gradient: unit, outward
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();   ///< of the distance [1/m]
+  double distance = 0.0;                              ///< [m], negative inside
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< its gradient: unit, outward
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< of the distance [1/m]
 };
 
 /// A rigid surface that a wire can touch, as a signed distance.

@@ -23,8 +23,8 @@ struct DaeBlock {
   std::vector<std::string> components;  ///< names that repeat along the block, e.g. x, y, z; empty: none
   int count = 0;                        ///< of unknowns
   DaeKind kind = DaeKind::differential;
-  double absolute_tolerance = 1e-8;     ///< of one unknown, in its unit, > 0
-  int first = 0;                        ///< set by DaeLayout
+  double absolute_tolerance = 1e-8;  ///< of one unknown, in its unit, > 0
+  int first = 0;                     ///< set by DaeLayout
 };
 
 /// The unknowns of all parts, one block behind another.
@@ -51,8 +51,8 @@ struct DaePoint {
 
 /// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
 ///
-/// Order of calls: `declare` once, then `couple` and `bind` whenever the pattern is made, then the rest. A part may keep
-/// workspace; one part serves one integration at a time.
+/// Order of calls: `declare` once, then `couple` and `bind` whenever the pattern is made, then the rest. A part may
+/// keep workspace; one part serves one integration at a time.
 class DaePart {
  public:
   DaePart() = default;

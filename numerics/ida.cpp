@@ -24,7 +24,9 @@ struct IdaDeleter {
   void operator()(void* memory) const noexcept { IDAFree(&memory); }
 };
 
-Eigen::Map<Eigen::VectorXd> map(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+Eigen::Map<Eigen::VectorXd> map(N_Vector v) {
+  return {N_VGetArrayPointer(v), N_VGetLength(v)};
+}
 
 /// Adds the wall time of a scope.
 class Stopwatch {
@@ -73,8 +75,8 @@ extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vecto
 }
 
 // The values stay in the system's own matrix, where the linear solver finds them; IDA's is a place-holder.
-extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix, void* data,
-                            N_Vector, N_Vector, N_Vector) {
+extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix,
+                                  void* data, N_Vector, N_Vector, N_Vector) {
   auto& self = *static_cast<Callbacks*>(data);
   return guarded(self, [&] {
     const Stopwatch watch(self.statistics.jacobian_seconds);
@@ -92,9 +94,13 @@ extern "C" int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype*
   });
 }
 
-Callbacks& content(SUNLinearSolver solver) { return *static_cast<Callbacks*>(solver->content); }
+Callbacks& content(SUNLinearSolver solver) {
+  return *static_cast<Callbacks*>(solver->content);
+}
 
-extern "C" SUNLinearSolver_Type snare_klu_type(SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; }
+extern "C" SUNLinearSolver_Type snare_klu_type(SUNLinearSolver) {
+  return SUNLINEARSOLVER_DIRECT;
+}
 
 extern "C" int snare_klu_setup(SUNLinearSolver solver, SUNMatrix) {
   Callbacks& self = content(solver);
@@ -143,13 +149,17 @@ std::string name_of(int code) {
 Termination meaning(int code) {
   switch (code) {
     case IDA_TOO_MUCH_WORK:
-    case IDA_CONV_FAIL: return Termination::iteration_limit;
+    case IDA_CONV_FAIL:
+      return Termination::iteration_limit;
     case IDA_LSETUP_FAIL:
-    case IDA_LSOLVE_FAIL: return Termination::singular_matrix;
+    case IDA_LSOLVE_FAIL:
+      return Termination::singular_matrix;
     case IDA_RES_FAIL:
     case IDA_REP_RES_ERR:
-    case IDA_FIRST_RES_FAIL: return Termination::not_finite;
-    default: return Termination::step_too_small;
+    case IDA_FIRST_RES_FAIL:
+      return Termination::not_finite;
+    default:
+      return Termination::step_too_small;
   }
 }
 
@@ -197,7 +207,9 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen)
     identity.segment(block.first, block.count).setConstant(block.kind == DaeKind::differential ? 1.0 : 0.0);
   }
   void* m = ida.get();
-  check(IDASetErrHandlerFn(m, [](int, const char*, const char*, char*, void*) {}, nullptr), "IDASetErrHandlerFn");
+  check(IDASetErrHandlerFn(
+            m, [](int, const char*, const char*, char*, void*) {}, nullptr),
+        "IDASetErrHandlerFn");
   check(IDAInit(m, snare_ida_residual, 0.0, y_view.get(), rate_view.get()), "IDAInit");
   check(IDASetUserData(m, &callbacks), "IDASetUserData");
   check(IDASVtolerances(m, options.relative_tolerance, tolerance_view.get()), "IDASVtolerances");
@@ -248,8 +260,8 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   double t = 0.0;
   double c = 0.0;
   void* user = nullptr;
-  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows, &c,
-                                &user) != IDA_SUCCESS ||
+  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows,
+                                &c, &user) != IDA_SUCCESS ||
       predicted == nullptr || current == nullptr) {
     return {};
   }
@@ -266,7 +278,8 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   std::vector<int> order(static_cast<std::size_t>(size.size()));
   std::iota(order.begin(), order.end(), 0);
   const auto shown = std::min<std::ptrdiff_t>(5, size.size());
-  std::partial_sort(order.begin(), order.begin() + shown, order.end(), [&](int a, int b) { return size[a] > size[b]; });
+  std::partial_sort(order.begin(), order.begin() + shown, order.end(),
+                    [&](int a, int b) { return size[a] > size[b]; });
   std::vector<std::string> names;
   for (std::ptrdiff_t k = 0; k < shown; ++k) {
     names.push_back(callbacks.system.layout().name_of(order[static_cast<std::size_t>(k)]));
@@ -281,8 +294,8 @@ void Ida::Memory::fail(int code, const std::string& function) {
   report.culprits = worst_unknowns();
   report.time = time;
   if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS) report.step = 0.0;
-  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function, name_of(code), time,
-                               report.step, fmt::join(report.culprits, "; "));
+  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function,
+                               name_of(code), time, report.step, fmt::join(report.culprits, "; "));
 }
 
 Ida::Ida(DaeSystem& system, const IdaOptions& options) : memory_(std::make_unique<Memory>(system, options)) {}
@@ -294,7 +307,8 @@ void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& ra
   memory_->begin(time, y, rate);
 }
 
-IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {
+IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
+                                  double towards) {
   Memory& m = *memory_;
   m.begin(time, y, rate);
   const int code = IDACalcIC(m.ida.get(), IDA_YA_YDP_INIT, towards);
@@ -339,13 +353,27 @@ IdaAdvance Ida::advance(double limit) {
   return code == IDA_TSTOP_RETURN ? IdaAdvance::reached_limit : IdaAdvance::stepped;
 }
 
-double Ida::time() const { return memory_->time; }
-const Eigen::VectorXd& Ida::y() const { return memory_->y; }
-const Eigen::VectorXd& Ida::rate() const { return memory_->rate; }
-const std::vector<int>& Ida::events_found() const { return memory_->events; }
-double Ida::last_step() const { return memory_->report.step; }
-const IdaReport& Ida::report() const { return memory_->report; }
-const IdaStatistics& Ida::statistics() const { return memory_->callbacks.statistics; }
+double Ida::time() const {
+  return memory_->time;
+}
+const Eigen::VectorXd& Ida::y() const {
+  return memory_->y;
+}
+const Eigen::VectorXd& Ida::rate() const {
+  return memory_->rate;
+}
+const std::vector<int>& Ida::events_found() const {
+  return memory_->events;
+}
+double Ida::last_step() const {
+  return memory_->report.step;
+}
+const IdaReport& Ida::report() const {
+  return memory_->report;
+}
+const IdaStatistics& Ida::statistics() const {
+  return memory_->callbacks.statistics;
+}
 
 int Ida::last_order() const {
   int order = 0;
@@ -364,9 +392,11 @@ IdaReport integrate(Ida& ida, double end, const IdaObserver& observer) {
   while (true) {
     switch (ida.advance(end)) {
       case IdaAdvance::failed:
-      case IdaAdvance::reached_limit: return ida.report();
+      case IdaAdvance::reached_limit:
+        return ida.report();
       case IdaAdvance::stepped:
-      case IdaAdvance::event: break;
+      case IdaAdvance::event:
+        break;
     }
     if (observer && observer(ida)) {
       IdaReport report = ida.report();

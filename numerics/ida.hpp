@@ -21,9 +21,9 @@ struct IdaOptions {
   double max_step = std::numeric_limits<double>::infinity();  ///< [s], > 0
   /// A smaller one is a failure [s], > 0: without it IDA creeps up to a time that it cannot pass, for ever.
   double smallest_step = 1e-13;
-  double first_step = 0.0;           ///< [s]; 0: IDA chooses
-  bool test_algebraic = false;       ///< algebraic unknowns take part in the error test (index 1 only)
-  double newton_share = 0.33;        ///< of the tolerance that the Newton iteration may leave [-]
+  double first_step = 0.0;      ///< [s]; 0: IDA chooses
+  bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
+  double newton_share = 0.33;   ///< of the tolerance that the Newton iteration may leave [-]
 };
 
 /// What was done since the integrator was made.
@@ -32,17 +32,17 @@ struct IdaStatistics {
   long residuals = 0;
   long jacobians = 0;
   long factorizations = 0;
-  long analyses = 0;             ///< of the sparse pattern
+  long analyses = 0;  ///< of the sparse pattern
   long newton_iterations = 0;
   long newton_failures = 0;
   long error_test_failures = 0;
-  long restarts = 0;             ///< starts at first order, the first one included
+  long restarts = 0;  ///< starts at first order, the first one included
   double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
   double largest_step = 0.0;                                       ///< [s]
-  double residual_seconds = 0.0; ///< wall time in residuals [s]
-  double jacobian_seconds = 0.0; ///< in Jacobians
-  double factor_seconds = 0.0;   ///< in KLU's analysis and factorisation
-  double solve_seconds = 0.0;    ///< in KLU's solution
+  double residual_seconds = 0.0;                                   ///< wall time in residuals [s]
+  double jacobian_seconds = 0.0;                                   ///< in Jacobians
+  double factor_seconds = 0.0;                                     ///< in KLU's analysis and factorisation
+  double solve_seconds = 0.0;                                      ///< in KLU's solution
 };
 
 /// How an integration ended. On failure `message` names time, step and the worst rows.
@@ -54,10 +54,10 @@ struct [[nodiscard]] IdaReport : SolveReport {
 
 /// What one call of `advance` did.
 enum class IdaAdvance {
-  stepped,       ///< one internal step, short of the limit
-  reached_limit, ///< the state is at the limit
-  event,         ///< an event function is zero here: `events_found`
-  failed         ///< see `report`; the state is that of the last accepted step
+  stepped,        ///< one internal step, short of the limit
+  reached_limit,  ///< the state is at the limit
+  event,          ///< an event function is zero here: `events_found`
+  failed          ///< see `report`; the state is that of the last accepted step
 };
 
 /// SUNDIALS IDA (variable-order, variable-step BDF) with KLU on an analytic sparse Jacobian; the pattern is analysed
@@ -72,10 +72,10 @@ class Ida {
 
   /// Begins at first order from a consistent (y, y'), after an event too.
   void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
-  /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns; for index 1.
+  /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
   /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
-  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
-                                             double towards);
+  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y,
+                                             const Eigen::VectorXd& rate, double towards);
 
   /// One internal step, never beyond `limit` [s].
   [[nodiscard]] IdaAdvance advance(double limit);

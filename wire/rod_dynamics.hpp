@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,8 @@ struct RodTolerances {
 /// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without inertia.
 ///                                                                                  theory.md (M.3), (M.4)
 ///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
-/// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. Rigidly held unknowns have x = X, v = 0 instead; the force of
-/// the mount is what the row would have left. Without a mount that holds the twist theta_0 = 0.
+/// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. Rigidly held unknowns have x = X, v = 0 instead; the
+/// force of the mount is what the row would have left. Without a mount that holds the twist theta_0 = 0.
 class RodPart final : public numerics::DaePart {
  public:
   RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
@@ -62,7 +63,9 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] int angle_of(int edge) const { return theta_ + edge; }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[static_cast<std::size_t>(vertex)]; }
   /// Whether component k of a vertex is rigidly held.
-  [[nodiscard]] bool is_held(int vertex, int k) const { return held_[static_cast<std::size_t>(3 * vertex + k)]; }
+  [[nodiscard]] bool is_held(int vertex, int k) const {
+    return held_[static_cast<std::size_t>(3 * vertex + k)];
+  }
   [[nodiscard]] double coordinate(int vertex) const { return rod_.mesh().coordinate(vertex, controls_); }
   [[nodiscard]] const SpatialRod& rod() const { return rod_; }
   /// Band index of the rod's own unknown -> unknown of the DAE.
@@ -74,10 +77,13 @@ class RodPart final : public numerics::DaePart {
     double strain = 0.0;
     double potential = 0.0;
     double dissipation = 0.0;
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+    Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+    /// Forces of the left and the right mount that balance the wire's own forces [N].
+    std::array<Eigen::Vector3d, 2> mount_forces{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
-  /// Forces of the left and the right mount on the wire [N].
-  [[nodiscard]] std::array<Eigen::Vector3d, 2> mount_forces(const numerics::DaePoint& at);
+  [[nodiscard]] const RodInMotion& constants() const { return constants_; }
 
  private:
   struct ViscousCell;
@@ -91,17 +97,17 @@ class RodPart final : public numerics::DaePart {
   SpatialRod rod_;
   Controls controls_;
   std::vector<double> mass_;
-  std::vector<bool> held_;        // of 3 components a vertex
-  bool twist_free_ = false;       // no mount holds the twist
+  std::vector<bool> held_;   // of 3 components a vertex
+  bool twist_free_ = false;  // no mount holds the twist
   int x_ = 0, theta_ = 0, v_ = 0;
-  SpatialState base_;             // frames of the last accepted state
+  SpatialState base_;  // frames of the last accepted state
   SpatialState trial_;
   RodAssembly assembly_;
   Eigen::VectorXd band_;
   double viscous_power_ = 0.0;
-  std::vector<int> band_slots_;   // of the lower band in the rows of v and theta, both triangles
-  std::vector<int> rate_slots_;   // the same in the columns of v
-  std::vector<int> diagonal_;     // of x, v: (x,x) (x,v) (v,v)
+  std::vector<int> band_slots_;  // of the lower band in the rows of v and theta, both triangles
+  std::vector<int> rate_slots_;  // the same in the columns of v
+  std::vector<int> diagonal_;    // of x, v: (x,x) (x,v) (v,v)
 };
 
 }  // namespace snare::wire

@@ -425,6 +425,49 @@ double SpatialRod::energy(const SpatialState& state) const {
   return sum;
 }
 
+void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) const {
+  const int n = mesh_.edges();
+  const double ea = properties_.axial_stiffness;
+  out.energy = spring_energy(properties_.left, state.q[0]) + spring_energy(properties_.right, state.q[block * n]);
+  out.gradient.setZero(unknowns());
+  double* g = out.gradient.data();
+  const auto add_edge = [g](int e, const Vector3d& force) {
+    for (int r = 0; r < 3; ++r) {
+      g[block * e + r] -= force[r];
+      g[block * (e + 1) + r] += force[r];
+    }
+  };
+  visit_cells(mesh_, state, Law(properties_), [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
+    out.energy += cell.energy;
+    if (cell.bends || cell.twists) {
+      const PairGradient pair = gradient_of(cell, before, after);
+      if (i > 0) {
+        add_edge(i - 1, pair.a);
+        g[block * (i - 1) + 3] += pair.theta_a;
+      }
+      if (i < n) {
+        add_edge(i, pair.b);
+        g[block * i + 3] += pair.theta_b;
+      }
+    }
+    if (i == n) return;
+    const double strain = after.length / after.rest - 1.0;
+    add_edge(i, ea * strain * after.tangent);
+    out.energy += 0.5 * ea * strain * strain * after.rest -
+                  0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
+    for (int r = 0; r < 3; ++r) {
+      g[block * i + r] -= 0.5 * after.rest * properties_.weight[r];
+      g[block * (i + 1) + r] -= 0.5 * after.rest * properties_.weight[r];
+    }
+  });
+  const auto spring = [&](const SpatialEnd& end, int row) {
+    if (end.kind == SpatialEnd::Kind::free || std::isinf(end.translational_stiffness)) return;
+    g[row] += end.translational_stiffness * (state.q[row] - end.position.x());
+  };
+  spring(properties_.left, 0);
+  spring(properties_.right, block * n);
+}
+
 void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted,
                           RodAssembly& out) const {
   reset(out, unknowns(), wanted);

@@ -1,0 +1,550 @@
+#include "coupling/motion_contact.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace snare::coupling {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using numerics::DaeKind;
+using numerics::DaePoint;
+using numerics::VectorView;
+
+namespace {
+
+constexpr int window_size =
+    10;  // vertices in the pattern, more than the four of the curve so that it seldom changes
+
+// Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
+constexpr double no_tolerance = 1e6;
+
+// A touch is noticed this far inside [m]: a contact that has just let go stands at zero up to round-off, and must be
+// taken for open until it comes back.
+constexpr double touch_depth = 1e-11;
+
+/// Weights of the slope of the curve at vertex i on the vertices i-1, i, i+1 (at an end on the three nearest).
+struct SlopeWeights {
+  int first;
+  Vector3d weight;
+};
+
+SlopeWeights slope_weights(const wire::RodPart& rod, int i) {
+  const int last = rod.vertices() - 1;
+  const int middle = std::clamp(i, 1, last - 1);
+  const double h0 = rod.coordinate(middle) - rod.coordinate(middle - 1);
+  const double h1 = rod.coordinate(middle + 1) - rod.coordinate(middle);
+  const double a = h1 / (h0 * (h0 + h1));
+  const double b = h0 / (h1 * (h0 + h1));
+  const Vector3d at_middle(-a, a - b, b);
+  if (i == middle) return {middle - 1, at_middle};
+  // The parabola's slope at its end: twice that of the chord less that at the middle.
+  if (i < middle) return {0, 2.0 / h0 * Vector3d(-1.0, 1.0, 0.0) - at_middle};
+  return {middle - 1, 2.0 / h1 * Vector3d(0.0, -1.0, 1.0) - at_middle};
+}
+
+/// Friction coefficient over the sliding speed and its derivative by the speed, both finite at rest.   theory.md (M.9)
+struct FrictionLaw {
+  double over_speed = 0.0;  ///< mu(s)/s [s/m]
+  double slope = 0.0;       ///< d(mu/s)/ds / s [s^3/m^3]
+};
+
+FrictionLaw friction_law(const MotionFriction& f, double s) {
+  // Cubic steps: from -static at -static_speed to +static at +static_speed, then on to the dynamic coefficient.
+  double mu = f.dynamic_coefficient;
+  double by_s = 0.0;
+  if (s < f.static_speed) {
+    const double x = s / f.static_speed;
+    // mu/s = static/static_speed (3 - x^2)/2
+    const double scale = f.static_coefficient / f.static_speed;
+    return {0.5 * scale * (3.0 - x * x), -scale / (f.static_speed * f.static_speed)};
+  }
+  if (s < f.dynamic_speed) {
+    const double width = f.dynamic_speed - f.static_speed;
+    const double x = (s - f.static_speed) / width;
+    const double fall = f.dynamic_coefficient - f.static_coefficient;
+    mu = f.static_coefficient + fall * x * x * (3.0 - 2.0 * x);
+    by_s = fall * 6.0 * x * (1.0 - x) / width;
+  }
+  return {mu / s, (by_s / s - mu / (s * s)) / s};
+}
+
+}  // namespace
+
+CurveWeights curve_weights(const wire::RodPart& rod, double coordinate) {
+  const int last = rod.vertices() - 1;
+  int e = 0;
+  {
+    int high = last;
+    while (high - e > 1) {
+      const int middle = (e + high) / 2;
+      (rod.coordinate(middle) <= coordinate ? e : high) = middle;
+    }
+  }
+  const double from = rod.coordinate(e);
+  const double h = rod.coordinate(e + 1) - from;
+  const double u = (coordinate - from) / h;
+  CurveWeights w;
+  w.first = std::clamp(e - 1, 0, last - 3);
+  w.value.setZero();
+  w.slope.setZero();
+  w.bend.setZero();
+  const auto add = [&](int vertex, double value, double slope, double bend) {
+    w.value[vertex - w.first] += value;
+    w.slope[vertex - w.first] += slope / h;
+    w.bend[vertex - w.first] += bend / (h * h);
+  };
+  add(e, (1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u), 6.0 * u * (u - 1.0), 12.0 * u - 6.0);
+  add(e + 1, u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u), 6.0 - 12.0 * u);
+  const auto add_slope = [&](int vertex, double value, double slope, double bend) {
+    const SlopeWeights m = slope_weights(rod, vertex);
+    for (int k = 0; k < 3; ++k)
+      add(m.first + k, value * h * m.weight[k], slope * h * m.weight[k], bend * h * m.weight[k]);
+  };
+  add_slope(e, u * (1.0 - u) * (1.0 - u), (1.0 - u) * (1.0 - 3.0 * u), 6.0 * u - 4.0);
+  add_slope(e + 1, u * u * (u - 1.0), u * (3.0 * u - 2.0), 6.0 * u - 2.0);
+  return w;
+}
+
+struct ContactPart::Geometry {
+  CurveWeights weights;
+  Vector3d x, slope, bend, v, slope_v;  // X, X', X'', sum N v, sum N' v
+  Matrix3d r_wb;
+  Vector3d arm;      // X - p_WB
+  Vector3d normal;   // world
+  Matrix3d hessian;  // world
+  double gap = 0.0;
+  Vector3d omega, body_velocity, relative;  // relative: wire less body at X
+  double gap_rate = 0.0;
+  Vector3d sliding;  // relative without its normal component
+  double lambda = 0.0;
+  double mu = 0.0;
+  FrictionLaw friction;
+  Vector3d force;  // on the wire
+};
+
+/// Changes of: vertices (through the weights), body, multipliers.
+struct ContactPart::Direction {
+  Vector3d x = Vector3d::Zero(), slope = Vector3d::Zero(), v = Vector3d::Zero();
+  Vector3d p = Vector3d::Zero(), turn = Vector3d::Zero(), body_velocity = Vector3d::Zero(),
+           spin = Vector3d::Zero();
+  double zeta = 0.0, lambda = 0.0;
+};
+
+struct ContactPart::Change {
+  double gap = 0.0, tangency = 0.0, gap_rate = 0.0;
+  Vector3d normal = Vector3d::Zero(), force = Vector3d::Zero(),
+           torque = Vector3d::Zero();  // torque in B on the body
+};
+
+ContactPart::ContactPart(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
+                         const MotionOptions& options)
+    : contact_(contact), rod_(rod), body_(body), options_(options) {
+  assert(contact.shape && rod.vertices() >= 5);
+}
+
+void ContactPart::declare(numerics::DaeLayout& layout) {
+  first_ = layout.add(
+      {contact_.name + " material coordinate", {}, 1, DaeKind::algebraic, options_.position_tolerance, 0});
+  layout.add({contact_.name + " normal force", {}, 1, DaeKind::algebraic, options_.force_tolerance, 0});
+  layout.add({contact_.name + " stabiliser", {}, 1, DaeKind::algebraic, no_tolerance, 0});
+}
+
+std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
+  std::vector<int> list;
+  const int end = std::min(rod_.vertices(), first_vertex + window_size);
+  for (int i = first_vertex; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(i) + k);
+    for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
+  }
+  for (int k = 0; k < 13; ++k) list.push_back(body_.position() + k);
+  for (int k = 0; k < 3; ++k) list.push_back(first_ + k);
+  return list;
+}
+
+void ContactPart::couple(std::vector<std::pair<int, int>>& entries) const {
+  for (int k = 0; k < 3; ++k) entries.emplace_back(first_ + k, first_ + k);
+  const std::vector<int> all = local_unknowns(window_);
+  const int end = std::min(rod_.vertices(), window_ + window_size);
+  const auto whole_row = [&](int row) {
+    for (const int column : all) entries.emplace_back(row, column);
+  };
+  for (int i = window_; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (rod_.is_held(i, k)) continue;
+      whole_row(rod_.velocity_of(i) + k);
+      entries.emplace_back(rod_.position_of(i) + k, stabiliser_unknown());
+    }
+  }
+  if (body_.moves_freely()) {
+    for (int k = 0; k < 6; ++k) whole_row(body_.velocity() + k);
+  }
+  for (int k = 0; k < 3; ++k) whole_row(first_ + k);
+}
+
+void ContactPart::bind(const numerics::SparseMatrix& pattern) {
+  pattern_ = &pattern;
+}
+
+ContactPart::Geometry ContactPart::geometry(const VectorView& y) const {
+  Geometry g;
+  g.weights = curve_weights(rod_, std::clamp(y[first_], 0.0, rod_.coordinate(rod_.vertices() - 1)));
+  g.x = g.slope = g.bend = g.v = g.slope_v = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d x = y.segment<3>(rod_.position_of(g.weights.first + k));
+    const Vector3d v = y.segment<3>(rod_.velocity_of(g.weights.first + k));
+    g.x += g.weights.value[k] * x;
+    g.slope += g.weights.slope[k] * x;
+    g.bend += g.weights.bend[k] * x;
+    g.v += g.weights.value[k] * v;
+    g.slope_v += g.weights.slope[k] * v;
+  }
+  const Vector4d q = y.segment<4>(body_.quaternion());
+  g.r_wb = multibody::rotation(q);
+  g.arm = g.x - y.segment<3>(body_.position());
+  const Matrix3d r_ws = g.r_wb * contact_.shape_rotation;
+  const Vector3d in_shape = r_ws.transpose() * (g.arm - g.r_wb * contact_.shape_position);
+  const DistanceField field = contact_.shape->at(in_shape);
+  g.gap = field.distance - contact_.wire_radius;
+  g.normal = r_ws * field.normal;
+  g.hessian = r_ws * field.hessian * r_ws.transpose();
+  g.omega = g.r_wb * y.segment<3>(body_.spin());
+  g.body_velocity = y.segment<3>(body_.velocity());
+  g.relative = g.v - g.body_velocity - g.omega.cross(g.arm);
+  g.gap_rate = g.normal.dot(g.relative);
+  g.sliding = g.relative - g.gap_rate * g.normal;
+  g.lambda = y[force_unknown()];
+  g.mu = y[stabiliser_unknown()];
+  if (contact_.friction.static_coefficient > 0.0 || contact_.friction.dynamic_coefficient > 0.0) {
+    g.friction = friction_law(contact_.friction, g.sliding.norm());
+  }
+  g.force = g.lambda * (g.normal - g.friction.over_speed * g.sliding);
+  return g;
+}
+
+// In the body the wire's point moves by rho = dX - dp - turn x arm; then d gap = n.rho, dn = H rho + turn x n.
+ContactPart::Change ContactPart::change(const Geometry& g, const Direction& d) const {
+  Change c;
+  const Vector3d dx = d.x + g.slope * d.zeta;
+  const Vector3d dslope = d.slope + g.bend * d.zeta;
+  const Vector3d darm = dx - d.p;
+  const Vector3d rho = darm - d.turn.cross(g.arm);
+  c.normal = g.hessian * rho + d.turn.cross(g.normal);
+  c.gap = g.normal.dot(rho);
+  c.tangency = g.slope.dot(c.normal) + g.normal.dot(dslope);
+  const Vector3d domega = d.turn.cross(g.omega) + g.r_wb * d.spin;
+  const Vector3d drelative =
+      d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
+  c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
+  const Vector3d dsliding = drelative - c.gap_rate * g.normal - g.gap_rate * c.normal;
+  c.force = d.lambda * (g.normal - g.friction.over_speed * g.sliding) +
+            g.lambda * (c.normal - g.friction.over_speed * dsliding -
+                        g.friction.slope * g.sliding.dot(dsliding) * g.sliding);
+  const Vector3d moment = -g.arm.cross(g.force);
+  const Vector3d dmoment = -darm.cross(g.force) - g.arm.cross(c.force);
+  c.torque = g.r_wb.transpose() * (dmoment - d.turn.cross(moment));
+  return c;
+}
+
+void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  if (!closed_) {
+    rows[first_] += at.y[first_] - kept_coordinate_;
+    rows[force_unknown()] += at.y[force_unknown()];
+    rows[stabiliser_unknown()] += at.y[stabiliser_unknown()];
+    return;
+  }
+  const Geometry g = geometry(at.y);
+  for (int k = 0; k < 4; ++k) {
+    const int i = g.weights.first + k;
+    for (int a = 0; a < 3; ++a) {
+      if (rod_.is_held(i, a)) continue;
+      rows[rod_.velocity_of(i) + a] -= g.weights.value[k] * g.force[a];
+      rows[rod_.position_of(i) + a] -= g.weights.value[k] * g.normal[a] * g.mu / rod_.mass_of(i);
+    }
+  }
+  if (body_.moves_freely()) {
+    rows.segment<3>(body_.velocity()) += g.force;
+    rows.segment<3>(body_.spin()) += g.r_wb.transpose() * g.arm.cross(g.force);
+  }
+  rows[first_] += g.normal.dot(g.slope);
+  if (has_law()) {
+    rows[force_unknown()] += g.lambda - contact_.law(-g.gap, -g.gap_rate)[0];
+    rows[stabiliser_unknown()] += g.mu;
+  } else {
+    rows[force_unknown()] += g.gap;
+    rows[stabiliser_unknown()] += g.gap_rate;
+  }
+}
+
+void ContactPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
+  const auto add = [&](int row, int column, double value) {
+    const int slot = pattern_->slot(row, column);
+    if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
+  };
+  if (!closed_) {
+    for (int k = 0; k < 3; ++k) add(first_ + k, first_ + k, 1.0);
+    return;
+  }
+  const Geometry g = geometry(at.y);
+  const Vector3d law = has_law() ? contact_.law(-g.gap, -g.gap_rate) : Vector3d::Zero();
+  const auto column = [&](int unknown, const Direction& d) {
+    const Change c = change(g, d);
+    for (int k = 0; k < 4; ++k) {
+      const Vector3d row = -g.weights.value[k] * c.force - g.weights.slope[k] * d.zeta * g.force;
+      for (int a = 0; a < 3; ++a) {
+        const int i = g.weights.first + k;
+        if (!rod_.is_held(i, a)) add(rod_.velocity_of(i) + a, unknown, row[a]);
+      }
+    }
+    if (body_.moves_freely()) {
+      for (int a = 0; a < 3; ++a) {
+        add(body_.velocity() + a, unknown, c.force[a]);
+        add(body_.spin() + a, unknown, -c.torque[a]);
+      }
+    }
+    add(first_, unknown, c.tangency);
+    if (has_law()) {
+      add(force_unknown(), unknown, d.lambda + law[1] * c.gap + law[2] * c.gap_rate);
+    } else {
+      add(force_unknown(), unknown, c.gap);
+      add(stabiliser_unknown(), unknown, c.gap_rate);
+    }
+  };
+  for (int k = 0; k < 4; ++k) {
+    const int i = g.weights.first + k;
+    for (int a = 0; a < 3; ++a) {
+      Direction d;
+      d.x = g.weights.value[k] * Vector3d::Unit(a);
+      d.slope = g.weights.slope[k] * Vector3d::Unit(a);
+      // The velocity's share in N' zeta is in g.slope_v already.
+      column(rod_.position_of(i) + a, d);
+      Direction e;
+      e.v = g.weights.value[k] * Vector3d::Unit(a);
+      column(rod_.velocity_of(i) + a, e);
+      if (!rod_.is_held(i, a)) {
+        add(rod_.position_of(i) + a, stabiliser_unknown(),
+            -g.weights.value[k] * g.normal[a] / rod_.mass_of(i));
+      }
+    }
+  }
+  const Eigen::Matrix<double, 3, 4> turn =
+      4.0 * g.r_wb * multibody::quaternion_rates(at.y.segment<4>(body_.quaternion())).transpose();
+  for (int a = 0; a < 4; ++a) {
+    Direction d;
+    d.turn = turn.col(a);
+    column(body_.quaternion() + a, d);
+  }
+  for (int a = 0; a < 3; ++a) {
+    Direction d;
+    d.p = Vector3d::Unit(a);
+    column(body_.position() + a, d);
+    Direction e;
+    e.body_velocity = Vector3d::Unit(a);
+    column(body_.velocity() + a, e);
+    Direction f;
+    f.spin = Vector3d::Unit(a);
+    column(body_.spin() + a, f);
+  }
+  Direction d;
+  d.zeta = 1.0;
+  column(first_, d);
+  Direction e;
+  e.lambda = 1.0;
+  column(force_unknown(), e);
+  if (has_law()) add(stabiliser_unknown(), stabiliser_unknown(), 1.0);
+}
+
+ContactPart::Nearest ContactPart::nearest(const VectorView& y) const {
+  const int last = rod_.vertices() - 1;
+  const Vector4d q = y.segment<4>(body_.quaternion());
+  const Matrix3d r_wb = multibody::rotation(q);
+  const Matrix3d r_ws = r_wb * contact_.shape_rotation;
+  const Vector3d origin = y.segment<3>(body_.position()) + r_wb * contact_.shape_position;
+  const auto distance = [&](const Vector3d& x) {
+    return contact_.shape->at(r_ws.transpose() * (x - origin));
+  };
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= last; ++i) {
+    const double d = distance(y.segment<3>(rod_.position_of(i))).distance;
+    if (d < least) {
+      least = d;
+      best = i;
+    }
+  }
+  // The curve's minimum on the two elements beside the best vertex: bisection of the slope n.X' of the distance.
+  const auto at = [&](double s) {
+    const CurveWeights w = curve_weights(rod_, s);
+    Vector3d x = Vector3d::Zero();
+    Vector3d slope = Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) {
+      x += w.value[k] * y.segment<3>(rod_.position_of(w.first + k));
+      slope += w.slope[k] * y.segment<3>(rod_.position_of(w.first + k));
+    }
+    const DistanceField f = distance(x);
+    return std::pair{f.distance, (r_ws * f.normal).dot(slope)};
+  };
+  double low = rod_.coordinate(std::max(0, best - 1));
+  double high = rod_.coordinate(std::min(last, best + 1));
+  double f_low = at(low).second;
+  double f_high = at(high).second;
+  double s = rod_.coordinate(best);
+  if (f_low < 0.0 && f_high > 0.0) {
+    // Illinois; a root of a smooth function is found to round-off in about ten evaluations.
+    for (int k = 0; k < 60 && high - low > 1e-15 * rod_.coordinate(last); ++k) {
+      s = (low * f_high - high * f_low) / (f_high - f_low);
+      const double f = at(s).second;
+      if (f == 0.0) break;
+      if (f < 0.0) {
+        low = s;
+        f_low = f;
+        f_high *= 0.5;
+      } else {
+        high = s;
+        f_high = f;
+        f_low *= 0.5;
+      }
+      if (std::abs(f) < 1e-14) break;
+    }
+  }
+  return {s, at(s).first - contact_.wire_radius};
+}
+
+void ContactPart::events(const DaePoint& at, std::span<double> values) {
+  if (!closed_) {
+    values[0] = nearest(at.y).gap - touch_gap_;
+  } else {
+    values[0] = has_law() ? -geometry(at.y).gap : at.y[force_unknown()];
+  }
+}
+
+bool ContactPart::accept(const DaePoint& at) {
+  return closed_ && follow(at.y);
+}
+
+bool ContactPart::follow(const VectorView& y) {
+  const int first = curve_weights(rod_, y[first_]).first;
+  if (first >= window_ && first + 4 <= window_ + window_size) return false;
+  window_ = std::clamp(first - (window_size - 4) / 2, 0, std::max(0, rod_.vertices() - window_size));
+  return true;
+}
+
+bool ContactPart::close(Eigen::VectorXd& y) {
+  closed_ = true;
+  y[first_] = nearest(y).coordinate;
+  y[stabiliser_unknown()] = 0.0;
+  // The wire is moved out by what a touch is noticed late, so that the constraint holds from the start.
+  for (int iteration = 0; iteration < 2 && !has_law(); ++iteration) {
+    const Geometry g = geometry(y);
+    double square = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      for (int a = 0; a < 3; ++a) {
+        if (!rod_.is_held(g.weights.first + k, a)) square += std::pow(g.weights.value[k] * g.normal[a], 2);
+      }
+    }
+    for (int k = 0; k < 4 && square > 0.0; ++k) {
+      const int i = g.weights.first + k;
+      for (int a = 0; a < 3; ++a) {
+        if (!rod_.is_held(i, a))
+          y[rod_.position_of(i) + a] -= g.weights.value[k] * g.normal[a] * g.gap / square;
+      }
+    }
+  }
+  return follow(y);
+}
+
+void ContactPart::open(Eigen::VectorXd& y) {
+  closed_ = false;
+  touch_gap_ = std::min(0.0, geometry(y).gap) - touch_depth;
+  kept_coordinate_ = y[first_];
+  y[force_unknown()] = 0.0;
+  y[stabiliser_unknown()] = 0.0;
+}
+
+ContactSample ContactPart::sample(const DaePoint& at) const {
+  ContactSample s;
+  s.closed = closed_;
+  if (closed_) {
+    const Geometry g = geometry(at.y);
+    s.gap = g.gap;
+    s.force = g.force;
+    s.normal_force = g.lambda;
+    s.point = g.x;
+    s.arc = at.y[first_];
+    s.slip_speed = g.sliding.norm();
+    return s;
+  }
+  const Nearest n = nearest(at.y);
+  s.gap = n.gap;
+  s.arc = n.coordinate;
+  const CurveWeights w = curve_weights(rod_, n.coordinate);
+  for (int k = 0; k < 4; ++k) s.point += w.value[k] * at.y.segment<3>(rod_.position_of(w.first + k));
+  return s;
+}
+
+double ContactPart::gap_rate(const VectorView& y) const {
+  return geometry(y).gap_rate;
+}
+
+double ContactPart::lost_power(const VectorView& y) const {
+  if (!closed_) return 0.0;
+  const Geometry g = geometry(y);
+  // What the pair of forces takes from wire and body together; a law's spring part returns it.
+  return has_law() ? -g.force.dot(g.relative) : g.lambda * g.friction.over_speed * g.sliding.squaredNorm();
+}
+
+void ContactPart::respond(const VectorView& y, double impulse, Eigen::VectorXd& dv) const {
+  const Geometry g = geometry(y);
+  for (int k = 0; k < 4; ++k) {
+    const int i = g.weights.first + k;
+    for (int a = 0; a < 3; ++a) {
+      if (rod_.is_held(i, a)) continue;
+      dv[rod_.velocity_of(i) + a] += impulse * g.weights.value[k] * g.normal[a] / rod_.mass_of(i);
+    }
+  }
+  if (!body_.moves_freely()) return;
+  dv.segment<3>(body_.velocity()) -= impulse / body_.body().properties.mass * g.normal;
+  dv.segment<3>(body_.spin()) -=
+      impulse * (body_.inverse_inertia() * (g.r_wb.transpose() * g.arm.cross(g.normal)));
+}
+
+std::array<Vector3d, 2> ContactPart::force_on_mounts(const VectorView& y) const {
+  std::array<Vector3d, 2> result{Vector3d::Zero(), Vector3d::Zero()};
+  if (!closed_) return result;
+  const Geometry g = geometry(y);
+  for (int k = 0; k < 4; ++k) {
+    const int i = g.weights.first + k;
+    if (i != 0 && i != rod_.vertices() - 1) continue;
+    for (int a = 0; a < 3; ++a) {
+      if (rod_.is_held(i, a)) result[i == 0 ? 0 : 1][a] += g.weights.value[k] * g.force[a];
+    }
+  }
+  return result;
+}
+
+double ContactPart::gap_rate_of(const VectorView& y, const Eigen::VectorXd& velocities) const {
+  const Geometry g = geometry(y);
+  Vector3d v = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k)
+    v += g.weights.value[k] * velocities.segment<3>(rod_.velocity_of(g.weights.first + k));
+  return g.normal.dot(v - velocities.segment<3>(body_.velocity()) -
+                      (g.r_wb * velocities.segment<3>(body_.spin())).cross(g.arm));
+}
+
+double ContactPart::gap_acceleration_at_rest(const VectorView& y) const {
+  const Geometry g = geometry(y);
+  Direction d;
+  d.x = g.v;
+  d.slope = g.slope_v;
+  d.p = g.body_velocity;
+  d.turn = g.omega;
+  // zeta keeps the tangency.
+  Direction along;
+  along.zeta = 1.0;
+  d.zeta = -change(g, d).tangency / change(g, along).tangency;
+  return change(g, d).gap_rate;
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "coupling/motion.hpp"
+#include "coupling/motion_body.hpp"
+
+#include <array>
+
+namespace snare::coupling {
+
+/// Weights of the four vertices first ... first + 3 in the C1 curve at a material coordinate, and their derivatives by
+/// it: X(S) = sum N_k x_k, the cubic Hermite curve with the slopes of (C.1).                theory.md (M.6)
+struct CurveWeights {
+  int first = 0;
+  Eigen::Vector4d value, slope, bend;  ///< N [-], N' [1/m], N'' [1/m^2]
+};
+[[nodiscard]] CurveWeights curve_weights(const wire::RodPart& rod, double coordinate);
+
+/// One contact between a wire and a body's shape: material coordinate zeta, normal force lambda, and the multiplier mu
+/// that stabilises the constraint (Gear, Gupta, Leimkuhler 1985).                          theory.md (M.7)-(M.9)
+///
+///   closed:  n.X'(zeta) = 0,  g = 0,  dg/dt = 0;   x_k' = v_k + N_k n mu/m_k
+///   open:    zeta = where it was, lambda = 0, mu = 0
+/// With a law instead of the constraint lambda = law(-g, -dg/dt) while closed.
+class ContactPart final : public numerics::DaePart {
+ public:
+  ContactPart(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
+              const MotionOptions& options);
+
+  void declare(numerics::DaeLayout& layout) override;
+  void couple(std::vector<std::pair<int, int>>& entries) const override;
+  void bind(const numerics::SparseMatrix& pattern) override;
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  [[nodiscard]] int event_count() const override { return 1; }
+  /// Open: the gap. Closed: the normal force (constraint), the penetration (law).
+  void events(const numerics::DaePoint& at, std::span<double> values) override;
+  /// The window of vertices that the pattern covers follows the contact.
+  bool accept(const numerics::DaePoint& at) override;
+
+  [[nodiscard]] bool closed() const { return closed_; }
+  [[nodiscard]] bool has_law() const { return static_cast<bool>(contact_.law); }
+  /// The closest point of the wire: material coordinate and gap [m].
+  struct Nearest {
+    double coordinate = 0.0;
+    double gap = 0.0;
+  };
+  [[nodiscard]] Nearest nearest(const numerics::VectorView& y) const;
+  /// Closes at the closest point and sets the contact's own unknowns. True: the pattern changes.
+  [[nodiscard]] bool close(Eigen::VectorXd& y);
+  void open(Eigen::VectorXd& y);
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
+  /// Relative normal speed dg/dt [m/s].
+  [[nodiscard]] double gap_rate(const numerics::VectorView& y) const;
+  /// Power lost to friction (and taken by a law) [W].
+  [[nodiscard]] double lost_power(const numerics::VectorView& y) const;
+
+  /// What of the contact force falls on rigidly held components of the first and the last vertex [N].
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> force_on_mounts(const numerics::VectorView& y) const;
+
+  [[nodiscard]] int coordinate_unknown() const { return first_; }
+  [[nodiscard]] int force_unknown() const { return first_ + 1; }
+  [[nodiscard]] int stabiliser_unknown() const { return first_ + 2; }
+
+  /// Velocity changes of an impulse at the contact [N s], added to dv.
+  void respond(const numerics::VectorView& y, double impulse, Eigen::VectorXd& dv) const;
+  /// Rate of dg/dt along velocities and quaternion rates with all accelerations zero [m/s^2].
+  [[nodiscard]] double gap_acceleration_at_rest(const numerics::VectorView& y) const;
+  /// d(dg/dt) for changes of velocities alone.
+  [[nodiscard]] double gap_rate_of(const numerics::VectorView& y, const Eigen::VectorXd& velocities) const;
+
+ private:
+  /// Everything at one point of time.
+  struct Geometry;
+  /// A direction in the space of what the contact depends on, and what follows.
+  struct Direction;
+  struct Change;
+  [[nodiscard]] Geometry geometry(const numerics::VectorView& y) const;
+  [[nodiscard]] Change change(const Geometry& g, const Direction& d) const;
+  [[nodiscard]] bool follow(const numerics::VectorView& y);
+  [[nodiscard]] std::vector<int> local_unknowns(int first_vertex) const;
+
+  MotionContact contact_;
+  const wire::RodPart& rod_;
+  const BodyPart& body_;
+  MotionOptions options_;
+  bool closed_ = false;
+  double kept_coordinate_ = 0.0;
+  double touch_gap_ = 0.0;  // of the next touch [m], <= 0
+  int window_ = 0;          // first vertex that the pattern covers
+  int first_ = 0;
+  const numerics::SparseMatrix* pattern_ = nullptr;
+};
+
+}  // namespace snare::coupling

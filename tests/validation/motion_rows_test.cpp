@@ -1,0 +1,29 @@
+// Those rows of the motion that take seconds, not minutes, under the sanitizers; `snare validate` has all.
+
+#include "validation/motion_checks.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snare::validation {
+namespace {
+
+void expect_within(const std::vector<Row>& rows) {
+  EXPECT_FALSE(rows.empty());
+  for (const Row& row : rows) {
+    EXPECT_TRUE(row.within()) << row.group << ", " << row.name << ": " << row.value << " instead of "
+                              << row.reference << ", error " << row.error() << " of " << row.limit;
+  }
+}
+
+TEST(SlowMotionRows, AxialWavesRunAtTheirSpeed) {
+  expect_within(axial_wave_rows());
+}
+TEST(SlowMotionRows, ChainAndPendulumSwingAsPublished) {
+  expect_within(gravity_rows());
+}
+TEST(SlowMotionRows, ASlowPushEndsInTheStaticCurve) {
+  expect_within(slow_push_rows());
+}
+
+}  // namespace
+}  // namespace snare::validation

@@ -1,0 +1,440 @@
+#include "wire/rod_dynamics.hpp"
+
+#include "wire/curvature.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace snare::wire {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using numerics::DaeKind;
+using numerics::DaePoint;
+
+namespace {
+
+constexpr int block = SpatialRod::block;
+constexpr int reach = SpatialRod::half_bandwidth;
+constexpr int width = 2 * reach + 1;
+constexpr int local = 11;  // unknowns of a vertex's cell: x and theta of its two edges and the last x
+
+using LocalVector = Eigen::Matrix<double, local, 1>;
+using LocalMatrix = Eigen::Matrix<double, local, local>;
+
+MaterialMesh mesh_of(const RodInMotion& rod) {
+  assert(rod.elements >= 4 && rod.length > 0.0 && rod.mass_per_length > 0.0);
+  return {rod.elements / 2, rod.elements - rod.elements / 2, rod.grading};
+}
+
+std::size_t at_slot(int i, int j) {
+  return static_cast<std::size_t>(i * width + (j - i + reach));
+}
+
+void add_to(std::vector<double>& values, int slot, double value) {
+  if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
+}
+
+/// By (x_{i-1}, theta_{i-1}, x_i, theta_i, x_{i+1}) from derivatives by the edges a = x_i - x_{i-1}, b = x_{i+1} - x_i.
+LocalVector to_local(const PairGradient& g) {
+  LocalVector v;
+  v << -g.a, g.theta_a, g.a - g.b, g.theta_b, g.b;
+  return v;
+}
+
+LocalMatrix to_local(const PairHessian& h) {
+  LocalMatrix m = LocalMatrix::Zero();
+  const Matrix3d ba = h.ab.transpose();
+  m.block<3, 3>(0, 0) = h.aa;
+  m.block<3, 3>(0, 4) = -h.aa + h.ab;
+  m.block<3, 3>(0, 8) = -h.ab;
+  m.block<3, 3>(4, 0) = -h.aa + ba;
+  m.block<3, 3>(4, 4) = h.aa - h.ab - ba + h.bb;
+  m.block<3, 3>(4, 8) = h.ab - h.bb;
+  m.block<3, 3>(8, 0) = -ba;
+  m.block<3, 3>(8, 4) = ba - h.bb;
+  m.block<3, 3>(8, 8) = h.bb;
+  const auto angle = [&m](int column, const Vector3d& a, const Vector3d& b) {
+    m.block<3, 1>(0, column) = -a;
+    m.block<3, 1>(4, column) = a - b;
+    m.block<3, 1>(8, column) = b;
+    m.block<1, 3>(column, 0) = -a.transpose();
+    m.block<1, 3>(column, 4) = (a - b).transpose();
+    m.block<1, 3>(column, 8) = b.transpose();
+  };
+  angle(3, h.a_theta_a, h.b_theta_a);
+  angle(7, h.a_theta_b, h.b_theta_b);
+  m(3, 3) = h.theta_aa;
+  m(3, 7) = m(7, 3) = h.theta_ab;
+  m(7, 7) = h.theta_bb;
+  return m;
+}
+
+}  // namespace
+
+/// One vertex's bending for the damping: turn, directors, stiffness, rates of the local unknowns.
+struct RodPart::ViscousCell {
+  bool exists = false;
+  Turn turn;
+  InverseLengths inverse;
+  Directors before, after;
+  std::array<double, 2> coefficient{};  // tau k_j [N m s]
+  LocalVector rate = LocalVector::Zero();
+
+  ViscousCell(const RodPart& part, const DaePoint& at, int i) {
+    const SpatialRodProperties& p = part.rod_.properties();
+    const int n = part.rod_.mesh().edges();
+    const SpatialEnd* end = i == 0 ? &p.left : (i == n ? &p.right : nullptr);
+    if (end != nullptr && end->kind != SpatialEnd::Kind::clamp) return;
+    exists = true;
+    Vector3d tangents[2];
+    for (int side = 0; side < 2; ++side) {
+      const int e = i - 1 + side;
+      Directors& directors = side == 0 ? before : after;
+      double& inverse_length = side == 0 ? inverse.a : inverse.b;
+      const bool mount = e < 0 || e >= n;
+      Frame frame = mount ? (e < 0 ? *part.trial_.left_mount : *part.trial_.right_mount)
+                          : part.trial_.frames[static_cast<std::size_t>(e)];
+      const double theta = mount ? end->twist_angle : part.trial_.q[block * e + 3];
+      tangents[side] = frame.tangent;
+      directors.first = turned_director(frame, theta);
+      directors.second = frame.tangent.cross(directors.first);
+      inverse_length = mount ? 0.0 : 1.0 / (vertex(part.trial_, e + 1) - vertex(part.trial_, e)).norm();
+      if (!mount) rate[4 * side + 3] = at.rate[part.angle_of(e)];
+    }
+    for (int k = -1; k <= 1; ++k) {
+      if (i + k >= 0 && i + k <= n) rate.segment<3>(4 * (k + 1)) = at.y.segment<3>(part.velocity_of(i + k));
+    }
+    turn = make_turn(tangents[0], tangents[1]);
+    const double rest_before = i > 0 ? part.rod_.mesh().rest_length(i - 1, part.controls_) : 0.0;
+    const double rest_after = i < n ? part.rod_.mesh().rest_length(i, part.controls_) : 0.0;
+    const double length = 0.5 * (rest_before + rest_after);
+    coefficient = {part.constants_.damping.bending_time * p.bending_stiffness / length,
+                   part.constants_.damping.bending_time * p.second_bending_stiffness / length};
+  }
+  [[nodiscard]] WeightedCurvature curvature(int j) const {
+    return {turn, before, after, j == 0 ? Eigen::Vector2d(1.0, 0.0) : Eigen::Vector2d(0.0, 1.0)};
+  }
+};
+
+RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances)
+    : name_(std::move(name)),
+      constants_(rod),
+      tolerances_(tolerances),
+      rod_(mesh_of(rod), rod.properties),
+      controls_{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length} {
+  const int n = rod_.mesh().vertices();
+  mass_.assign(static_cast<std::size_t>(n), 0.0);
+  for (int e = 0; e + 1 < n; ++e) {
+    const double half = 0.5 * rod.mass_per_length * rod_.mesh().rest_length(e, controls_);
+    mass_[static_cast<std::size_t>(e)] += half;
+    mass_[static_cast<std::size_t>(e + 1)] += half;
+  }
+  held_.assign(static_cast<std::size_t>(3 * n), false);
+  const auto hold = [this](const SpatialEnd& end, int vertex) {
+    if (end.kind == SpatialEnd::Kind::free) return;
+    for (int k = 0; k < 3; ++k) {
+      held_[static_cast<std::size_t>(3 * vertex + k)] = k > 0 || std::isinf(end.translational_stiffness);
+    }
+  };
+  hold(rod.properties.left, 0);
+  hold(rod.properties.right, n - 1);
+  twist_free_ = !rod.properties.left.orients() && !rod.properties.right.orients();
+  band_.resize(rod_.unknowns());
+}
+
+void RodPart::declare(numerics::DaeLayout& layout) {
+  const int n = vertices();
+  const std::vector<std::string> axes{"x", "y", "z"};
+  x_ = layout.add({name_ + " position", axes, 3 * n, DaeKind::differential, tolerances_.position, 0});
+  theta_ = layout.add({name_ + " twist angle", {}, n, DaeKind::algebraic, tolerances_.angle, 0});
+  v_ = layout.add({name_ + " velocity", axes, 3 * n, DaeKind::differential, tolerances_.velocity, 0});
+}
+
+int RodPart::unknown_of(int band) const {
+  const int i = band / block;
+  const int k = band % block;
+  return k == 3 ? theta_ + i : x_ + 3 * i + k;
+}
+
+namespace {
+
+bool is_angle(int band) {
+  return band % block == 3;
+}
+
+}  // namespace
+
+void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
+  const int bands = rod_.unknowns();
+  const bool damped = constants_.damping.bending_time > 0.0 || constants_.damping.axial_time > 0.0;
+  for (int i = 0; i < bands; ++i) {
+    const int at = unknown_of(i);
+    const int vertex = i / block;
+    if (is_angle(i)) {
+      entries.emplace_back(at, at);
+      if (vertex == vertices() - 1 || (twist_free_ && vertex == 0)) continue;
+    } else {
+      const int velocity = velocity_of(vertex) + i % block;
+      entries.emplace_back(at, at);
+      entries.emplace_back(at, velocity);
+      entries.emplace_back(velocity, velocity);
+      if (is_held(vertex, i % block)) continue;
+    }
+    const int row = is_angle(i) ? at : velocity_of(vertex) + i % block;
+    for (int j = std::max(0, i - reach); j <= std::min(bands - 1, i + reach); ++j) {
+      // A round rod's twist acts through the edges' vectors of both sides: within the band everything may be filled.
+      entries.emplace_back(row, unknown_of(j));
+      if (damped && !is_angle(j)) entries.emplace_back(row, velocity_of(j / block) + j % block);
+    }
+  }
+}
+
+void RodPart::bind(const numerics::SparseMatrix& pattern) {
+  const int bands = rod_.unknowns();
+  band_slots_.assign(static_cast<std::size_t>(bands * width), -1);
+  rate_slots_.assign(static_cast<std::size_t>(bands * width), -1);
+  diagonal_.assign(static_cast<std::size_t>(3 * bands), -1);
+  for (int i = 0; i < bands; ++i) {
+    const int at = unknown_of(i);
+    const int vertex = i / block;
+    const auto d = static_cast<std::size_t>(3 * i);
+    diagonal_[d] = pattern.slot(at, at);
+    bool held = false;
+    int row = at;
+    if (is_angle(i)) {
+      held = vertex == vertices() - 1 || (twist_free_ && vertex == 0);
+    } else {
+      row = velocity_of(vertex) + i % block;
+      diagonal_[d + 1] = pattern.slot(at, row);
+      diagonal_[d + 2] = pattern.slot(row, row);
+      held = is_held(vertex, i % block);
+    }
+    if (held) continue;
+    for (int j = std::max(0, i - reach); j <= std::min(bands - 1, i + reach); ++j) {
+      band_slots_[at_slot(i, j)] = pattern.slot(row, unknown_of(j));
+      if (!is_angle(j)) rate_slots_[at_slot(i, j)] = pattern.slot(row, velocity_of(j / block) + j % block);
+    }
+  }
+}
+
+void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eigen::VectorXd& y) {
+  const int n = vertices();
+  assert(positions.cols() == n);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(rod_.unknowns());
+  for (int i = 0; i < n; ++i) {
+    q.segment<3>(block * i) = positions.col(i);
+    y.segment<3>(position_of(i)) = positions.col(i);
+    y[angle_of(i)] = 0.0;
+    y.segment<3>(velocity_of(i)).setZero();
+    if (velocities.cols() == n) y.segment<3>(velocity_of(i)) = velocities.col(i);
+  }
+  base_ = rod_.make_state(q, controls_);
+  trial_ = base_;
+}
+
+void RodPart::evaluate(const DaePoint& at) {
+  for (int i = 0; i < vertices(); ++i) {
+    band_.segment<3>(block * i) = at.y.segment<3>(position_of(i));
+    band_[block * i + 3] = at.y[angle_of(i)];
+  }
+  trial_ = base_;
+  wire::accept(trial_, band_);
+  rod_.assemble_forces(trial_, assembly_);
+  viscous_power_ = 0.0;
+  add_viscous(at, assembly_.gradient);
+}
+
+void RodPart::add_viscous(const DaePoint& at, Eigen::VectorXd& gradient) {
+  const int n = rod_.mesh().edges();
+  if (constants_.damping.axial_time > 0.0) {
+    for (int e = 0; e < n; ++e) {
+      const Vector3d d = vertex(trial_, e + 1) - vertex(trial_, e);
+      const Vector3d t = d.normalized();
+      const double rest = rod_.mesh().rest_length(e, controls_);
+      const double rate = t.dot(at.y.segment<3>(velocity_of(e + 1)) - at.y.segment<3>(velocity_of(e))) / rest;
+      const double force = constants_.damping.axial_time * rod_.properties().axial_stiffness * rate;
+      gradient.segment<3>(block * e) -= force * t;
+      gradient.segment<3>(block * (e + 1)) += force * t;
+      viscous_power_ += force * rate * rest;
+    }
+  }
+  if (constants_.damping.bending_time == 0.0) return;
+  for (int i = 0; i <= n; ++i) {
+    const ViscousCell cell(*this, at, i);
+    if (!cell.exists) continue;
+    const LocalVector& r = cell.rate;
+    const Vector3d rate_a = r.segment<3>(4) - r.segment<3>(0);
+    const Vector3d rate_b = r.segment<3>(8) - r.segment<3>(4);
+    for (int j = 0; j < 2; ++j) {
+      PairGradient g;
+      cell.curvature(j).add_gradient(cell.inverse, g);
+      const double rate = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[3] + g.theta_b * r[7];
+      const double moment = cell.coefficient[static_cast<std::size_t>(j)] * rate;
+      viscous_power_ += moment * rate;
+      if (i > 0) {
+        gradient.segment<3>(block * (i - 1)) -= moment * g.a;
+        gradient[block * (i - 1) + 3] += moment * g.theta_a;
+      }
+      gradient.segment<3>(block * i) += moment * (g.a - g.b);
+      if (i < n) {
+        gradient[block * i + 3] += moment * g.theta_b;
+        gradient.segment<3>(block * (i + 1)) += moment * g.b;
+      }
+    }
+  }
+}
+
+void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  evaluate(at);
+  const int n = vertices();
+  const double mass_rate = constants_.damping.mass_rate;
+  for (int i = 0; i < n; ++i) {
+    const SpatialEnd& end = i == 0 ? rod_.properties().left : rod_.properties().right;
+    const double m = mass_of(i);
+    for (int k = 0; k < 3; ++k) {
+      const int x = position_of(i) + k;
+      const int v = velocity_of(i) + k;
+      if (is_held(i, k)) {
+        rows[x] += at.y[x] - end.position[k];
+        rows[v] += at.y[v];
+      } else {
+        rows[x] += at.rate[x] - at.y[v];
+        rows[v] += m * (at.rate[v] + mass_rate * at.y[v]) + assembly_.gradient[block * i + k];
+      }
+    }
+    const bool held = i == n - 1 || (twist_free_ && i == 0);
+    rows[angle_of(i)] += held ? at.y[angle_of(i)] : assembly_.gradient[block * i + 3];
+  }
+}
+
+void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
+  evaluate(at);
+  rod_.assemble(trial_, {false, false, false}, assembly_);
+  const int bands = rod_.unknowns();
+  for (int i = 0; i < bands; ++i) {
+    const int vertex = i / block;
+    const auto d = static_cast<std::size_t>(3 * i);
+    if (is_angle(i)) {
+      if (vertex == vertices() - 1 || (twist_free_ && vertex == 0)) add_to(values, diagonal_[d], 1.0);
+    } else if (is_held(vertex, i % block)) {
+      add_to(values, diagonal_[d], 1.0);
+      add_to(values, diagonal_[d + 2], 1.0);
+    } else {
+      add_to(values, diagonal_[d], c);
+      add_to(values, diagonal_[d + 1], -1.0);
+      add_to(values, diagonal_[d + 2], mass_of(vertex) * (c + constants_.damping.mass_rate));
+    }
+  }
+  for (int j = 0; j < bands; ++j) {
+    const double* column = assembly_.hessian.column(j);
+    for (int i = j; i <= std::min(bands - 1, j + reach); ++i) {
+      const double value = column[i - j];
+      add_to(values, band_slots_[at_slot(i, j)], value);
+      if (i != j) add_to(values, band_slots_[at_slot(j, i)], value);
+    }
+  }
+  add_viscous_jacobian(at, c, values);
+}
+
+void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<double>& values) {
+  const int n = rod_.mesh().edges();
+  const int bands = rod_.unknowns();
+  if (constants_.damping.axial_time > 0.0) {
+    for (int e = 0; e < n; ++e) {
+      const Vector3d d = vertex(trial_, e + 1) - vertex(trial_, e);
+      const double length = d.norm();
+      const Vector3d t = d / length;
+      const Vector3d w = at.y.segment<3>(velocity_of(e + 1)) - at.y.segment<3>(velocity_of(e));
+      const double factor = constants_.damping.axial_time * rod_.properties().axial_stiffness /
+                            rod_.mesh().rest_length(e, controls_);
+      const Matrix3d across = (Matrix3d::Identity() - t * t.transpose()) / length;
+      const Matrix3d by_edge = factor * (t * (across * w).transpose() + t.dot(w) * across);
+      const Matrix3d by_rate = factor * t * t.transpose();
+      for (int a = 0; a < 6; ++a) {
+        for (int b = 0; b < 6; ++b) {
+          const double sign = (a < 3) == (b < 3) ? 1.0 : -1.0;
+          const int i = block * (e + a / 3) + a % 3;
+          const int j = block * (e + b / 3) + b % 3;
+          add_to(values, band_slots_[at_slot(i, j)], sign * by_edge(a % 3, b % 3));
+          add_to(values, rate_slots_[at_slot(i, j)], sign * by_rate(a % 3, b % 3));
+        }
+      }
+    }
+  }
+  if (constants_.damping.bending_time == 0.0) return;
+  for (int i = 0; i <= n; ++i) {
+    const ViscousCell cell(*this, at, i);
+    if (!cell.exists) continue;
+    LocalMatrix by_local = LocalMatrix::Zero();
+    LocalMatrix by_rate = LocalMatrix::Zero();
+    for (int j = 0; j < 2; ++j) {
+      PairGradient g;
+      PairHessian h;
+      const WeightedCurvature curvature = cell.curvature(j);
+      curvature.add_gradient(cell.inverse, g);
+      curvature.add_hessian(cell.inverse, h);
+      const LocalVector slope = to_local(g);
+      const LocalMatrix hessian = to_local(h);
+      const double factor = cell.coefficient[static_cast<std::size_t>(j)];
+      by_local += factor * (slope.dot(cell.rate) * hessian + slope * (hessian * cell.rate).transpose());
+      by_rate += factor * slope * slope.transpose();
+    }
+    for (int a = 0; a < local; ++a) {
+      const int row = block * (i - 1) + a;
+      if (row < 0 || row >= bands) continue;
+      for (int b = 0; b < local; ++b) {
+        const int column = block * (i - 1) + b;
+        if (column < 0 || column >= bands) continue;
+        const std::size_t slot = at_slot(row, column);
+        add_to(values, band_slots_[slot], by_local(a, b) + (is_angle(column) ? c * by_rate(a, b) : 0.0));
+        if (!is_angle(column)) add_to(values, rate_slots_[slot], by_rate(a, b));
+      }
+    }
+  }
+}
+
+bool RodPart::accept(const DaePoint& at) {
+  for (int i = 0; i < vertices(); ++i) {
+    band_.segment<3>(block * i) = at.y.segment<3>(position_of(i));
+    band_[block * i + 3] = at.y[angle_of(i)];
+  }
+  wire::accept(base_, band_);
+  return false;
+}
+
+RodPart::Energies RodPart::energies(const DaePoint& at) {
+  evaluate(at);
+  Energies result;
+  double square = 0.0;
+  for (int i = 0; i < vertices(); ++i) {
+    const Vector3d v = at.y.segment<3>(velocity_of(i));
+    square += mass_of(i) * v.squaredNorm();
+    result.momentum += mass_of(i) * v;
+    result.angular_momentum += mass_of(i) * vertex(trial_, i).cross(v);
+  }
+  for (int e = 0; e + 1 < vertices(); ++e) {
+    result.potential -= 0.5 * rod_.mesh().rest_length(e, controls_) *
+                        rod_.properties().weight.dot(vertex(trial_, e) + vertex(trial_, e + 1));
+  }
+  result.kinetic = 0.5 * square;
+  result.strain = assembly_.energy - result.potential;
+  result.dissipation = viscous_power_ + constants_.damping.mass_rate * square;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const SpatialEnd& end = side == 0 ? rod_.properties().left : rod_.properties().right;
+    if (end.kind == SpatialEnd::Kind::free) continue;
+    const int i = side == 0 ? 0 : vertices() - 1;
+    result.mount_forces[side] = assembly_.gradient.segment<3>(block * i);
+    if (!is_held(i, 0)) {
+      result.mount_forces[side].x() =
+          -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
+    }
+  }
+  return result;
+}
+
+}  // namespace snare::wire
