@@ -31,6 +31,9 @@ namespace snare::app {
 /// Every wire model on the same case: compare.json, report.html.
 [[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
 
+/// A dynamic scenario: history.csv, summary.json, report.html, ParaView files on request.
+[[nodiscard]] ExitStatus run_simulate(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

@@ -56,6 +56,8 @@ const Verb verbs[] = {
     {"compare", "the same case with every wire model: accuracy and cost side by side", "SCENARIO.toml",
      "experiment or wire file", true, "snare compare data/experiments/published_static.toml --out out/compare",
      snare::app::run_compare},
+    {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml", "scenario file",
+     true, "snare simulate data/scenarios/air_table.toml --out out/air_table", snare::app::run_simulate},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {

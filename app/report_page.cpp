@@ -250,6 +250,42 @@ void ReportPage::line_plot(const PlotSpecification& plot) {
   body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
 }
 
+void ReportPage::animation(const AnimationSpecification& animation) {
+  if (animation.frames.empty()) return;
+  close_plots();
+  double low[2] = {1e300, 1e300};
+  double high[2] = {-1e300, -1e300};
+  json frames = json::array();
+  for (const AnimationFrame& frame : animation.frames) {
+    if (frame.outlines.size() != animation.names.size()) {
+      throw std::invalid_argument(fmt::format("animation \"{}\": {} outlines, must be {}", animation.title, frame.outlines.size(),
+                                              animation.names.size()));
+    }
+    for (const std::vector<double>& outline : frame.outlines) {
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        if (!std::isfinite(outline[i])) {
+          throw std::invalid_argument(fmt::format("animation \"{}\": a coordinate is {}", animation.title, outline[i]));
+        }
+        low[i % 2] = std::min(low[i % 2], outline[i]);
+        high[i % 2] = std::max(high[i % 2], outline[i]);
+      }
+    }
+    frames.push_back({{"label", frame.label}, {"outlines", frame.outlines}});
+  }
+  const double margin = 0.05 * std::max({high[0] - low[0], high[1] - low[1], 1e-9});
+  const json data{{"names", animation.names},
+                  {"box", {low[0] - margin, low[1] - margin, high[0] - low[0] + 2.0 * margin, high[1] - low[1] + 2.0 * margin}},
+                  {"frames", frames}};
+  animated_ = true;
+  body_ += fmt::format(
+      "<figure class=\"animation\"><figcaption>{}</figcaption><svg style=\"width:100%;max-height:24rem\"></svg>"
+      "<p><button type=\"button\">play</button> <input type=\"range\" min=\"0\" value=\"0\" style=\"width:60%\"> "
+      "<output></output></p>",
+      escape_html(animation.title));
+  if (!animation.note.empty()) body_ += fmt::format("<p class=\"note\">{}</p>", escape_html(animation.note));
+  body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
+}
+
 void ReportPage::footer(std::string_view text) {
   footer_ = text;
 }
@@ -282,6 +318,7 @@ std::string ReportPage::html() const {
     page += fmt::format("<script>\n/*\n{}*/\n{}\n</script>\n<script>\n{}</script>\n",
                         report_assets::d3_notice, report_assets::d3_script, report_assets::plot_script);
   }
+  if (animated_) page += fmt::format("<script>\n{}</script>\n", report_assets::animation_script);
   page += "</body>\n</html>\n";
   return page;
 }

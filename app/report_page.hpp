@@ -63,6 +63,18 @@ struct PlotSpecification {
   std::string note = {};  ///< printed under the plot; may be empty
 };
 
+/// Outlines that move, drawn to scale: one of x, y pairs for every name in every frame.
+struct AnimationFrame {
+  std::string label;                          ///< "t = 0.120 s"
+  std::vector<std::vector<double>> outlines;  ///< x0, y0, x1, y1, ... in the unit of the plot
+};
+struct AnimationSpecification {
+  std::string title;
+  std::vector<std::string> names;  ///< in the legend; one an outline
+  std::vector<AnimationFrame> frames;
+  std::string note = {};
+};
+
 enum class Tone { plain, good, bad };
 
 struct Cell {
@@ -127,6 +139,10 @@ class ReportPage {
   /// A plot without any point is left out.
   void line_plot(const PlotSpecification& plot);
 
+  /// Throws std::invalid_argument when a coordinate is not finite or a frame has another number of outlines than names.
+  /// Without frames it is left out.
+  void animation(const AnimationSpecification& animation);
+
   /// The small print at the end, e.g. which version wrote the page.
   void footer(std::string_view text);
 
@@ -142,6 +158,7 @@ class ReportPage {
   std::vector<std::string> headings_;
   std::optional<PlotWidth> plots_open_;  ///< width of the plots of the row being filled
   int plot_count_ = 0;
+  bool animated_ = false;
 };
 
 /// At most `digits` significant digits, no trailing zeros: 1.5, 719880, 2.3e-07.

@@ -26,7 +26,9 @@ double slip_of(const GuidedContact& contact, const VertexTangent& v, double coor
 }
 
 /// Where a function that was f0 at the start of the step and is f1 at its end crosses zero.
-double crossing(double f0, double f1) { return f0 / (f0 - f1); }
+double crossing(double f0, double f1) {
+  return f0 / (f0 - f1);
+}
 
 struct Pressed {
   double normal;      // force of the pin on the wire along its normal [N]
@@ -201,7 +203,8 @@ bool settle_wrapped(PushSystem& system, numerics::PathPoint& point, ContactMemor
   const Eigen::VectorXd old = point.border;
   const int old_mount = system.mount_row();
   const int head = system.riding_row(0);
-  if (kept.empty()) kept.push_back(system.riding[system.riding.size() / 2]), forces.push_back(Vector2d::Zero());
+  if (kept.empty())
+    kept.push_back(system.riding[system.riding.size() / 2]), forces.push_back(Vector2d::Zero());
   system.riding = kept;
   point.border.resize(system.border_unknowns());
   point.border.head(head) = old.head(head);
@@ -247,9 +250,12 @@ std::vector<PushEvent::Kind> contact_events(const ContactStates& before, const C
     if (was == ContactStatus::open) events.push_back(Kind::touch);
     if (is == ContactStatus::wrapped) events.push_back(Kind::wrap_begins);
     if (was == ContactStatus::wrapped) events.push_back(Kind::wrap_ends);
-    if (frictional && was == ContactStatus::stick && is == ContactStatus::slip) events.push_back(Kind::slip_begins);
-    if (frictional && was == ContactStatus::slip && is == ContactStatus::stick) events.push_back(Kind::slip_ends);
-  } else if (frictional && is == ContactStatus::slip && before.guided[0].slip_sign != after.guided[0].slip_sign) {
+    if (frictional && was == ContactStatus::stick && is == ContactStatus::slip)
+      events.push_back(Kind::slip_begins);
+    if (frictional && was == ContactStatus::slip && is == ContactStatus::stick)
+      events.push_back(Kind::slip_ends);
+  } else if (frictional && is == ContactStatus::slip &&
+             before.guided[0].slip_sign != after.guided[0].slip_sign) {
     events.push_back(Kind::slip_ends);
     events.push_back(Kind::slip_begins);
   }
@@ -269,7 +275,8 @@ bool settle_contact(PushSystem& system, numerics::PathPoint& point, ContactMemor
   if (pusher.status == ContactStatus::open) {
     const double gap = point.border[3];
     if (gap >= -relative_gap * system.length_scale()) return false;
-    if (pusher.last_gap > relative_gap * system.length_scale()) memory.at_fraction(crossing(pusher.last_gap, gap));
+    if (pusher.last_gap > relative_gap * system.length_scale())
+      memory.at_fraction(crossing(pusher.last_gap, gap));
     pusher.status = pusher.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
     pusher.last_coordinate = point.border[2];
     pusher.last_tangent = system.tangent_at(pusher, state).t;
@@ -297,7 +304,8 @@ bool settle_contact(PushSystem& system, numerics::PathPoint& point, ContactMemor
       memory.change();
       return true;
     }
-    if (settle_friction(contact, v, force, point.border[system.guided_row(k) + 2], floor, memory)) return true;
+    if (settle_friction(contact, v, force, point.border[system.guided_row(k) + 2], floor, memory))
+      return true;
   }
   if (pusher.radius > 0.0 && pusher.node > 1 && pusher.node < system.rod().mesh().edges() - 1) {
     const Vector2d centre = system.pusher_centre(point);
@@ -332,7 +340,8 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
   if (system.rod().has_memory()) system.sections = system.rod().remembered(state);
 }
 
-double friction_work(const PushSystem& system, const numerics::PathPoint& before, const numerics::PathPoint& now) {
+double friction_work(const PushSystem& system, const numerics::PathPoint& before,
+                     const numerics::PathPoint& now) {
   const wire::PlanarState state = system.state(now);
   double work = 0.0;
   for (int k = 0; k < static_cast<int>(system.guided.size()); ++k) {
@@ -362,7 +371,8 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
   return work;
 }
 
-PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
+                           const numerics::PathPoint& at) {
   const GuidedContact& pusher = system.guided[0];
   PusherForces sum;
   if (system.riding.empty()) {
@@ -386,7 +396,8 @@ PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& st
   return sum;
 }
 
-MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state,
+                         const numerics::PathPoint& at) {
   MountForces result;
   const wire::PlanarRodProperties& p = system.rod().properties();
   std::array<Vector2d, 2> reaction = system.mount_reactions();
@@ -419,7 +430,8 @@ bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::Pa
   const wire::PlanarState state = system.state(point);
   int nearest = 1;
   for (int i = 2; i < system.rod().mesh().edges(); ++i) {
-    if ((wire::vertex(state, i) - centre).norm() < (wire::vertex(state, nearest) - centre).norm()) nearest = i;
+    if ((wire::vertex(state, i) - centre).norm() < (wire::vertex(state, nearest) - centre).norm())
+      nearest = i;
   }
   GuidedContact& pusher = system.guided[0];
   pusher.status = ContactStatus::open;

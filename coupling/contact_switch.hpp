@@ -30,7 +30,8 @@ class ContactMemory {
 };
 
 /// What changed between two contact states, in words.
-[[nodiscard]] std::vector<PushEvent::Kind> contact_events(const ContactStates& before, const ContactStates& after);
+[[nodiscard]] std::vector<PushEvent::Kind> contact_events(const ContactStates& before,
+                                                          const ContactStates& after);
 
 /// Compares a solution with what its contact states assume (force >= 0, gap >= 0, |T| <= mu N, slip against the
 /// friction, no vertex inside the pusher) and changes the states that are violated.  theory.md (C.9)
@@ -71,6 +72,6 @@ struct ContactExtent {
 /// Puts the contact vertex at the point of the wire nearest to the pusher and opens the contact, or, where the wire
 /// lies inside the pusher, presses it out. False when there is no such equilibrium.
 [[nodiscard]] bool reseat_contact(PushSystem& system, numerics::PathPoint& point,
-                                       numerics::PathWorkspace& workspace);
+                                  numerics::PathWorkspace& workspace);
 
 }  // namespace snare::coupling

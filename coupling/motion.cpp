@@ -2,7 +2,9 @@
 
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
+#include "wire/loose_wire.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -75,6 +77,13 @@ void validate(const Motion& motion, const MotionOptions& options) {
     c.require(k.friction.static_speed > 0.0 && k.friction.dynamic_speed > k.friction.static_speed,
               k.name + ".friction.static_speed", k.friction.static_speed, "must be > 0 and < dynamic_speed");
   }
+  for (const MotionSpring& s : motion.springs) {
+    c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
+              "must be the index of a body");
+    c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
+              "must be a unit vector");
+    c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
+  }
   c.raise();
 }
 
@@ -108,6 +117,7 @@ class Run {
   std::deque<wire::RodPart> rods_;
   std::deque<BodyPart> bodies_;
   std::deque<ContactPart> contacts_;
+  std::deque<SpringPart> springs_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   VectorXd y_, rate_;
@@ -135,6 +145,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)],
                            bodies_[static_cast<std::size_t>(c.body)], options);
   }
+  for (const MotionSpring& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
@@ -150,8 +161,8 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   ida.max_order = options.max_order;
   ida.max_step = options.max_step;
   ida_ = std::make_unique<numerics::Ida>(*system_, ida);
-  result_.peak_force.assign(contacts_.size(), 0.0);
-  result_.impulse.assign(contacts_.size(), Vector3d::Zero());
+  result_.peak_force.assign(contacts_.size() + springs_.size(), 0.0);
+  result_.impulse.assign(contacts_.size() + springs_.size(), Vector3d::Zero());
 }
 
 std::vector<numerics::DaePart*> Run::parts() {
@@ -159,6 +170,7 @@ std::vector<numerics::DaePart*> Run::parts() {
   for (auto& r : rods_) list.push_back(&r);
   for (auto& b : bodies_) list.push_back(&b);
   for (auto& c : contacts_) list.push_back(&c);
+  for (auto& s : springs_) list.push_back(&s);
   return list;
 }
 
@@ -320,6 +332,14 @@ Rates Run::rates(const DaePoint& at) {
         result_.largest_penetration = std::max(result_.largest_penetration, -s.gap);
     }
   }
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const ContactSample s = springs_[k].sample(at.y);
+    r.contact.push_back(s.force);
+    r.dissipated += springs_[k].taken_power(at.y);
+    r.outer -= s.force;
+    double& peak = result_.peak_force[contacts_.size() + k];
+    peak = std::max(peak, s.normal_force);
+  }
   for (const BodyPart& b : bodies_) {
     result_.largest_drift =
         std::max(result_.largest_drift, std::abs(at.y.segment<4>(b.quaternion()).norm() - 1.0));
@@ -332,7 +352,7 @@ void Run::account(const Rates& now, double time) {
   result_.energy.dissipated += half * (last_.dissipated + now.dissipated);
   result_.energy.work += half * (last_.work + now.work);
   outer_impulse_ += half * (last_.outer + now.outer);
-  for (std::size_t k = 0; k < contacts_.size(); ++k)
+  for (std::size_t k = 0; k < result_.impulse.size(); ++k)
     result_.impulse[k] += half * (last_.contact[k] + now.contact[k]);
   last_ = now;
   last_time_ = time;
@@ -355,6 +375,7 @@ MotionSample Run::sample(const DaePoint& at) {
     s.mount_forces[2 * w] -= held[0];
     s.mount_forces[2 * w + 1] -= held[1];
   }
+  for (const SpringPart& spring : springs_) s.contacts.push_back(spring.sample(at.y));
   for (const wire::RodPart& r : rods_) {
     Eigen::Matrix3Xd x(3, r.vertices());
     for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));
@@ -406,6 +427,14 @@ MotionResult Run::go() {
         close(static_cast<int>(k));
       }
     }
+    for (std::size_t k = 0; k < springs_.size(); ++k) {
+      const std::size_t event = contacts_.size() + k;
+      if (found[event] == 0) continue;
+      changed = true;
+      const bool touch = found[event] > 0;
+      result_.events.push_back({time_, static_cast<int>(event), touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off,
+                                0.0});
+    }
     if (changed) settle();
     if (static_cast<int>(result_.events.size()) > options_.max_events) {
       result_.report.termination = numerics::Termination::iteration_limit;
@@ -437,6 +466,30 @@ Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& fro
   Eigen::Matrix3Xd x(3, mesh.vertices());
   for (int i = 0; i < mesh.vertices(); ++i)
     x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
+  return x;
+}
+
+Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
+  const Vector3d from = rod.properties.left.position;
+  const Vector3d to = rod.properties.right.position;
+  if (rod.length <= (to - from).norm()) return straight_wire(rod, from, to);
+  wire::PlanarRodProperties plane;
+  plane.bending_stiffness = rod.properties.bending_stiffness;
+  plane.axial_stiffness = rod.properties.axial_stiffness;
+  plane.right.position = {(to - from).norm(), 0.0};
+  const wire::PlanarRod planar(wire::MaterialMesh(rod.elements / 2, rod.elements - rod.elements / 2, rod.grading), plane);
+  const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};
+  const wire::LooseWire loose = wire::find_loose_wire(planar, controls, 1);
+  if (!loose.report.usable()) throw numerics::InputError({"", 0, "wire", "", loose.report.message});
+  const Vector3d along = (to - from).normalized();
+  Vector3d up = Vector3d::UnitY() - along.y() * along;
+  if (up.norm() < 1e-6) up = Vector3d::UnitX() - along.x() * along;
+  up.normalize();
+  Eigen::Matrix3Xd x(3, rod.elements + 1);
+  for (int i = 0; i <= rod.elements; ++i) {
+    const Eigen::Vector2d p = wire::vertex(loose.state, i);
+    x.col(i) = from + p.x() * along + p.y() * up;
+  }
   return x;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/contact_law.hpp"
 #include "coupling/motion_shape.hpp"
 #include "multibody/rigid_body.hpp"
 #include "numerics/ida.hpp"
@@ -56,13 +57,24 @@ struct MotionContact {
   MotionFriction friction;
   /// The papers' contact laws in place of the constraint: normal force [N] of penetration [m] and its rate [m/s], with
   /// the derivatives by both; never negative. Empty: the wire does not penetrate.
-  std::function<Eigen::Vector3d(double penetration, double rate)> law;
+  ContactLaw law;
+};
+
+/// A contact law between a point of a body and a plane fixed in the world, which stands for a whole wire.
+struct MotionSpring {
+  std::string name = "spring";
+  int body = 0;                                            ///< index
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< p_BP, of the probe [m]
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< of the probe at first touch [m]
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();    ///< of the push, unit
+  ContactLaw law;                                          ///< of penetration along `direction` and its rate
 };
 
 struct Motion {
   std::vector<MotionWire> wires;
   std::vector<MotionBody> bodies;
   std::vector<MotionContact> contacts;
+  std::vector<MotionSpring> springs;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
@@ -103,7 +115,7 @@ struct EnergyBalance {
   double kinetic = 0.0;
   double strain = 0.0;
   double potential = 0.0;
-  double dissipated = 0.0;  ///< by damping, drag and friction, integrated along the run
+  double dissipated = 0.0;  ///< by damping, drag, friction and contact laws, integrated along the run
   double impacts = 0.0;     ///< lost when local masses of the wire take on a body's velocity at once
   double work = 0.0;        ///< done by driven bodies and constant forces
   /// kinetic + strain + potential + dissipated + impacts - work - the same at the start: what the integrator gained
@@ -115,7 +127,7 @@ struct EnergyBalance {
 struct MotionSample {
   double time = 0.0;
   std::vector<multibody::RigidBodyState> bodies;
-  std::vector<ContactSample> contacts;
+  std::vector<ContactSample> contacts;       ///< then the springs
   std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
   EnergyBalance energy;
@@ -127,7 +139,7 @@ struct MotionSample {
 struct MotionEvent {
   enum class Kind { touch, lift_off };
   double time = 0.0;
-  int contact = 0;
+  int contact = 0;  ///< index; springs count on after the contacts
   Kind kind = Kind::touch;
   double approach_speed = 0.0;  ///< before a touch [m/s]
 };
@@ -138,8 +150,8 @@ struct MotionResult {
   EnergyBalance energy;
   Eigen::Vector3d momentum_error =
       Eigen::Vector3d::Zero();           ///< change less the impulse of all outer forces [N s]
-  std::vector<double> peak_force;        ///< of every contact, at accepted steps [N]
-  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire [N s]
+  std::vector<double> peak_force;        ///< of every contact and spring, at accepted steps [N]
+  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
   double largest_penetration = 0.0;      ///< of closed contacts without law [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of mounts [-], [m]
   numerics::IdaStatistics statistics;
@@ -153,6 +165,10 @@ using MotionObserver = std::function<bool(const MotionSample&)>;
 /// Vertices evenly spread between the mounts' positions (or from `from` to `to`).
 [[nodiscard]] Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Eigen::Vector3d& from,
                                              const Eigen::Vector3d& to);
+
+/// The wire at rest between its mounts, buckled to +y in its first mode where it is longer than their distance.
+/// Throws InputError when no equilibrium is found.
+[[nodiscard]] Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod);
 
 /// Integrates a motion.                                                     theory.md (M.1)-(M.12)
 /// Wrong numbers throw InputError with all of them. A failure of the integration is in `report`; the rest is

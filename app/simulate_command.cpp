@@ -1,0 +1,39 @@
+#include "app/commands.hpp"
+#include "app/experiment_input.hpp"
+#include "app/simulate_kinds.hpp"
+#include "coupling/contact_scenario.hpp"
+#include "numerics/errors.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <omp.h>
+
+namespace snare::app {
+
+namespace {
+
+struct Kind {
+  const char* name;
+  ExitStatus (*run)(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+};
+
+constexpr Kind kinds[] = {{"contact", simulate_contact},
+                          {"joint_step", simulate_arm},
+                          {"tip_impulse", simulate_arm},
+                          {"joint_motion", simulate_arm}};
+
+}  // namespace
+
+ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  const std::string asked = coupling::scenario_kind(file, overrides_of(options));
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  std::string known;
+  for (const Kind& kind : kinds) {
+    if (asked == kind.name) return kind.run(file, options, console);
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
+  }
+  throw numerics::InputError(
+      {file.string(), 0, "kind", fmt::format("\"{}\"", asked), "must be one of " + known});
+}
+
+}  // namespace snare::app

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/console.hpp"
+
+#include <filesystem>
+
+namespace snare::app {
+
+/// Kinds of scenario, one a file. Each reads its scenario, runs it and writes history.csv, summary.json, report.html.
+[[nodiscard]] ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus simulate_arm(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+
+}  // namespace snare::app

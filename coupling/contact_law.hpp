@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+
+namespace snare::coupling {
+
+/// A contact force as a function of penetration d [m] and its rate [m/s], with its derivatives by both: (F, dF/dd, dF/dd').
+/// Zero without penetration, and never negative: what would pull is cut off.
+using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate)>;
+
+/// F = k d + c d'.                                                      theory.md (L.1); Abiko et al., eq. 4
+/// k >= 0 [N/m], c >= 0 [N s/m].
+[[nodiscard]] ContactLaw spring_dashpot(double k, double c);
+
+/// F = k d^p + c d^p |d'|^q sgn d'.                                     theory.md (L.2); Abiko et al., eq. 3, G(d) = d^p
+/// q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
+[[nodiscard]] ContactLaw power_law(double k, double p, double c, double q);
+
+/// F = A d^2 + B d + C.                                                 theory.md (L.3); Abiko et al., Table 4
+[[nodiscard]] ContactLaw quadratic_law(double a, double b, double c);
+
+/// Stretched wire, pushed at its middle from where it is taut:          theory.md (L.4); Honda et al. 2014, eq. 1
+///   F = 2 K (1 - l/sqrt(l^2 + 2 h d + d^2)) (h + d),  h = sqrt(l^2 - L^2)
+/// K: stiffness of one half [N/m], > 0; l: half its length, L: half the distance of its ends [m], l >= L > 0.
+[[nodiscard]] ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span);
+
+/// Its tangent at d = 0: F = 2 K (l^2 - L^2)/l^2 d.                      Honda et al. 2014, eq. 2
+[[nodiscard]] ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span);
+
+}  // namespace snare::coupling

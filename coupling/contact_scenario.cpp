@@ -1,0 +1,247 @@
+#include "coupling/contact_scenario.hpp"
+
+#include "coupling/push_test_reader.hpp"
+#include "numerics/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+namespace snare::coupling {
+
+using Eigen::Vector3d;
+using numerics::Choice;
+using numerics::Range;
+using numerics::TomlDocument;
+using numerics::TomlTable;
+
+namespace {
+
+constexpr std::string_view schema = "snare-scenario/1";
+constexpr double mm = 1e-3;
+
+void require_schema(const TomlTable& root) {
+  const std::string given = root.text("schema");
+  if (given != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
+}
+
+enum class ModelKind { wire, spring_dashpot, power, quadratic, stretched_wire, stretched_wire_linear };
+
+WireModel read_model(const TomlTable& table) {
+  static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
+                                                {"spring_dashpot", ModelKind::spring_dashpot},
+                                                {"power", ModelKind::power},
+                                                {"quadratic", ModelKind::quadratic},
+                                                {"stretched_wire", ModelKind::stretched_wire},
+                                                {"stretched_wire_linear", ModelKind::stretched_wire_linear}};
+  const Range stiffness = Range::above(0.0, 1e15);
+  const Range damping = Range::from(0.0, 1e15);
+  WireModel model;
+  model.name = table.text("name");
+  model.kind = table.text("model");
+  const std::optional<ModelKind> kind = table.choice("model", kinds);
+  if (!kind) return model;
+  switch (*kind) {
+    case ModelKind::wire:
+      break;
+    case ModelKind::spring_dashpot:
+      model.law = spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
+      break;
+    case ModelKind::power:
+      model.law =
+          power_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
+                    table.number_or("c", 0.0, damping), table.number_or("q", 1.0, Range::from(1.0, 10.0)));
+      break;
+    case ModelKind::quadratic: {
+      const Range coefficient = Range::from(-1e12, 1e12);
+      model.law = quadratic_law(table.number("A_N_m2", coefficient), table.number("B_N_m", coefficient),
+                                table.number("C_N", coefficient));
+      break;
+    }
+    case ModelKind::stretched_wire:
+    case ModelKind::stretched_wire_linear: {
+      const double k = table.number("half_stiffness_N_m", stiffness);
+      const double length = table.number("half_length_mm", Range::above(0.0, 1e5), mm);
+      const double span = table.number("half_span_mm", Range::above(0.0, 1e5), mm);
+      if (length < span)
+        table.fail("half_length_mm", "must be >= half_span_mm");
+      else
+        model.law = *kind == ModelKind::stretched_wire ? stretched_wire_law(k, length, span)
+                                                       : stretched_wire_tangent(k, length, span);
+    }
+  }
+  return model;
+}
+
+Vector3d read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
+  if (!table.has(key)) return Vector3d::Zero();
+  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
+  return v.size() == 3 ? Vector3d(v[0], v[1], v[2]) : Vector3d::Zero();
+}
+
+void read_body(const TomlTable& table, ContactScenario& scenario) {
+  MotionBody& body = scenario.body;
+  body.name = table.text_or("name", "body");
+  body.properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
+  const std::vector<double> inertia = table.numbers("inertia_kg_m2", 3, 3, Range::above(0.0, 1e12));
+  if (inertia.size() == 3) {
+    body.properties.inertia = Vector3d(inertia[0], inertia[1], inertia[2]).asDiagonal();
+    const double largest = std::max({inertia[0], inertia[1], inertia[2]});
+    if (2.0 * largest > inertia[0] + inertia[1] + inertia[2])
+      table.fail("inertia_kg_m2",
+                 "must satisfy the triangle inequality: none larger than the other two together");
+  }
+  scenario.probe = read_vector(table, "probe_mm", Range::from(-1e5, 1e5), mm);
+  const Vector3d velocity = read_vector(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
+  body.start.velocity = velocity;
+  body.start.spin = read_vector(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
+  body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
+  body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
+  body.start.position.y() =
+      -table.number_or("distance_mm", 0.1 * mm, Range::from(1e-3, 1e4), mm);  // moved on in motion_of
+}
+
+MotionFriction read_friction(const TomlTable& table, double dynamic) {
+  MotionFriction f;
+  f.dynamic_coefficient = dynamic;
+  f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
+  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::above(0.0, 10.0));
+  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::above(0.0, 100.0));
+  if (f.dynamic_speed <= f.static_speed) table.fail("dynamic_speed_m_s", "must be > static_speed_m_s");
+  return f;
+}
+
+}  // namespace
+
+std::string scenario_kind(const std::filesystem::path& file,
+                          const std::vector<numerics::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  if (root.text("schema") != schema) {
+    throw numerics::InputError(
+        {file.string(), 0, "schema", root.text("schema"), fmt::format("must be \"{}\"", schema)});
+  }
+  return root.text("kind");
+}
+
+ContactScenario read_contact_scenario(const std::filesystem::path& file,
+                                      const std::vector<numerics::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  ContactScenario scenario;
+  scenario.file = file;
+  require_schema(root);
+  static constexpr Choice<bool> kinds[] = {{"contact", true}};
+  static_cast<void>(root.choice("kind", kinds));
+  scenario.title = root.text("title");
+  scenario.source = root.text_or("source", "");
+  MotionOptions& o = scenario.options;
+  o.duration = root.number("duration_s", Range::above(0.0, 1e6));
+  o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
+  constexpr double most_outputs = 1e6;
+  if (o.duration / o.output_interval > most_outputs)
+    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
+
+  const PushTables tables = push_tables(root);
+  scenario.push = read_push_test(tables);
+  scenario.push.contact_position = root.number("contact_position_mm", Range::above(0.0, 1e5), mm);
+  if (const auto problem = position_problem(scenario.push.contact_position, scenario.push.mount.span))
+    root.fail("contact_position_mm", *problem);
+  if (scenario.push.mount.kind == wire::MountKind::supports)
+    tables.mount.fail("kind",
+                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
+  for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+    if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
+  }
+  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
+    if (tables.wire.has(key)) tables.wire.fail(key, "the wire is elastic and naturally straight in motion");
+  }
+
+  const TomlTable damping = root.table("damping");
+  scenario.damping.bending_time = damping.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
+  scenario.damping.axial_time = damping.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  scenario.damping.mass_rate = damping.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  read_body(root.table("body"), scenario);
+  scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction);
+
+  std::set<std::string> names;
+  for (const TomlTable& table : root.tables("models")) {
+    scenario.models.push_back(read_model(table));
+    if (!names.insert(scenario.models.back().name).second) table.fail("name", "is taken by another model");
+  }
+  if (scenario.models.empty() && !root.has("models")) scenario.models.push_back({"wire", "wire", {}});
+
+  const TomlTable solver = root.table("solver");
+  scenario.elements = solver.integer_or("elements", 60, 8, 20000);
+  o.relative_tolerance = solver.number_or("relative_tolerance", 1e-5, Range::from(1e-10, 1e-2));
+  o.position_tolerance = solver.number_or("position_tolerance_m", 1e-7, Range::above(0.0, 1e-3));
+  o.velocity_tolerance = solver.number_or("velocity_tolerance_m_s", 1e-4, Range::above(0.0, 1.0));
+  o.max_order = solver.integer_or("max_order", 2, 1, 5);
+  o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
+  if (!solver.has("max_step_s")) {
+    // The probe must not pass through the wire between two steps: a fifth of their radii at most.
+    const MotionBody& body = scenario.body;
+    const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
+    const double reach = scenario.push.pusher.radius + 0.5 * scenario.push.wire.diameter;
+    if (speed > 0.0) o.max_step = 0.2 * reach / speed;
+  }
+  scenario.paraview = root.table("output").boolean_or("paraview", false);
+  document.finish();
+  return scenario;
+}
+
+Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
+  const PushTest& push = scenario.push;
+  const wire::WireSpecification& w = push.wire;
+  wire::RodInMotion rod;
+  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = w.bending_stiffness();
+  rod.properties.torsional_stiffness = w.torsional_stiffness();
+  rod.properties.axial_stiffness = w.axial_stiffness();
+  rod.properties.right.position = {push.mount.span, 0.0, 0.0};
+  const auto end = push.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
+                                                               : wire::SpatialEnd::Kind::twisting_pin;
+  rod.properties.left.kind = rod.properties.right.kind = end;
+  rod.mass_per_length = w.mass_per_length();
+  rod.length = w.length;
+  rod.elements = scenario.elements;
+  rod.damping = scenario.damping;
+  const Eigen::Matrix3Xd rest = resting_wire(rod);
+
+  // The probe stands below the wire (above it for a push against the bulge) at the asked place.
+  const double side = push.pusher.direction == PushDirection::outward ? 1.0 : -1.0;
+  Eigen::Index k = 1;
+  while (k + 1 < rest.cols() && rest(0, k) < push.contact_position) ++k;
+  const double share = (push.contact_position - rest(0, k - 1)) / (rest(0, k) - rest(0, k - 1));
+  const Vector3d slope = (rest.col(k) - rest.col(k - 1)).normalized();
+  const double height = rest(1, k - 1) + share * (rest(1, k) - rest(1, k - 1));
+  const double reach = (push.pusher.radius + 0.5 * w.diameter) / slope.x();  // along y, to a wire that slopes
+  const Vector3d touch(push.contact_position, height - side * reach, 0.0);
+
+  Motion motion;
+  motion.gravity = {push.gravity[0], push.gravity[1], push.gravity[2]};
+  MotionBody body = scenario.body;
+  body.start.position = touch + side * Vector3d(0.0, scenario.body.start.position.y(), 0.0) - scenario.probe;
+  motion.bodies.push_back(body);
+  if (model.law) {
+    MotionSpring spring;
+    spring.name = model.name;
+    spring.point = scenario.probe;
+    spring.origin = touch;
+    spring.direction = {0.0, side, 0.0};
+    spring.law = model.law;
+    motion.springs.push_back(spring);
+    return motion;
+  }
+  motion.wires.push_back({"wire", rod, rest, {}});
+  MotionContact contact;
+  contact.name = model.name;
+  contact.shape = std::make_shared<EndlessCylinder>(push.pusher.radius);
+  contact.shape_position = scenario.probe;
+  contact.wire_radius = 0.5 * w.diameter;
+  contact.friction = scenario.friction;
+  motion.contacts.push_back(contact);
+  return motion;
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "coupling/motion.hpp"
+#include "coupling/push_test.hpp"
+#include "numerics/toml_tree.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// One wire model of a scenario: the full wire, or a law that stands for it.
+struct WireModel {
+  std::string name;
+  std::string kind;  ///< "wire", or the law's name
+  ContactLaw law;    ///< empty: the full wire
+};
+
+/// A body with a probe that meets a wire between its mounts: scenario of kind "contact".       docs/scenario_file.md
+struct ContactScenario {
+  std::string title, source;
+  std::filesystem::path file;
+  PushTest push;  ///< wire, mounts, probe (the pusher) and contact position
+  wire::RodDamping damping;
+  int elements = 60;
+  MotionBody body;                                  ///< at the start
+  Eigen::Vector3d probe = Eigen::Vector3d::Zero();  ///< p_BP of the probe's axis [m]
+  MotionFriction friction;
+  std::vector<WireModel> models;  ///< run one after the other
+  MotionOptions options;
+  bool paraview = false;  ///< shapes of the wire are written
+};
+
+/// Reads a scenario; throws InputError with everything that is wrong in it.
+[[nodiscard]] ContactScenario read_contact_scenario(const std::filesystem::path& file,
+                                                    const std::vector<numerics::Override>& overrides = {});
+
+/// The motion of one of its models. The world frame has the left mount at its origin, x along the chord, y with the bulge.
+[[nodiscard]] Motion motion_of(const ContactScenario& scenario, const WireModel& model);
+
+/// Kind of the scenario in a file ("contact"), or what it says there. Throws InputError when it is no scenario.
+[[nodiscard]] std::string scenario_kind(const std::filesystem::path& file,
+                                        const std::vector<numerics::Override>& overrides);
+
+}  // namespace snare::coupling

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "coupling/motion.hpp"
+#include "coupling/motion_body.hpp"
+
+#include <vector>
+
+namespace snare::coupling {
+
+/// A law between a point of a body and a plane fixed in the world, in place of a wire.        theory.md (L.5)
+///   d = n.(p_WP - p_0),  d' = n.v_WP;  the body gets -F(d, d') n at P
+/// It has no unknowns of its own and adds to the body's rows.
+class SpringPart final : public numerics::DaePart {
+ public:
+  SpringPart(const MotionSpring& spring, const BodyPart& body) : spring_(spring), body_(body) {}
+
+  void declare(numerics::DaeLayout& layout) override;
+  void couple(std::vector<std::pair<int, int>>& entries) const override;
+  void bind(const numerics::SparseMatrix& pattern) override;
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// The penetration: its zeros are where the law has its corner.
+  [[nodiscard]] int event_count() const override { return 1; }
+  void events(const numerics::DaePoint& at, std::span<double> values) override;
+
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
+  /// Power that the law takes from the body [W]; negative when it gives back.
+  [[nodiscard]] double taken_power(const numerics::VectorView& y) const;
+
+ private:
+  struct Geometry;
+  [[nodiscard]] Geometry geometry(const numerics::VectorView& y) const;
+
+  MotionSpring spring_;
+  const BodyPart& body_;
+  std::vector<int> slots_;  // rows v, w (6) by columns p, q, v, w (13)
+};
+
+}  // namespace snare::coupling

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "multibody/arm_file.hpp"
+#include "multibody/arm_scenarios.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace snare::multibody {
+
+/// A scenario of kind "joint_step", "tip_impulse" or "joint_motion".                        docs/scenario_file.md
+struct ArmScenarioFile {
+  std::string title, source, kind;
+  ArmDescription description;
+  ArmScenario scenario;
+  int joint = -1;  ///< of a joint step
+};
+
+/// Reads a scenario and the arm file that it names; throws InputError with everything that is wrong in it.
+[[nodiscard]] ArmScenarioFile read_arm_scenario(const std::filesystem::path& file,
+                                                const std::vector<numerics::Override>& overrides = {});
+
+}  // namespace snare::multibody
