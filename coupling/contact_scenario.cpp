@@ -146,8 +146,10 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   const PushTables tables = push_tables(root);
   scenario.push = read_push_test(tables);
   scenario.push.contact_position = root.number("contact_position_mm", Range::above(0.0, 1e5), mm);
-  if (const auto problem = position_problem(scenario.push.contact_position, scenario.push.mount.span))
-    root.fail("contact_position_mm", *problem);
+  const double position = scenario.push.contact_position;
+  if (std::isfinite(position) && std::isfinite(scenario.push.mount.span)) {  // else reported already
+    if (const auto problem = position_problem(position, scenario.push.mount.span)) root.fail("contact_position_mm", *problem);
+  }
   if (scenario.push.mount.kind == wire::MountKind::supports)
     tables.mount.fail("kind",
                       "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");

@@ -52,6 +52,7 @@ coupling::PushTables over(const coupling::PushTables& own, const coupling::PushT
 
 double read_contact_position(const TomlTable& series, double span) {
   const double position = series.number("contact_position_mm", Range::above(0.0, largest_length), mm);
+  if (!std::isfinite(position) || !std::isfinite(span)) return position;  // reported already
   if (const auto problem = coupling::position_problem(position, span)) series.fail("contact_position_mm", *problem);
   return position;
 }
