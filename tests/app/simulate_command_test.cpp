@@ -1,0 +1,95 @@
+// The verb simulate as its users see it: files, balance, exit statuses.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace snare::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class SimulateCommand : public testing::Test {
+ protected:
+  SimulateCommand() : folder_(fs::temp_directory_path() / ("snare_simulate_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~SimulateCommand() override { fs::remove_all(folder_); }
+
+  /// Exit status of `snare simulate SCENARIO --out out ARGUMENTS`; what it says goes to log.txt.
+  [[nodiscard]] int run(const std::string& scenario, const std::string& arguments) const {
+    const std::string command = std::string(SNARE_COMMAND) + " simulate " + SNARE_SOURCE_DIR + "/data/scenarios/" + scenario + " --out " +
+                                (folder_ / "out").string() + " " + arguments + " > " + (folder_ / "log.txt").string() + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  [[nodiscard]] std::string contents(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  [[nodiscard]] json summary() const { return json::parse(contents("out/summary.json")); }
+
+  fs::path folder_;
+};
+
+// The paper's statement of its air table (Abiko et al., section 4.3): the target starts to turn, the law misses the peak
+// force and keeps the impulse; then the velocity is constant.
+TEST_F(SimulateCommand, AirTable) {
+  ASSERT_EQ(run("air_table.toml", "--set duration_s=0.25 --set solver.elements=32 --set output.paraview=true"), 0) << contents("log.txt");
+  const json s = summary();
+  ASSERT_EQ(s["models"].size(), 3u);
+  const json& wire = s["models"][0];
+  const json& law = s["models"][1];
+  EXPECT_LT(wire["velocity_after_m_s"][1].get<double>(), 0.0);
+  EXPECT_LT(wire["spin_after_rad_s"][2].get<double>(), 0.0);
+  EXPECT_GT(wire["peak_force_N"].get<double>(), 2.0 * law["peak_force_N"].get<double>());
+  EXPECT_NEAR(wire["impulse_Ns"][1].get<double>() / law["impulse_Ns"][1].get<double>(), 1.0, 0.1);
+  // Momentum: what the target lost the wire and its mounts got; the trapezoidal rule over steps leaves 1e-3.
+  EXPECT_NEAR(8.9 * (0.1 - wire["velocity_after_m_s"][1].get<double>()), wire["impulse_Ns"][1].get<double>(), 2e-3);
+  // The energy of the impact is 0.0445 J; the integrator's own error is within half a per cent of it at default tolerances.
+  EXPECT_LT(std::abs(wire["energy_J"]["integrator"].get<double>()), 5e-3 * 0.0445);
+  EXPECT_LT(wire["largest_penetration_m"].get<double>(), 1e-6);
+  EXPECT_NE(contents("out/history.csv").find("model,time_s,force_N"), std::string::npos);
+  EXPECT_NE(contents("out/report.html").find("class=\"animation\""), std::string::npos);
+  EXPECT_NE(contents("out/full wire.pvd").find("full wire_00000.vtp"), std::string::npos);
+  EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
+}
+
+TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
+  ASSERT_EQ(run("jemrms_step.toml", ""), 0) << contents("log.txt");
+  const json s = summary();
+  ASSERT_GE(s["swings"].size(), 2u);
+  // The joint is soft within 0.04 deg (Abiko et al., Table 2): small swings are slower.
+  EXPECT_GT(s["swings"].front()["frequency_Hz"].get<double>(), s["swings"].back()["frequency_Hz"].get<double>());
+  EXPECT_LT(s["energy_error"].get<double>(), 1e-3);
+}
+
+TEST_F(SimulateCommand, LimpArmIsPushed) {
+  ASSERT_EQ(run("ssrms_push.toml", "--set duration_s=5"), 0) << contents("log.txt");
+  EXPECT_LT(summary()["energy_error"].get<double>(), 1e-3);
+}
+
+TEST_F(SimulateCommand, WrongInputWritesNothing) {
+  EXPECT_EQ(run("air_table.toml", "--set body.mass_kg=-1"), 2);
+  EXPECT_NE(contents("log.txt").find("body.mass_kg = -1, must be > 0"), std::string::npos) << contents("log.txt");
+  EXPECT_EQ(run("air_table.toml", "--set kind=\\\"fall\\\""), 2);
+  EXPECT_NE(contents("log.txt").find("must be one of \"contact\""), std::string::npos) << contents("log.txt");
+  EXPECT_EQ(run("jemrms_step.toml", "--set joint=\\\"elbow\\\""), 2);
+  EXPECT_NE(contents("log.txt").find("must be an elastic joint of the arm"), std::string::npos) << contents("log.txt");
+  EXPECT_EQ(run("none.toml", ""), 2);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace snare::app
