@@ -104,7 +104,7 @@ json vector_json(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-json summary_of(const ModelRun& run) {
+json summary_of(const ContactScenario& scenario, const ModelRun& run) {
   const MotionResult& r = run.result;
   const multibody::RigidBodyState& before = run.samples.front().bodies.front();
   const multibody::RigidBodyState& after = run.samples.back().bodies.front();
@@ -118,10 +118,14 @@ json summary_of(const ModelRun& run) {
     if (!touch) last = e.time;
     events.push_back({{"time_s", e.time}, {"what", touch ? "touch" : "lift_off"}});
   }
+  // Travel of the probe from where it would touch.
   double deepest = 0.0;
-  const double start = run.samples.front().bodies.front().position.y();
-  for (const MotionSample& s : run.samples)
-    deepest = std::max(deepest, run.side * (s.bodies.front().position.y() - start));
+  const auto place = [&scenario](const MotionSample& s) {
+    const multibody::RigidBodyState& b = s.bodies.front();
+    return (b.position + b.orientation * scenario.probe).y();
+  };
+  const double touch = place(run.samples.front()) - run.side * scenario.body.start.position.y();
+  for (const MotionSample& s : run.samples) deepest = std::max(deepest, run.side * (place(s) - touch));
   const numerics::IdaStatistics& n = r.statistics;
   return {{"model", run.model->name},
           {"kind", run.model->kind},
@@ -134,6 +138,7 @@ json summary_of(const ModelRun& run) {
           {"last_lift_off_s", last >= 0.0 ? json(last) : json()},
           {"touches", touches},
           {"deepest_mm", 1e3 * deepest},
+          {"in_contact_at_the_end", run.samples.back().contacts.front().closed},
           {"velocity_before_m_s", vector_json(before.velocity)},
           {"velocity_after_m_s", vector_json(after.velocity)},
           {"spin_before_rad_s", vector_json(before.spin)},
@@ -287,7 +292,7 @@ ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptio
                {"title", scenario.title},     {"source", scenario.source},
                {"version", version()},        {"duration_s", scenario.options.duration},
                {"models", json::array()}};
-  for (const ModelRun& run : runs) summary["models"].push_back(summary_of(run));
+  for (const ModelRun& run : runs) summary["models"].push_back(summary_of(scenario, run));
   write_history(options.out / "history.csv", runs);
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
