@@ -1,5 +1,6 @@
 #include "app/arm_command.hpp"
 
+#include "app/experiment_input.hpp"
 #include "multibody/arm_file.hpp"
 #include "numerics/toml_reader.hpp"
 
@@ -125,8 +126,7 @@ std::string listed(const nlohmann::json& values) {
 
 ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose,
                         const CommonOptions& options, Console&) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const std::vector<numerics::Override> overrides = overrides_of(options);
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const nlohmann::json result = describe(arm, angles_of(pose, arm));
   if (options.json) {

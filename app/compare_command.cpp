@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/experiment_input.hpp"
 #include "app/compare_report.hpp"
 #include "identification/experiment.hpp"
 #include "identification/prediction.hpp"
@@ -128,8 +129,7 @@ nlohmann::json case_json(const CaseComparison& one) {
 }  // namespace
 
 ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  Overrides overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const Overrides overrides = overrides_of(options);
   const Comparison comparison = read(file, overrides);
   if (options.threads > 0) omp_set_num_threads(options.threads);
 

@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/experiment_input.hpp"
 #include "app/distil_report.hpp"
 #include "app/law_json.hpp"
 #include "numerics/csv.hpp"
@@ -57,8 +58,7 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
 }  // namespace
 
 ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  std::vector<numerics::Override> overrides;
-  for (const std::string& text : options.overrides) overrides.push_back(numerics::parse_override(text));
+  const std::vector<numerics::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
   if (options.threads > 0) omp_set_num_threads(options.threads);
 
