@@ -2,8 +2,7 @@
 // of elements, ten runs at once on one and two threads.
 
 #include "coupling/motion.hpp"
-#include "wire/loose_wire.hpp"
-#include "wire/specification.hpp"
+#include "validation/declared_wire.hpp"
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -17,31 +16,12 @@ constexpr double mm = 1e-3;
 constexpr double span = 175.0 * mm;
 
 coupling::Motion impact(int elements) {
-  wire::WireSpecification w;
-  w.diameter = 1.5 * mm;
-  w.length = 180.0 * mm;
-  w.youngs_modulus = 193e9;
-  w.poisson_ratio = 0.29;
-  w.density = 7930.0;
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = w.bending_stiffness();
-  rod.properties.torsional_stiffness = w.torsional_stiffness();
-  rod.properties.axial_stiffness = w.axial_stiffness();
-  rod.properties.right.position = {span, 0.0, 0.0};
-  rod.mass_per_length = w.mass_per_length();
-  rod.length = w.length;
-  rod.elements = elements;
+  const wire::WireSpecification w = validation::declared_specification();
+  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
   // A damping ratio of 0.7 % at the first frequency of the straight wire (assumed; steel wires show 0.1 to 1 %).
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
-  wire::PlanarRodProperties plane;
-  plane.bending_stiffness = rod.properties.bending_stiffness;
-  plane.axial_stiffness = rod.properties.axial_stiffness;
-  plane.right.position = {span, 0.0};
-  const wire::PlanarRod planar(wire::MaterialMesh(elements / 2, elements - elements / 2, 0.0), plane);
-  const wire::LooseWire loose = wire::find_loose_wire(planar, {0.0, 0.5 * w.length, w.length}, 1);
   coupling::Motion motion;
-  motion.wires.push_back({"wire", rod, Eigen::Matrix3Xd::Zero(3, elements + 1), {}});
-  for (int i = 0; i <= elements; ++i) motion.wires[0].positions.col(i) << wire::vertex(loose.state, i), 0.0;
+  motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
   constexpr double radius = 6.0 * mm;
   coupling::MotionBody body;
   body.properties.mass = 8.9;

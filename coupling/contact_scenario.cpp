@@ -196,17 +196,10 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
 Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
   const PushTest& push = scenario.push;
   const wire::WireSpecification& w = push.wire;
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = w.bending_stiffness();
-  rod.properties.torsional_stiffness = w.torsional_stiffness();
-  rod.properties.axial_stiffness = w.axial_stiffness();
-  rod.properties.right.position = {push.mount.span, 0.0, 0.0};
+  wire::RodInMotion rod = rod_in_motion(w, push.mount.span, scenario.elements);
   const auto end = push.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
-  rod.mass_per_length = w.mass_per_length();
-  rod.length = w.length;
-  rod.elements = scenario.elements;
   rod.damping = scenario.damping;
   const Eigen::Matrix3Xd rest = resting_wire(rod);
 

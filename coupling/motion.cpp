@@ -460,6 +460,18 @@ MotionResult Run::go() {
 
 }  // namespace
 
+wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements) {
+  wire::RodInMotion rod;
+  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = specification.bending_stiffness();
+  rod.properties.torsional_stiffness = specification.torsional_stiffness();
+  rod.properties.axial_stiffness = specification.axial_stiffness();
+  rod.properties.right.position = {span, 0.0, 0.0};
+  rod.mass_per_length = specification.mass_per_length();
+  rod.length = specification.length;
+  rod.elements = elements;
+  return rod;
+}
+
 Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& from, const Vector3d& to) {
   const wire::MaterialMesh mesh(rod.elements / 2, rod.elements - rod.elements / 2, rod.grading);
   const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};

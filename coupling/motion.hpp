@@ -5,6 +5,7 @@
 #include "multibody/rigid_body.hpp"
 #include "numerics/ida.hpp"
 #include "wire/rod_dynamics.hpp"
+#include "wire/specification.hpp"
 
 #include <Eigen/Core>
 
@@ -161,6 +162,9 @@ struct MotionResult {
 
 /// Called at every output time, in order; true: stop.
 using MotionObserver = std::function<bool(const MotionSample&)>;
+
+/// A naturally straight elastic wire of a specification between clamps at the origin and at (span, 0, 0) [m].
+[[nodiscard]] wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements);
 
 /// Vertices evenly spread between the mounts' positions (or from `from` to `to`).
 [[nodiscard]] Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Eigen::Vector3d& from,

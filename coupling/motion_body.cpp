@@ -1,5 +1,7 @@
 #include "coupling/motion_body.hpp"
 
+#include "multibody/spatial.hpp"
+
 namespace snare::coupling {
 
 using Eigen::Matrix3d;
@@ -14,12 +16,6 @@ constexpr int unknowns = 14;
 
 // Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
 constexpr double no_tolerance = 1e6;
-
-Matrix3d cross_matrix(const Vector3d& a) {
-  Matrix3d m;
-  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return m;
-}
 
 }  // namespace
 
@@ -115,7 +111,7 @@ void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& value
     return;
   }
   const Matrix3d& inertia = body_.properties.inertia;
-  const Matrix3d gyro = cross_matrix(w) * inertia - cross_matrix(inertia * w);
+  const Matrix3d gyro = multibody::skew(w) * inertia - multibody::skew(inertia * w);
   for (int i = 0; i < 3; ++i) {
     add(7 + i, 7 + i, c * body_.properties.mass + body_.linear_drag);
     for (int j = 0; j < 3; ++j) {

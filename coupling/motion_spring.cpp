@@ -1,5 +1,7 @@
 #include "coupling/motion_spring.hpp"
 
+#include "multibody/spatial.hpp"
+
 #include <Eigen/Geometry>
 
 namespace snare::coupling {
@@ -12,12 +14,6 @@ using numerics::DaePoint;
 namespace {
 
 constexpr int columns = 13;  // position, quaternion, velocity, spin
-
-Matrix3d cross_matrix(const Vector3d& a) {
-  Matrix3d m;
-  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return m;
-}
 
 }  // namespace
 
@@ -72,13 +68,13 @@ void SpringPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>&
   const Eigen::RowVector4d penetration_by_q = n.transpose() * multibody::rotated_by_quaternion(q, g.arm);
   const Eigen::RowVector4d rate_by_q = n.transpose() * multibody::rotated_by_quaternion(q, g.swing);
   force_by << g.law.y() * n.transpose(), g.law.y() * penetration_by_q + g.law.z() * rate_by_q,
-      g.law.z() * n.transpose(), -g.law.z() * (n.transpose() * g.r * cross_matrix(g.arm));
+      g.law.z() * n.transpose(), -g.law.z() * (n.transpose() * g.r * multibody::skew(g.arm));
   const Vector3d n_in_body = g.r.transpose() * n;
   Eigen::Matrix<double, 6, columns> by;
   by.topRows<3>() = n * force_by;
   by.bottomRows<3>() = g.arm.cross(n_in_body) * force_by;
   // The direction turns in B: R^T n changes by -phi x (R^T n), phi = 4 Q^T dq.
-  by.block<3, 4>(3, 3) += g.law.x() * cross_matrix(g.arm) * cross_matrix(n_in_body) * 4.0 *
+  by.block<3, 4>(3, 3) += g.law.x() * multibody::skew(g.arm) * multibody::skew(n_in_body) * 4.0 *
                           multibody::quaternion_rates(q).transpose();
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < columns; ++j)

@@ -1,4 +1,6 @@
 #include "coupling/spatial_push.hpp"
+
+#include "multibody/spatial.hpp"
 #include "wire/equilibrium.hpp"
 
 #include <Eigen/Geometry>
@@ -17,12 +19,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int block = wire::SpatialRod::block;
-
-Matrix3d cross_matrix(const Vector3d& a) {
-  Matrix3d m;
-  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return m;
-}
 
 /// Slope of the parabola through three vertices and its dependence, theory.md (C.1).
 struct Slope {
@@ -122,8 +118,8 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
   // dt/du, dn/du, dc/du.
   const Matrix3d dt = (Matrix3d::Identity() - g.tangent * g.tangent.transpose()) / size;
   const Matrix3d dn = pin.side / w.norm() * (Matrix3d::Identity() - g.normal * g.normal.transpose()) *
-                      cross_matrix(pin.axis) * dt;
-  const Matrix3d dc = -cross_matrix(pin.axis) * dn;
+                      multibody::skew(pin.axis) * dt;
+  const Matrix3d dc = -multibody::skew(pin.axis) * dn;
   const double share_before = rod_->mesh().rest_length_derivative(i - 1, 1);
   const double share_after = rod_->mesh().rest_length_derivative(i, 1);
   // Adds factor . du to a border equation.

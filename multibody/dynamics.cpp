@@ -1,5 +1,7 @@
 #include "multibody/dynamics.hpp"
 
+#include "multibody/kinematics.hpp"
+
 #include <Eigen/Cholesky>
 
 #include <cassert>
@@ -12,19 +14,6 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Velocity of the body against its joint's frame, in its own axes.
-Twist joint_motion(const TreeBody& body, const Eigen::VectorXd& v) {
-  switch (body.joint) {
-    case JointKind::revolute:
-      return {v[body.v_index] * body.axis, Eigen::Vector3d::Zero()};
-    case JointKind::prismatic:
-      return {Eigen::Vector3d::Zero(), v[body.v_index] * body.axis};
-    case JointKind::free:
-      return {v.segment<3>(body.v_index), v.segment<3>(body.v_index + 3)};
-  }
-  return {};
-}
-
 /// V x VJ, the acceleration that the joint's velocity brings because its axis turns with the body.
 Twist velocity_product(const TreeBody& body, const Twist& V, const Eigen::VectorXd& v) {
   switch (body.joint) {
@@ -34,24 +23,13 @@ Twist velocity_product(const TreeBody& body, const Twist& V, const Eigen::Vector
     }
     case JointKind::prismatic:
       return {Eigen::Vector3d::Zero(), V.angular.cross(v[body.v_index] * body.axis)};
-    case JointKind::free:
-      return cross(V, joint_motion(body, v));
+    case JointKind::free: {
+      Twist VJ;
+      add_joint_motion(body, v, VJ);
+      return cross(V, VJ);
+    }
   }
   return {};
-}
-
-void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twist& V) {
-  switch (body.joint) {
-    case JointKind::revolute:
-      V.angular += v[body.v_index] * body.axis;
-      break;
-    case JointKind::prismatic:
-      V.linear += v[body.v_index] * body.axis;
-      break;
-    case JointKind::free:
-      V += joint_motion(body, v);
-      break;
-  }
 }
 
 Pose pose_in_parent(const TreeBody& body, const Eigen::VectorXd& q) {

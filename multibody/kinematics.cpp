@@ -56,18 +56,7 @@ void set_moving(const Tree& tree, const Eigen::VectorXd& v, Kinematics& kinemati
   for (int i = 0; i < tree.size(); ++i) {
     const TreeBody& body = tree.body(i);
     Twist V = body.parent < 0 ? Twist{} : kinematics.X_PB[at(i)].to_inner(kinematics.V_B[at(body.parent)]);
-    switch (body.joint) {
-      case JointKind::revolute:
-        V.angular += v[body.v_index] * body.axis;
-        break;
-      case JointKind::prismatic:
-        V.linear += v[body.v_index] * body.axis;
-        break;
-      case JointKind::free:
-        V.angular += v.segment<3>(body.v_index);
-        V.linear += v.segment<3>(body.v_index + 3);
-        break;
-    }
+    add_joint_motion(body, v, V);
     kinematics.V_B[at(i)] = V;
   }
 }

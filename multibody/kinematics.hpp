@@ -19,6 +19,22 @@ struct Kinematics {
   std::vector<Twist> V_B;  ///< velocity of each body, in its own frame
 };
 
+/// Adds the velocity of a body against its joint's frame, in its own axes.                              theory.md (A.3)
+inline void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twist& V) {
+  switch (body.joint) {
+    case JointKind::revolute:
+      V.angular += v[body.v_index] * body.axis;
+      break;
+    case JointKind::prismatic:
+      V.linear += v[body.v_index] * body.axis;
+      break;
+    case JointKind::free:
+      V.angular += v.segment<3>(body.v_index);
+      V.linear += v.segment<3>(body.v_index + 3);
+      break;
+  }
+}
+
 /// Poses for the coordinates q.
 void place(const Tree& tree, const Eigen::VectorXd& q, Kinematics& kinematics);
 /// Velocities, after `place`.

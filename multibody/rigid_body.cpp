@@ -1,5 +1,7 @@
 #include "multibody/rigid_body.hpp"
 
+#include "multibody/spatial.hpp"
+
 namespace snare::multibody {
 
 using Eigen::Matrix3d;
@@ -19,9 +21,7 @@ Matrix3d rotation(const Vector4d& q) {
 Eigen::Matrix<double, 3, 4> rotated_by_quaternion(const Vector4d& q, const Vector3d& a) {
   // A change dq of a unit quaternion is the rotation vector 4 Q^T dq in B, Q = quaternion_rates(q); Q^T Q = 1/4.
   const Matrix3d r = rotation(q);
-  Matrix3d cross;
-  cross << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return -4.0 * r * cross * quaternion_rates(q).transpose();
+  return -4.0 * r * skew(a) * quaternion_rates(q).transpose();
 }
 
 double kinetic_energy(const RigidBodyProperties& body, const RigidBodyState& state) {

@@ -6,6 +6,7 @@
 #include "reduction/table_builder.hpp"
 #include "reduction/tensioned_wire.hpp"
 #include "validation/closed_forms.hpp"
+#include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
 
@@ -20,29 +21,15 @@ namespace snare::validation {
 
 namespace {
 
-/// A published fit and what the tracing found for its record: displacement at which the pusher touches the wire.
-struct PublishedLaw {
-  double position, a, b, c, r2, zero;  // [m], [N/m^2], [N/m], [N], [-], [m]
-  [[nodiscard]] double force(double d) const { return (a * d + b) * d + c; }
-};
-constexpr std::array<PublishedLaw, 3> published{{{0.040, 719880.0, -13.578, 0.0533, 0.9976, 0.44e-3},
-                                                 {0.065, 878089.0, -1086.0, 0.2115, 0.998, 1.03e-3},
-                                                 {0.090, 890183.0, -1297.6, 0.3457, 0.9975, 1.46e-3}}};
 constexpr double recorded_range = 4e-3;  // [m], assumed: the papers do not print it
 constexpr int recorded_points = 41;
 
 /// The one wire that the tracing of the published tests ends with.
 coupling::PushTest traced_wire() {
-  coupling::PushTest test;
-  test.wire.diameter = 1.5e-3;
-  test.wire.youngs_modulus = 193e9;
-  test.wire.poisson_ratio = 0.29;
-  test.wire.density = 7930.0;
+  coupling::PushTest test = declared_wire(87.5e-3, 6e-3);
   test.wire.bending_stiffness_override = 0.0094;
   test.wire.axial_stiffness_override = 19300.0;
   test.wire.length = 175.49e-3;
-  test.mount.span = 175e-3;
-  test.pusher.radius = 6e-3;
   return test;
 }
 
@@ -69,7 +56,7 @@ std::vector<Row> published_rows() {
   std::vector<Row> rows;
   const std::string group = "distilled laws";
   std::vector<double> stiffness;
-  for (const PublishedLaw& law : published) {
+  for (const PublishedLaw& law : published_laws) {
     std::vector<double> d;
     const std::vector<double> force = recorded(law, d);
     std::vector<std::size_t> all(d.size());
@@ -85,7 +72,7 @@ std::vector<Row> published_rows() {
       variance += std::pow(law.force(x) - mean, 2) / recorded_points;
       apart += std::pow(fit.form->force(fit.values, x) - law.force(x), 2) / recorded_points;
     }
-    const double scatter = std::sqrt((1.0 - law.r2) / law.r2 * variance);
+    const double scatter = std::sqrt((1.0 - law.r_squared) / law.r_squared * variance);
     rows.push_back(
         {group,
          fmt::format(

@@ -2,7 +2,7 @@
 
 #include "coupling/motion.hpp"
 #include "coupling/push_solver.hpp"
-#include "wire/loose_wire.hpp"
+#include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -26,26 +26,10 @@ using std::numbers::pi;
 
 constexpr double mm = 1e-3;
 
-/// Solid SUS-304 of 1.5 mm.
-wire::WireSpecification declared_wire() {
-  wire::WireSpecification w;
-  w.diameter = 1.5 * mm;
-  w.length = 180.0 * mm;
-  w.youngs_modulus = 193e9;
-  w.poisson_ratio = 0.29;
-  w.density = 7930.0;
-  return w;
-}
-
+/// A wire of another length than its specification's.
 wire::RodInMotion rod_of(const wire::WireSpecification& w, double length, double span, int elements) {
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = w.bending_stiffness();
-  rod.properties.torsional_stiffness = w.torsional_stiffness();
-  rod.properties.axial_stiffness = w.axial_stiffness();
-  rod.properties.right.position = {span, 0.0, 0.0};
-  rod.mass_per_length = w.mass_per_length();
+  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
   rod.length = length;
-  rod.elements = elements;
   return rod;
 }
 
@@ -62,17 +46,7 @@ Motion straight(const wire::RodInMotion& rod) {
 /// The loose wire buckled to +y.
 Motion buckled(const wire::RodInMotion& rod) {
   Motion motion = straight(rod);
-  wire::PlanarRodProperties plane;
-  plane.bending_stiffness = rod.properties.bending_stiffness;
-  plane.axial_stiffness = rod.properties.axial_stiffness;
-  plane.right.position = rod.properties.right.position.head<2>();
-  const wire::PlanarRod planar(wire::MaterialMesh(rod.elements / 2, rod.elements - rod.elements / 2, 0.0),
-                               plane);
-  const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};
-  const wire::LooseWire loose = wire::find_loose_wire(planar, controls, 1);
-  for (int i = 0; i <= rod.elements; ++i) {
-    motion.wires[0].positions.col(i) << wire::vertex(loose.state, i), 0.0;
-  }
+  motion.wires[0].positions = coupling::resting_wire(rod);
   return motion;
 }
 
@@ -116,7 +90,7 @@ Row frequency_row(const std::string& group, const std::string& name, const std::
 std::vector<Row> clamped_frequency_rows() {
   constexpr std::array<double, 5> roots{4.730040744862704, 7.853204624095838, 10.995607838001671,
                                         14.137165491257464, 17.278759657399481};  // cos x cosh x = 1
-  const wire::WireSpecification w = declared_wire();
+  const wire::WireSpecification w = declared_specification();
   const double span = 175.0 * mm;
   wire::RodInMotion rod = rod_of(w, span, span, 200);
   rod.damping.bending_time = rod.damping.axial_time = faint;
@@ -139,7 +113,7 @@ std::vector<Row> clamped_frequency_rows() {
 }
 
 std::vector<Row> tensioned_frequency_rows() {
-  const wire::WireSpecification w = declared_wire();
+  const wire::WireSpecification w = declared_specification();
   const double span = 175.0 * mm;
   constexpr double tension = 50.0;
   const double stretch = 1.0 + tension / w.axial_stiffness();
@@ -162,7 +136,7 @@ std::vector<Row> tensioned_frequency_rows() {
 }
 
 std::vector<Row> buckled_frequency_rows() {
-  wire::RodInMotion rod = rod_of(declared_wire(), 180.0 * mm, 175.0 * mm, 60);
+  wire::RodInMotion rod = rod_of(declared_specification(), 180.0 * mm, 175.0 * mm, 60);
   const Motion motion = buckled(rod);
   // M x'' + K x = 0 in the plane with the statics' tangent, the angles of twist being at rest there.
   wire::SpatialRod statics(wire::MaterialMesh(30, 30, 0.0), rod.properties);
@@ -198,7 +172,7 @@ std::vector<Row> buckled_frequency_rows() {
 }
 
 std::vector<Row> axial_wave_rows() {
-  const wire::WireSpecification w = declared_wire();
+  const wire::WireSpecification w = declared_specification();
   const double span = 175.0 * mm;
   wire::RodInMotion rod = rod_of(w, span, span, 100);
   Matrix3Xd shape = Matrix3Xd::Zero(3, rod.elements + 1);
@@ -215,7 +189,7 @@ std::vector<Row> gravity_rows() {
   std::vector<Row> rows;
   // A hanging chain: J0(2 omega sqrt(L/g)) = 0 (D. Bernoulli 1732); bending a millionth of the weight's stiffness.
   {
-    wire::WireSpecification w = declared_wire();
+    wire::WireSpecification w = declared_specification();
     w.bending_stiffness_override = 1e-8;
     wire::RodInMotion rod = rod_of(w, 0.5, 0.5, 60);
     rod.properties.left.kind = wire::SpatialEnd::Kind::pin;
@@ -235,7 +209,7 @@ std::vector<Row> gravity_rows() {
   // A rod falls from the horizontal about a pin: a physical pendulum of the length 2L/3, a quarter of its period
   // T = 4 K(sin(pi/4)) sqrt(2L/3g).
   {
-    wire::WireSpecification w = declared_wire();
+    wire::WireSpecification w = declared_specification();
     wire::RodInMotion rod = rod_of(w, 0.3, 0.3, 40);
     rod.properties.left.kind = wire::SpatialEnd::Kind::pin;
     rod.properties.right.kind = wire::SpatialEnd::Kind::free;
@@ -269,7 +243,7 @@ std::vector<Row> gravity_rows() {
 std::vector<Row> slow_push_rows() {
   // A ball moved at 5 mm/s pushes the buckled wire outward at its middle; the static force at the same travel is that of
   // a cylinder of the same radius on the same mesh.
-  const wire::WireSpecification w = declared_wire();
+  const wire::WireSpecification w = declared_specification();
   constexpr double radius = 6.0 * mm;
   coupling::PushTest test;
   test.wire = w;
@@ -321,7 +295,7 @@ struct Impact {
 };
 
 Impact impact(int elements, const MotionOptions& options, double damping) {
-  const wire::WireSpecification w = declared_wire();
+  const wire::WireSpecification w = declared_specification();
   wire::RodInMotion rod = rod_of(w, w.length, 175.0 * mm, elements);
   rod.damping.bending_time = rod.damping.axial_time = damping;
   Motion motion = buckled(rod);

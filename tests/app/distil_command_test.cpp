@@ -1,6 +1,7 @@
 // The verbs distil and compare as their users see them: files, exports that compile alone and agree, resuming.
 
 #include "reduction/force_table.hpp"
+#include "tests/support/traced_wire_text.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -21,33 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* wire_text = R"(schema = "snare-wire/1"
-title = "short -- with a dash"
-[wire]
-construction = "solid"
-diameter_mm = 1.5
-length_mm = 175.49
-youngs_modulus_GPa = 193.0
-poisson_ratio = 0.29
-density_kg_m3 = 7930.0
-bending_stiffness_Nm2 = 0.0094
-axial_stiffness_N = 19300.0
-[mount]
-kind = "clamped"
-span_mm = 175.0
-[pusher]
-shape = "cylinder"
-radius_mm = 6.0
-friction = 0.0
-direction = "outward"
-[solver]
+const std::string wire_text = test::traced_wire_text("short -- with a dash", R"([solver]
 elements = 16
 [table]
 points = [5, 3, 3]
 most_points = [5, 3, 3]
 [laws]
 positions_mm = [40.0, 52.5]
-)";
+)");
 
 std::string contents(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
