@@ -1,6 +1,7 @@
 #include "reduction/cubic_spline.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <cassert>
@@ -28,51 +29,72 @@ void lagrange_derivative(const std::vector<double>& knots, std::size_t first, st
   }
 }
 
-}  // namespace
+/// left m = right v for the slopes m of a spline through v at four knots or more; three entries a row.
+struct SplineEquations {
+  Eigen::SparseMatrix<double> left, right;
+};
 
-Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper) {
-  const std::size_t n = knots.size();
-  const auto size = static_cast<Eigen::Index>(n);
-  Eigen::MatrixXd left = Eigen::MatrixXd::Zero(size, size);
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, size);
-  if (n == 1) return right;
-  if (n <= 3) {
-    for (std::size_t i = 0; i < n; ++i)
-      lagrange_derivative(knots, 0, n, knots[i], right, static_cast<Eigen::Index>(i));
-    if (upper == SplineEnd::level) right.row(size - 1).setZero();
-    return right;
-  }
+SplineEquations spline_equations(const std::vector<double>& knots, SplineEnd upper) {
+  const auto size = static_cast<int>(knots.size());
+  std::vector<Eigen::Triplet<double>> left, right;
+  const auto width = [&knots](int cell) {
+    return knots[static_cast<std::size_t>(cell) + 1] - knots[static_cast<std::size_t>(cell)];
+  };
   // Continuous second derivative at the inner knots, h the widths of the cells:
   //   m[i-1]/h[i-1] + 2 (1/h[i-1] + 1/h[i]) m[i] + m[i+1]/h[i] = 3 (v[i] - v[i-1])/h[i-1]^2 + 3 (v[i+1] - v[i])/h[i]^2
-  for (Eigen::Index i = 1; i + 1 < size; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double before = 1.0 / (knots[k] - knots[k - 1]);
-    const double after = 1.0 / (knots[k + 1] - knots[k]);
-    left(i, i - 1) = before;
-    left(i, i) = 2.0 * (before + after);
-    left(i, i + 1) = after;
-    right(i, i - 1) = -3.0 * before * before;
-    right(i, i) = 3.0 * (before * before - after * after);
-    right(i, i + 1) = 3.0 * after * after;
+  for (int i = 1; i + 1 < size; ++i) {
+    const double before = 1.0 / width(i - 1);
+    const double after = 1.0 / width(i);
+    left.emplace_back(i, i - 1, before);
+    left.emplace_back(i, i, 2.0 * (before + after));
+    left.emplace_back(i, i + 1, after);
+    right.emplace_back(i, i - 1, -3.0 * before * before);
+    right.emplace_back(i, i, 3.0 * (before * before - after * after));
+    right.emplace_back(i, i + 1, 3.0 * after * after);
   }
   // Continuous third derivative at the knot next to the end: (m[i] + m[i+1] - 2 secant)/h^2 on both its sides.
-  const auto not_a_knot = [&](Eigen::Index row, Eigen::Index cell) {
+  const auto not_a_knot = [&](int row, int cell) {
     for (const double sign : {1.0, -1.0}) {
-      const Eigen::Index c = sign > 0.0 ? cell : cell + 1;
-      const double h = knots[static_cast<std::size_t>(c) + 1] - knots[static_cast<std::size_t>(c)];
-      const double w = sign / (h * h);
-      left(row, c) += w;
-      left(row, c + 1) += w;
-      right(row, c) -= 2.0 * w / h;
-      right(row, c + 1) += 2.0 * w / h;
+      const int c = sign > 0.0 ? cell : cell + 1;
+      const double w = sign / (width(c) * width(c));
+      left.emplace_back(row, c, w);
+      left.emplace_back(row, c + 1, w);
+      right.emplace_back(row, c, -2.0 * w / width(c));
+      right.emplace_back(row, c + 1, 2.0 * w / width(c));
     }
   };
   not_a_knot(0, 0);
   if (upper == SplineEnd::not_a_knot)
     not_a_knot(size - 1, size - 3);
   else
-    left(size - 1, size - 1) = 1.0;
-  return left.partialPivLu().solve(right);
+    left.emplace_back(size - 1, size - 1, 1.0);
+  SplineEquations equations{Eigen::SparseMatrix<double>(size, size), Eigen::SparseMatrix<double>(size, size)};
+  equations.left.setFromTriplets(left.begin(), left.end());
+  equations.right.setFromTriplets(right.begin(), right.end());
+  return equations;
+}
+
+/// Slopes for every column of `values`.
+Eigen::MatrixXd slopes_of(const std::vector<double>& knots, const Eigen::MatrixXd& values, SplineEnd upper) {
+  const std::size_t n = knots.size();
+  const auto size = static_cast<Eigen::Index>(n);
+  if (n == 1) return Eigen::MatrixXd::Zero(size, values.cols());
+  if (n <= 3) {
+    Eigen::MatrixXd by = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t i = 0; i < n; ++i) lagrange_derivative(knots, 0, n, knots[i], by, static_cast<Eigen::Index>(i));
+    if (upper == SplineEnd::level) by.row(size - 1).setZero();
+    return by * values;
+  }
+  const SplineEquations equations = spline_equations(knots, upper);
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(equations.left);
+  return factor.solve(Eigen::MatrixXd(equations.right * values));
+}
+
+}  // namespace
+
+Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper) {
+  const auto size = static_cast<Eigen::Index>(knots.size());
+  return slopes_of(knots, Eigen::MatrixXd::Identity(size, size), upper);
 }
 
 HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values, std::vector<double> slopes)
@@ -89,8 +111,8 @@ HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values
 HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values)
     : HermiteCurve(knots, values, [&] {
         const Eigen::VectorXd m =
-            spline_slopes(knots) *
-            Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+            slopes_of(knots, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())),
+                      SplineEnd::not_a_knot);
         return std::vector<double>(m.begin(), m.end());
       }()) {}
 
