@@ -3,6 +3,8 @@
 #include "coupling/push_solver.hpp"
 #include "reduction/distil.hpp"
 
+#include "law.hpp"  // generated: see CMakeLists.txt
+
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
@@ -13,30 +15,9 @@ namespace {
 
 using namespace snare;
 
-constexpr const char* wire_text = R"(schema = "snare-wire/1"
-[wire]
-construction = "solid"
-diameter_mm = 1.5
-length_mm = 175.49
-youngs_modulus_GPa = 193.0
-poisson_ratio = 0.29
-density_kg_m3 = 7930.0
-bending_stiffness_Nm2 = 0.0094
-axial_stiffness_N = 19300.0
-[mount]
-kind = "clamped"
-span_mm = 175.0
-[pusher]
-shape = "cylinder"
-radius_mm = 6.0
-friction = 0.0
-direction = "outward"
-[ranges]
-travel_mm = 4.0
-)";
-
+/// The wire traced from the published tests.
 const reduction::WireFile& wire_file() {
-  static const reduction::WireFile file = reduction::parse_wire_file("benchmark.toml", wire_text);
+  static const reduction::WireFile file = reduction::read_wire_file(SNARE_BENCHMARK_DATA "/wires/traced_published.toml");
   return file;
 }
 
@@ -74,6 +55,25 @@ void LawForce(benchmark::State& state) {
 }
 BENCHMARK(LawForce)->DenseRange(0, 6);
 
+/// The same quadratic as other programs get it: the exported header, compiled into this program.
+void ExportedLawForce(benchmark::State& state) {
+  const std::vector<double> d = travels();
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(snare_law::quadratic_s65(d[i++ % 4096]));
+}
+BENCHMARK(ExportedLawForce);
+
+void ExportedTableForce(benchmark::State& state) {
+  const std::vector<double> d = travels();
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        snare_law::force(d[i % 4096], 0.035 + 10.0 * d[(i + 7) % 4096], 4e-4 + 0.05 * d[(i + 13) % 4096]));
+    ++i;
+  }
+}
+BENCHMARK(ExportedTableForce);
+
 /// The solve that an evaluation replaces: one travel from the straight wire, extrapolated from three meshes.
 void FullWireForce(benchmark::State& state) {
   coupling::PushTest test = wire_file().cases.front().test;
@@ -85,18 +85,32 @@ void FullWireForce(benchmark::State& state) {
 BENCHMARK(FullWireForce)->Unit(benchmark::kMicrosecond);
 
 /// The default table, 20 x 9 x 5, from scratch: knots placed, nodes solved, bound checked.
+reduction::BuiltTable default_table() {
+  const reduction::WireFile& file = wire_file();
+  reduction::CurveStore store(file.cases.front(), file.settings,
+                              reduction::sampling_travel(file.cases.front(), file.settings));
+  return reduction::build_table(store, file.settings);
+}
+
 void DefaultTable(benchmark::State& state) {
   omp_set_num_threads(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    const reduction::WireFile& file = wire_file();
-    reduction::CurveStore store(file.cases.front(), file.settings,
-                                reduction::sampling_travel(file.cases.front(), file.settings));
-    const reduction::BuiltTable built = reduction::build_table(store, file.settings);
+    const reduction::BuiltTable built = default_table();
     state.counters["bound_share"] = built.loading_error.bound / built.loading_error.force_range;
     state.counters["curves"] = static_cast<double>(built.curves);
   }
   omp_set_num_threads(omp_get_num_procs());
 }
+
+/// Two tables at once, each on one thread: what two cores of this machine can do for work that shares nothing.
+void TwoDefaultTables(benchmark::State& state) {
+  omp_set_max_active_levels(1);
+  for (auto _ : state) {
+#pragma omp parallel for num_threads(2) schedule(static, 1)
+    for (int k = 0; k < 2; ++k) benchmark::DoNotOptimize(default_table().curves);
+  }
+}
+
 /// The part of it that does not run in parallel: the same with every curve known.
 void DefaultTableKnownCurves(benchmark::State& state) {
   const reduction::WireFile& file = wire_file();
@@ -109,6 +123,7 @@ void DefaultTableKnownCurves(benchmark::State& state) {
 BENCHMARK(DefaultTableKnownCurves)->Unit(benchmark::kMillisecond);
 
 BENCHMARK(DefaultTable)->Arg(1)->Arg(2)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(TwoDefaultTables)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 

@@ -37,6 +37,15 @@ std::vector<double> with_middles(const std::vector<double>& knots) {
   return result;
 }
 
+/// Every position with every slack.
+std::vector<CurvePlace> grid(const std::vector<double>& positions, const std::vector<double>& slacks) {
+  std::vector<CurvePlace> places;
+  for (const double s : positions) {
+    for (const double e : slacks) places.push_back({s, e});
+  }
+  return places;
+}
+
 using Branch = std::vector<double> WireCurve::*;
 
 class TableBuilder {
@@ -51,7 +60,7 @@ class TableBuilder {
   [[nodiscard]] std::unique_ptr<ForceTable> tabulate(Branch branch) const;
   [[nodiscard]] TableError check(const ForceTable& table, Branch branch);
   [[nodiscard]] bool refine();
-  [[nodiscard]] bool sample(const std::vector<double>& positions, const std::vector<double>& slacks);
+  [[nodiscard]] bool sample(const std::vector<CurvePlace>& places);
 
   CurveStore& store_;
   const DistilSettings& settings_;
@@ -63,11 +72,7 @@ class TableBuilder {
   std::array<std::vector<double>, 3> cell_error_;
 };
 
-bool TableBuilder::sample(const std::vector<double>& positions, const std::vector<double>& slacks) {
-  std::vector<CurvePlace> places;
-  for (const double s : positions) {
-    for (const double e : slacks) places.push_back({s, e});
-  }
+bool TableBuilder::sample(const std::vector<CurvePlace>& places) {
   built_.report = store_.sample(places, observer_);
   return built_.report.usable();
 }
@@ -79,7 +84,10 @@ bool TableBuilder::place() {
   const std::vector<double> all_e = spread(wire.slack, pilot_intervals);
   const std::vector<double> few_s = spread(wire.position, 2);
   const std::vector<double> few_e = spread(wire.slack, 2);
-  if (!sample(all_s, few_e) || !sample(few_s, all_e)) return false;
+  std::vector<CurvePlace> pilots = grid(all_s, few_e);
+  const std::vector<CurvePlace> others = grid(few_s, all_e);
+  pilots.insert(pilots.end(), others.begin(), others.end());
+  if (!sample(pilots)) return false;
   const auto wanted = [&](std::size_t axis) { return static_cast<std::size_t>(settings_.points[axis]); };
 
   std::vector<std::vector<double>> lines;
@@ -235,7 +243,7 @@ bool TableBuilder::refine() {
 BuiltTable TableBuilder::run() {
   if (!place()) return std::move(built_);
   for (built_.rounds = 0;; ++built_.rounds) {
-    if (!sample(with_middles(position_), with_middles(slack_))) return std::move(built_);
+    if (!sample(grid(with_middles(position_), with_middles(slack_)))) return std::move(built_);
     cell_error_[0].assign(std::max<std::size_t>(1, travel_.size() - 1), 0.0);
     cell_error_[1].assign(std::max<std::size_t>(1, position_.size() - 1), 0.0);
     cell_error_[2].assign(std::max<std::size_t>(1, slack_.size() - 1), 0.0);
