@@ -125,6 +125,28 @@ void add_map(ReportPage& page, const DistilledCase& one) {
   page.line_plot(plot);
 }
 
+void add_damping(ReportPage& page, const DistilledCase& one) {
+  page.heading("Damping");
+  if (one.wire.dissipates())
+    page.paragraph("Friction and strands lose the same at any rate: their loop and the load/unload law are in law.json, no c.");
+  if (one.places.front().impacts.empty()) {
+    page.paragraph("No impacts were asked, so no dashpot is given: see [damping] of the wire file.");
+    return;
+  }
+  page.paragraph("A body on a slide along the push meets the full wire in motion. The dashpot c makes the law L(d) + c d' return the body with the same "
+                 "speed; it stands for all that the body loses, to the material and to the vibration that stays in the wire.");
+  Table table{"", {{"Position"}, {"Speed [m/s]", ColumnKind::number}, {"Restitution", ColumnKind::number}, {"c [N s/m]", ColumnKind::number}, {"Peak, full wire [N]", ColumnKind::number},
+                   {"Peak, law [N]", ColumnKind::number}, {"Largest travel [mm]", ColumnKind::number}}, {}};
+  for (const DistilledPlace& place : one.places) {
+    for (const reduction::ImpactDamping& i : place.impacts) {
+      table.rows.push_back({at(place), format_significant(i.speed), format_significant(i.restitution), i.damping ? format_significant(*i.damping) : "-",
+                            format_significant(i.peak_force), i.damping ? format_significant(i.law_peak_force) : "-",
+                            format_significant(1e3 * i.largest_travel)});
+    }
+  }
+  page.table(table);
+}
+
 }  // namespace
 
 std::string distil_report_html(const reduction::WireFile& file, const reduction::Distillation& distillation) {
@@ -143,12 +165,11 @@ std::string distil_report_html(const reduction::WireFile& file, const reduction:
                       {"Largest error found", fmt::format("{:.3g} N", e.largest),
                        fmt::format("at {} points off the knots", e.points)},
                       {"Full wire solved", fmt::format("{} curves", one.table.curves), ""}});
-    page.paragraph(
-        "The damping of the laws comes from the loops of friction and strands, not from dynamic runs.");
     page.heading("Stiffness");
     add_stiffness(page, one);
     page.heading("Simple laws");
     for (const DistilledPlace& place : one.places) add_laws(page, place);
+    add_damping(page, one);
     page.heading("Map of the closed forms");
     add_map(page, one);
   }

@@ -73,7 +73,7 @@ json place_json(const DistilledPlace& place) {
   }
   if (place.dissipation) {
     const Dissipation& d = *place.dissipation;
-    result["damping"] = {{"source", "loop of friction and strands over the whole travel; no dynamic run"},
+    result["damping"] = {{"source", "loop of friction and strands over the whole travel, at any rate alike"},
                          {"loop_J", d.loop},
                          {"absorbed_J", d.absorbed},
                          {"loss_factor", d.loss_factor},
@@ -86,9 +86,20 @@ json place_json(const DistilledPlace& place) {
                              {"rms_error_N", f.rms_error},
                              {"loop_J", f.loop}};
   } else {
-    result["damping"] = {{"source", "nothing dissipates in this wire; no dynamic run"},
-                         {"damping_times_rate_N_m", 0.0}};
+    result["damping"] = {{"source", "nothing dissipates in this wire at rest"}, {"damping_times_rate_N_m", 0.0}};
   }
+  json impacts = json::array();
+  for (const ImpactDamping& i : place.impacts) {
+    impacts.push_back({{"speed_m_s", i.speed},
+                       {"restitution", i.restitution},
+                       {"integrator_loss", i.integrator_loss},
+                       {"peak_force_N", i.peak_force},
+                       {"largest_travel_mm", 1e3 * i.largest_travel},
+                       {"duration_s", i.duration},
+                       {"damping_Ns_m", i.damping ? json(*i.damping) : json()},
+                       {"law_peak_force_N", i.damping ? json(i.law_peak_force) : json()}});
+  }
+  if (!impacts.empty()) result["impacts"] = impacts;
   return result;
 }
 

@@ -150,15 +150,7 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   if (std::isfinite(position) && std::isfinite(scenario.push.mount.span)) {  // else reported already
     if (const auto problem = position_problem(position, scenario.push.mount.span)) root.fail("contact_position_mm", *problem);
   }
-  if (scenario.push.mount.kind == wire::MountKind::supports)
-    tables.mount.fail("kind",
-                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
-  for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
-    if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
-  }
-  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
-    if (tables.wire.has(key)) tables.wire.fail(key, "the wire is elastic and naturally straight in motion");
-  }
+  require_simple_motion(tables, scenario.push);
 
   const TomlTable damping = root.table("damping");
   scenario.damping.bending_time = damping.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));

@@ -165,6 +165,18 @@ PushTables push_tables(const TomlTable& root) {
           root.table("gravity")};
 }
 
+void require_simple_motion(const PushTables& tables, const PushTest& test) {
+  if (test.mount.kind == wire::MountKind::supports)
+    tables.mount.fail("kind",
+                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
+  for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+    if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
+  }
+  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
+    if (tables.wire.has(key)) tables.wire.fail(key, "the wire is elastic and naturally straight in motion");
+  }
+}
+
 std::optional<std::string> position_problem(double position, double span) {
   const double margin = mount_margin * span;
   if (position >= margin && position <= span - margin) return std::nullopt;

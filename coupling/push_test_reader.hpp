@@ -20,6 +20,10 @@ struct PushTables {
 /// Contact position and travel are left to the caller.
 [[nodiscard]] PushTest read_push_test(const PushTables& tables);
 
+/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, strands, yielding, natural
+/// curvature.
+void require_simple_motion(const PushTables& tables, const PushTest& test);
+
 /// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);
 

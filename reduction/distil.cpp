@@ -31,7 +31,7 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   for (std::size_t i = 0; i < store.travel().size(); i += fit_every) fit_at.push_back(i);
   for (const double s : wire.law_positions) {
     const WireCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
-    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}};
+    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}, {}};
     const LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length,
                             wire.test.wire.bending_stiffness()};
     for (const LawFormPointer& form : law_forms(geometry)) {
@@ -51,6 +51,35 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   return report;
 }
 
+namespace {
+
+/// Impacts on the full wire at every law position.
+numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings& impacts, std::vector<DistilledPlace>& places,
+                                     const SamplingObserver& observer) {
+  numerics::SolveReport report;
+  const std::size_t wanted = places.size() * impacts.speeds.size();
+  std::size_t finished = 0;
+  for (DistilledPlace& place : places) {
+    coupling::PushTest test = wire.test;
+    test.contact_position = place.position;
+    for (const double speed : impacts.speeds) {
+      place.impacts.push_back(distil_impact(test, impacts, speed, place.full, report));
+      if (!report.usable()) {
+        report.message = "impact at s = " + std::to_string(1e3 * place.position) + " mm: " + report.message;
+        return report;
+      }
+      if (observer && !observer(++finished, wanted)) {
+        report.termination = numerics::Termination::interrupted;
+        report.message = "interrupted";
+        return report;
+      }
+    }
+  }
+  return report;
+}
+
+}  // namespace
+
 Distillation distil(const WireFile& file, const std::filesystem::path& journal,
                     const SamplingObserver& observer) {
   Distillation result;
@@ -65,6 +94,8 @@ Distillation distil(const WireFile& file, const std::filesystem::path& journal,
     result.report = one.table.report;
     if (result.report.usable()) result.report = fit_places(store, one.places, observer);
     result.solved += store.solved();
+    if (!result.report.usable()) return result;
+    if (file.impacts) result.report = distil_impacts(wire, *file.impacts, one.places, observer);
     if (!result.report.usable()) return result;
     one.map = map_laws(wire, file.settings, map_slacks, map_travels);
     result.cases.push_back(std::move(one));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "reduction/impact_damping.hpp"
 #include "reduction/law_fit.hpp"
 #include "reduction/law_map.hpp"
 #include "reduction/load_unload.hpp"
@@ -27,6 +28,7 @@ struct DistilledPlace {
   std::optional<RecordedLaw> recorded;     ///< where an offset is given
   std::optional<Dissipation> dissipation;  ///< where something dissipates
   std::optional<LoadUnloadFit> load_unload;
+  std::vector<ImpactDamping> impacts;  ///< one a speed, where impacts are asked
 };
 
 /// Dimensionless groups of a case that its table holds for.

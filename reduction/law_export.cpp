@@ -18,7 +18,10 @@ struct Language {
   std::string function_open;  // of one argument d
   std::string function_close;
   std::string prelude;
-  std::string table;  // its evaluation
+  std::string basis;        // what evaluating a table needs
+  std::string table;        // evaluation of one: {name}, {nodes}
+  std::string range;        // in_range
+  std::string load_unload;  // the law with its memory: {name}, {turn}, {position}, {slack}, {sum}, {difference}
   std::string end;
 };
 
@@ -56,7 +59,7 @@ std::string head(const DistilledCase& one, const std::string& title, const std::
         "slack: " + range(2),
         fmt::format("table within {:.4g} N of the full wire ({:.3g} % of the range of the force)", e.bound,
                     100.0 * e.bound / e.force_range),
-        std::string(one.wire.dissipates() ? "loading only: this wire dissipates, see load_unload in law.json"
+        std::string(one.wire.dissipates() ? "force: loading; force_unloading: the way back from the end of the travel"
                                           : "")}) {
     if (!line.empty()) text += comment + line + "\n";
   }
@@ -74,10 +77,18 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
   array("knots_position", axes[1]);
   array("knots_slack", axes[2]);
   array("nodes", table.nodes());
-  text += fmt::format(fmt::runtime(l.table), fmt::arg("nd", axes[0].size()), fmt::arg("ns", axes[1].size()),
-                      fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()),
-                      fmt::arg("scale", table.force_scale()),
-                      fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"));
+  if (one.table.unloading) array("nodes_unloading", one.table.unloading->nodes());
+  const auto add = [&](const std::string& source, const char* name, const char* nodes) {
+    text += fmt::format(fmt::runtime(source), fmt::arg("nd", axes[0].size()), fmt::arg("ns", axes[1].size()),
+                        fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()),
+                        fmt::arg("scale", table.force_scale()),
+                        fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"), fmt::arg("name", name),
+                        fmt::arg("nodes", nodes));
+  };
+  add(l.basis, "", "");
+  add(l.table, "force", "nodes");
+  if (one.table.unloading) add(l.table, "force_unloading", "nodes_unloading");
+  add(l.range, "", "");
   for (const DistilledPlace& place : one.places) {
     for (const FittedLaw& law : place.laws) {
       text += "\n" + l.comment + error_words(law) + "\n";
@@ -85,13 +96,22 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
           fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
       text += law.form->expression(law.values, l.prefix) + l.function_close;
     }
+    if (!place.load_unload) continue;
+    const LoadUnloadLaw& law = place.load_unload->law;
+    text += "\n" + l.comment +
+            fmt::format("load and unload; its memory is 1 and 0 at first; largest error on the way back {:.3g} N\n",
+                        place.load_unload->largest_error);
+    text += fmt::format(fmt::runtime(l.load_unload), fmt::arg("name", "load_unload_" + position_name(place.position)),
+                        fmt::arg("turn", law.turn()), fmt::arg("position", place.position),
+                        fmt::arg("slack", one.wire.nominal_slack()), fmt::arg("sum", 0.5 * (1.0 + law.returned())),
+                        fmt::arg("difference", 0.5 * (1.0 - law.returned())));
   }
   return text + l.end;
 }
 
-// The evaluation in C, which C++ takes as well. {q}: qualifier of the functions, {m}: prefix of arrays.
-std::string c_table(const std::string& qualifier) {
-  return qualifier + R"(unsigned find_cell_(const double* knots, unsigned count, double x) {{
+// The evaluation in C, which C++ takes as well.
+std::string c_basis(const std::string& qualifier) {
+  return "\n" + qualifier + R"(unsigned find_cell_(const double* knots, unsigned count, double x) {{
   unsigned low = 0, high = count > 1 ? count - 1 : 1;
   while (high - low > 1) {{
     unsigned middle = (low + high) / 2;
@@ -114,10 +134,14 @@ std::string c_table(const std::string& qualifier) {
   b[0] = u * u * (1.0 + 2.0 * t); b[1] = h * t * u * u; b[2] = t * t * (1.0 + 2.0 * u); b[3] = -h * u * t * t;
   return i;
 }}
+)";
+}
 
+std::string c_table(const std::string& qualifier) {
+  return R"(
 /* force [N] at travel d, position and slack [m] */
 )" + qualifier +
-         R"(double force(double d, double position, double slack) {{
+         R"(double {name}(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   double bd[4], bs[4], be[4], total = 0.0;
   unsigned k, k1, i[2], j[2], b, c, p;
@@ -129,7 +153,7 @@ std::string c_table(const std::string& qualifier) {
   (void)k1;
   for (c = 0; c < 2; ++c) {{
     for (b = 0; b < 2; ++b) {{
-      const double* low = nodes + 8 * (k + {nd} * (i[b] + {ns} * j[c]));
+      const double* low = {nodes} + 8 * (k + {nd} * (i[b] + {ns} * j[c]));
       const double* high = low + 8;
       double along[4];
       for (p = 0; p < 4; ++p) {{
@@ -141,8 +165,26 @@ std::string c_table(const std::string& qualifier) {
   }}
   return {scale} * total;
 }}
+)";
+}
 
-)" + qualifier +
+std::string c_load_unload(const std::string& qualifier) {
+  return qualifier + R"(double {name}(double d, double* branch, double* last) {{
+  *branch += 2.0 * (d - *last) / {turn};
+  if (*branch > 1.0) *branch = 1.0;
+  if (*branch < -1.0) *branch = -1.0;
+  *last = d;
+  if (d < 0.0) {{
+    *branch = 1.0;
+    return 0.0;
+  }}
+  return force(d, {position}, {slack}) * ({sum} + *branch * {difference});
+}}
+)";
+}
+
+std::string c_range(const std::string& qualifier) {
+  return "\n" + qualifier +
          R"(int in_range(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   if ({mirror}) s = 1.0 - s;
@@ -152,7 +194,7 @@ std::string c_table(const std::string& qualifier) {
 )";
 }
 
-constexpr const char* python_table = R"(
+constexpr const char* python_basis = R"(
 
 def _basis(knots, x):
     if len(knots) == 1:
@@ -168,9 +210,11 @@ def _basis(knots, x):
     t = (x - knots[low]) / h
     u = 1.0 - t
     return low, low + 1, (u * u * (1.0 + 2.0 * t), h * t * u * u, t * t * (1.0 + 2.0 * u), -h * u * t * t)
+)";
 
+constexpr const char* python_table = R"(
 
-def force(d, position, slack):
+def {name}(d, position, slack):
     """Force [N] at travel d, position and slack [m]."""
     if d < 0.0:
         return 0.0
@@ -184,12 +228,24 @@ def force(d, position, slack):
     for c, j in enumerate((j0, j1)):
         for b, i in enumerate((i0, i1)):
             low = 8 * (k + {nd} * (i + {ns} * j))
-            along = [bd[0] * nodes[low + 2 * p] + bd[1] * nodes[low + 2 * p + 1] + bd[2] * nodes[low + 8 + 2 * p]
-                     + bd[3] * nodes[low + 9 + 2 * p] for p in range(4)]
+            along = [bd[0] * {nodes}[low + 2 * p] + bd[1] * {nodes}[low + 2 * p + 1]
+                     + bd[2] * {nodes}[low + 8 + 2 * p] + bd[3] * {nodes}[low + 9 + 2 * p] for p in range(4)]
             total += (be[2 * c] * (bs[2 * b] * along[0] + bs[2 * b + 1] * along[1])
                       + be[2 * c + 1] * (bs[2 * b] * along[2] + bs[2 * b + 1] * along[3]))
     return {scale} * total
+)";
 
+constexpr const char* python_load_unload = R"(def {name}(d, memory):
+    """memory: [1.0, 0.0] at first, changed by every call."""
+    memory[0] = min(1.0, max(-1.0, memory[0] + 2.0 * (d - memory[1]) / {turn}))
+    memory[1] = d
+    if d < 0.0:
+        memory[0] = 1.0
+        return 0.0
+    return force(d, {position}, {slack}) * ({sum} + memory[0] * {difference})
+)";
+
+constexpr const char* python_range = R"(
 
 def in_range(d, position, slack):
     x, s, e = d / {span}, position / {span}, slack / {span}
@@ -231,7 +287,10 @@ std::string cpp_header(const DistilledCase& one, const std::string& title) {
   l.function_open = "inline double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
   l.function_close = ";\n}\n";
   l.prelude = "#pragma once\n\n#include <cmath>\n\nnamespace snare_law {\n\n";
-  l.table = "\n" + c_table("inline ");
+  l.basis = c_basis("inline ");
+  l.table = c_table("inline ");
+  l.range = c_range("inline ");
+  l.load_unload = c_load_unload("inline ");
   l.end = "\n}  // namespace snare_law\n";
   return generate(one, title, l);
 }
@@ -245,7 +304,10 @@ std::string c_source(const DistilledCase& one, const std::string& title) {
   l.function_open = "double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
   l.function_close = ";\n}\n";
   l.prelude = "#include <math.h>\n\n";
-  l.table = "\n" + c_table("");
+  l.basis = c_basis("");
+  l.table = c_table("");
+  l.range = c_range("");
+  l.load_unload = c_load_unload("");
   std::string text = generate(one, title, l);
   // Comments of C end where they should.
   std::string closed;
@@ -274,7 +336,10 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
   l.function_open = "def {}(d):\n    return 0.0 if d < 0.0 else ";
   l.function_close = "\n";
   l.prelude = "import math\n\n";
+  l.basis = python_basis;
   l.table = python_table;
+  l.range = python_range;
+  l.load_unload = python_load_unload;
   return generate(one, title, l);
 }
 
@@ -282,6 +347,7 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
   const DistilledPlace& place = one.places.front();
   const FittedLaw* linear = find_law(place, "linear");
   const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
+  const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
   // A double hyphen may not stand in a comment of XML.
   std::string words = title;
   for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--"))
@@ -289,15 +355,16 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
   return fmt::format(
       "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first "
       "touch: off the full wire by up to"
-      "\n     {:.3g} N of {:.3g} N. The damping times the angular rate is {:.4g} N/m (from the friction "
-      "loop; 0: elastic). -->\n"
+      "\n     {:.3g} N of {:.3g} N. The damping is {}; friction and strands add {:.4g} N/m over the angular rate. -->\n"
       "<mujoco model=\"snare_wire\">\n  <worldbody>\n    <body name=\"wire_contact\">\n"
       "      <joint name=\"wire_travel\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{}\" springref=\"0\" "
-      "damping=\"0\"\n"
+      "damping=\"{}\"\n"
       "             limited=\"true\" range=\"0 {}\"/>\n"
       "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\"/>\n    </body>\n  </worldbody>\n</mujoco>\n",
       words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force,
-      linear->error.force_range, loss, linear->values[0], linear->range.high);
+      linear->error.force_range,
+      impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed) : "not known: no impacts were asked",
+      loss, linear->values[0], impact ? *place.impacts.front().damping : 0.0, linear->range.high);
 }
 
 std::string adams_splines(const DistilledCase& one, const std::string& title) {

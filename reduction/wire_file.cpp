@@ -178,6 +178,22 @@ void read_law_offsets(const TomlTable& table, WireCase& nominal) {
   }
 }
 
+/// `[damping]`: impacts on the wire in motion, which is elastic, naturally straight and held by rigid mounts.
+std::optional<ImpactSettings> read_impacts(const TomlTable& root, const coupling::PushTables& tables,
+                                           const coupling::PushTest& nominal) {
+  if (!root.has("damping")) return std::nullopt;
+  const TomlTable table = root.table("damping");
+  ImpactSettings impacts;
+  impacts.damping.bending_time = table.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
+  impacts.damping.axial_time = table.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  impacts.damping.mass_rate = table.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  impacts.mass = table.number("impact_mass_kg", Range::above(0.0, 1e7));
+  impacts.speeds = table.numbers("impact_speeds_m_s", 1, most_values, Range::above(0.0, 100.0));
+  impacts.elements = table.integer_or("elements", 60, 8, 20000);
+  coupling::require_simple_motion(tables, nominal);
+  return impacts;
+}
+
 WireFile read_document(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable root = document.root();
   static constexpr numerics::Choice<bool> schemas[] = {{"snare-wire/1", true}};
@@ -202,6 +218,7 @@ WireFile read_document(TomlDocument& document, const std::filesystem::path& file
   read_law_positions(root.table("laws"), nominal);
   read_law_offsets(root.table("laws"), nominal);
   result.cases = combine(ranges, nominal);
+  result.impacts = read_impacts(root, tables, nominal.test);
   document.finish();
   return result;
 }

@@ -2,9 +2,11 @@
 
 #include "coupling/push_test.hpp"
 #include "numerics/toml_tree.hpp"
+#include "reduction/impact_damping.hpp"
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +58,7 @@ struct WireFile {
   std::string source;
   std::vector<WireCase> cases;  ///< the first has the first value of every list
   DistilSettings settings;
+  std::optional<ImpactSettings> impacts;  ///< damping from dynamic runs is asked
 };
 
 /// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the strain that

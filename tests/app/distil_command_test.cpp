@@ -8,6 +8,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -163,14 +164,80 @@ TEST_F(DistilCommand, ResumesToTheSameBytes) {
   }
 }
 
+// Friction: the way back is exported too, and a law with its memory; both are followed here through a turn.
 TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
   ASSERT_EQ(run("distil w.toml --out o --quiet --set pusher.friction=0.3 --set laws.positions_mm=[40.0]"), 0)
       << contents(folder_ / "log.txt");
   const json law = json::parse(contents(folder_ / "o" / "law.json"));
   const json& place = law["cases"][0]["positions"][0];
+  const json& table = law["cases"][0]["table"];
   EXPECT_GT(place["damping"]["loop_J"].get<double>(), 0.0);
-  EXPECT_LT(place["load_unload"]["returned"].get<double>(), 1.0);
-  EXPECT_TRUE(law["cases"][0]["table"].contains("unloading"));
+  const double returned = place["load_unload"]["returned"];
+  const double turn = 1e-3 * place["load_unload"]["turn_mm"].get<double>();
+  EXPECT_LT(returned, 1.0);
+  ASSERT_TRUE(table.contains("unloading"));
+
+  const double slack = 175.49e-3 - 175e-3;
+  std::vector<double> expected;
+  std::string calls_c, calls_py;
+  double branch = 1.0;
+  double last = 0.0;
+  for (const double d : {0.001, 0.002, 0.0019, 0.0012, 0.0013, 0.0022, -0.001, 0.0005}) {
+    branch = std::clamp(branch + 2.0 * (d - last) / turn, -1.0, 1.0);
+    last = d;
+    if (d < 0.0) branch = 1.0;
+    const double full = d < 0.0 ? 0.0 : library_force(table, d, 0.04, slack);
+    expected.push_back(full * 0.5 * ((1.0 + returned) + branch * (1.0 - returned)));
+    const std::string number = std::to_string(d);
+    calls_c += "  printf(\"%.17g\\n\", N load_unload_s40(" + number + ", &z, &l));\n";
+    calls_py += "print(repr(law.load_unload_s40(" + number + ", memory)))\n";
+  }
+  json back = table;
+  back["nodes"] = table["unloading"]["nodes"];
+  expected.push_back(library_force(back, 0.001, 0.04, slack));
+  calls_c += "  printf(\"%.17g\\n\", N force_unloading(0.001, 0.04, 175.49e-3 - 175e-3));\n";
+  calls_py += "print(repr(law.force_unloading(0.001, 0.04, 175.49e-3 - 175e-3)))\n";
+
+  std::ofstream(folder_ / "o" / "run.py") << "import law\nmemory = [1.0, 0.0]\n" << calls_py;
+  std::ofstream(folder_ / "o" / "run.cpp") << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\n"
+                                           << "int main() {\n  double z = 1.0, l = 0.0;\n" << calls_c << "}\n";
+  std::ofstream(folder_ / "o" / "run.c")
+      << "#include <stdio.h>\n#define N\ndouble load_unload_s40(double, double*, double*);\n"
+      << "double force_unloading(double, double, double);\nint main(void) {\n  double z = 1.0, l = 0.0;\n"
+      << calls_c << "  return 0;\n}\n";
+  ASSERT_EQ(
+      shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
+  ASSERT_EQ(
+      shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+  ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
+                  "exec(open('run.py').read())\" > py.txt"),
+            0);
+  for (const char* file : {"cpp.txt", "c.txt", "py.txt"}) {
+    std::ifstream in(folder_ / "o" / file);
+    std::vector<double> values;
+    for (double v = 0.0; in >> v;) values.push_back(v);
+    ASSERT_EQ(values.size(), expected.size()) << file;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(values[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i]))) << file << i;
+  }
+}
+
+// A dashpot of impacts on the wire in motion stands in law.json and in the MuJoCo joint.
+TEST_F(DistilCommand, DampingIsDistilledFromImpacts) {
+  std::ofstream(folder_ / "w.toml", std::ios::app)
+      << "[damping]\nimpact_mass_kg = 8.9\nimpact_speeds_m_s = [0.02]\nelements = 16\n";
+  ASSERT_EQ(run("distil w.toml --out o --quiet --set laws.positions_mm=[52.5]"), 0) << contents(folder_ / "log.txt");
+  const json law = json::parse(contents(folder_ / "o" / "law.json"));
+  const json& impact = law["cases"][0]["positions"][0]["impacts"][0];
+  EXPECT_GT(impact["restitution"].get<double>(), 0.9);
+  EXPECT_LT(impact["restitution"].get<double>(), 1.0);
+  EXPECT_GT(impact["damping_Ns_m"].get<double>(), 0.0);
+  EXPECT_NE(contents(folder_ / "o" / "law_mujoco.xml").find("damping=\"" + impact["damping_Ns_m"].dump().substr(0, 6)),
+            std::string::npos);
+  EXPECT_EQ(run("distil w.toml --out p --set damping.impact_mass_kg=-1 --set mount.slip_tension_N=5"), 2);
+  const std::string log = contents(folder_ / "log.txt");
+  EXPECT_NE(log.find("damping.impact_mass_kg = -1"), std::string::npos) << log;
+  EXPECT_NE(log.find("mounts are rigid in motion"), std::string::npos) << log;
 }
 
 TEST_F(DistilCommand, WrongInputWritesNothing) {
