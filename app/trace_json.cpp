@@ -136,19 +136,28 @@ std::string verdict(const Trace& t) {
     for (std::size_t k = 0; k < t.selected.size(); ++k) {
       const std::vector<std::string>& members = t.selected_classes[k];
       const identification::Effect& e = *identification::find_effect(t.selected[k]);
+      std::vector<std::string> known;
+      for (const std::string& m : members) {
+        if (!m.starts_with("outside:")) known.push_back(m);
+      }
+      const bool outside = known.size() < members.size();
       if (members.size() == 1) {
         text += fmt::format("{}: {}. ", e.name, e.meaning);
+      } else if (known.size() == 1) {
+        text += fmt::format("{} ({}), ", e.name, e.meaning);
       } else {
-        text += fmt::format("One of {}, which these readings cannot tell apart (carried on as {}). ", fmt::join(members, ", "), e.name);
+        text += fmt::format("One of {}, carried on as {}, {}", fmt::join(known, ", "), e.name,
+                            outside ? "" : "which these readings cannot tell apart. ");
+      }
+      if (outside) {
+        const identification::ChannelFunction& f = t.alternatives.front();
+        text += fmt::format("or a cause outside the catalogue: something in the {} that {}, as a function of {}. These readings cannot "
+                            "tell them apart. ",
+                            to_string(f.channel), f.effect, f.argument);
       }
     }
-    text = fmt::format("Explained. {}The error falls from {:.3g} N to {:.3g} N.", text, t.base.rmse, t.final.rmse);
-    if (!t.alternatives.empty()) {
-      const identification::ChannelFunction& f = t.alternatives.front();
-      text += fmt::format(" A cause outside the catalogue would do as well: something in the {} that {}, as a function of {}.",
-                          to_string(f.channel), f.effect, f.argument);
-    }
-    return text;
+    return fmt::format("{} {}The error falls from {:.3g} N to {:.3g} N.",
+                       t.alternatives.empty() ? "Explained." : "Explained, but not decided.", text, t.base.rmse, t.final.rmse);
   }
   std::string text =
       t.rival_explanation
@@ -214,6 +223,7 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
                {{"rmse_base_N", trace.left_out_rmse ? finite(trace.left_out_rmse->first) : json()},
                 {"rmse_final_N", trace.left_out_rmse ? finite(trace.left_out_rmse->second) : json()}}},
               {"explained", trace.explained},
+              {"decided", trace.explained && trace.alternatives.empty()},
               {"channel", trace.channel.empty() ? json() : json(trace.channel)},
               {"functions", functions},
               {"alternatives", alternatives},

@@ -111,7 +111,12 @@ std::string effects_found(const json& result) {
   const auto classes = text_lists(result, "selected_classes");
   Words found = texts(result, "selected");
   for (std::size_t k = 0; k < found.size(); ++k) {
-    if (k < classes.size() && classes[k].size() > 1) found[k] = (found.size() > 1 ? "one of " : "") + joined(classes[k], " or ");
+    if (k >= classes.size() || classes[k].size() < 2) continue;
+    Words members = classes[k];
+    for (std::string& m : members) {
+      if (m.starts_with("outside:")) m = fmt::format("something in the {} that the catalogue does not have", m.substr(8));
+    }
+    found[k] = (found.size() > 1 ? "one of " : "") + joined(members, " or ");
   }
   return spaced(joined(found, "; "));
 }
@@ -124,6 +129,7 @@ void add_effect(std::vector<KeyFigure>& figures, const json& result) {
   if (!explained) return;
   if (!*explained) figures.push_back({"Effect found", "not explained", failed, Tone::bad});
   else if (unchanged(result)) figures.push_back({"Effect found", "none missing", "what the base model leaves looks like noise", Tone::good});
+  else if (!objects(result, "alternatives").empty()) figures.push_back({"Effect found", effects_found(result), "these readings cannot tell which", Tone::plain});
   else figures.push_back({"Effect found", effects_found(result), channel.empty() ? "" : "sits in: " + channel, Tone::good});
 }
 
@@ -360,8 +366,8 @@ void add_alternatives(ReportPage& page, const json& result) {
   const json& alternatives = objects(result, "alternatives");
   if (alternatives.empty()) return;
   page.heading("Causes outside the catalogue that would do as well");
-  page.paragraph("A free function in another part of the test, found in some series, explains the others too. These readings do not speak against it; "
-                 "the effect above is the simpler answer.");
+  page.paragraph("A free function in another part of the test, found in some series, explains the others too. These readings cannot tell it from the "
+                 "effect above, which is the simpler answer.");
   Table table{"", {{"Channel"}, {"What it would do"}, {"As a function of"}, {"Shape"}, number_column("Carried over")}, {}};
   for (const json& f : alternatives) {
     table.rows.push_back({text(f, "channel", absent), text(f, "effect", absent), text(f, "argument", absent), text(f, "shape", absent),

@@ -524,6 +524,11 @@ Trace Tracer::run() {
     final_fit = current;
     result_.selected = added;
     result_.selected_classes = classes;
+    for (const ChannelFunction& f : result_.alternatives) {
+      const std::string member = "outside:" + to_string(f.channel);
+      std::vector<std::string>& first = result_.selected_classes.front();
+      if (std::find(first.begin(), first.end(), member) == first.end()) first.push_back(member);
+    }
     if (!added.empty()) result_.channel = to_string(find_effect(added.front())->channel);
   } else {
     result_.partial = added;

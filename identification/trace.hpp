@@ -75,7 +75,9 @@ struct Trace {
   bool significant = false;    ///< the base model leaves something
   std::vector<Round> rounds;
   std::vector<std::string> selected;
-  std::vector<std::vector<std::string>> selected_classes;  ///< of each selected effect
+  /// Of each selected effect: itself and what these data cannot tell from it. Of the first also "outside:CHANNEL" for
+  /// every channel of `alternatives`, a cause that the catalogue does not have.
+  std::vector<std::vector<std::string>> selected_classes;
   std::vector<std::string> partial;  ///< effects that were added but leave a residual: not selected
   double partial_rmse = 0.0;
   bool rival_explanation = false;    ///< those effects would do, but one function of one channel is the simpler cause
