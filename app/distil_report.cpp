@@ -60,10 +60,10 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
   std::vector<double> full;
   for (const double x : d) full.push_back(place.full.value(x));
   force.curves.push_back({"full wire", in_mm(d), full, CurveStyle::line, 0});
+  Table forms;
+  forms.columns = {{"law"}, {"form"}, {"numbers"}};
   Table table;
   table.columns = {{"law"},
-                   {"form"},
-                   {"numbers"},
                    {"largest error, N", ColumnKind::number},
                    {"rms, N", ColumnKind::number},
                    {"of the force", ColumnKind::number},
@@ -88,12 +88,14 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
       return of > 0.0 ? format_significant(100.0 * x / of, 2) + " %" : std::string("-");
     };
     const reduction::LawError& e = law.error;
-    table.rows.push_back({law.form->name(), law.form->formula(), numbers, format_significant(e.largest_force),
+    forms.rows.push_back({law.form->name(), law.form->formula(), numbers});
+    table.rows.push_back({law.form->name(), format_significant(e.largest_force),
                           format_significant(e.rms_force), share(e.largest_force, e.force_range),
                           share(e.largest_stiffness, e.stiffness_range),
                           share(e.largest_energy, e.energy_range)});
   }
   page.subheading(at(place));
+  page.table(forms);
   page.table(table);
   page.line_plot(force);
   page.line_plot(error);
@@ -109,7 +111,10 @@ void add_map(ReportPage& page, const DistilledCase& one) {
       1e3 * one.map.travel.back());
   Curve stretched{"stretched wire", {}, {}, CurveStyle::points, 1};
   Curve tensioned{"tensioned wire", {}, {}, CurveStyle::points, 2};
+  Curve computed{"slacks looked at", {}, {}, CurveStyle::points, 0};
   for (const reduction::LawMapRow& row : one.map.rows) {
+    computed.x.push_back(1e3 * row.slack);
+    computed.y.push_back(0.0);
     for (const auto& [curve, law] : {std::pair{&stretched, &reduction::LawMapRow::stretched},
                                      std::pair{&tensioned, &reduction::LawMapRow::tensioned}}) {
       const auto range = one.map.within(row, law, 0.05);
@@ -121,7 +126,13 @@ void add_map(ReportPage& page, const DistilledCase& one) {
       }
     }
   }
-  plot.curves = {stretched, tensioned};
+  plot.curves = {computed};
+  for (const Curve* curve : {&stretched, &tensioned}) {
+    if (curve->x.empty())
+      plot.note += " The " + curve->name + " law is nowhere.";
+    else
+      plot.curves.push_back(*curve);
+  }
   page.line_plot(plot);
 }
 

@@ -160,7 +160,7 @@ class Stretched : public LawForm {
 
   std::string name() const override { return "stretched_wire"; }
   std::string formula() const override {
-    return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, none before the wire is taut";
+    return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, 0 while slack";
   }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
@@ -227,7 +227,7 @@ class StretchedLinear final : public LawForm {
   }
   std::string name() const override { return "stretched_wire_linear"; }
   std::string formula() const override {
-    return "F = K (q/l1 + q/l2)^2/L (d - d0), none before the wire is taut";
+    return "F = K (q/l1 + q/l2)^2/L (d - d0), 0 while slack";
   }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
