@@ -76,6 +76,8 @@ void validate(const Motion& motion, const MotionOptions& options) {
     const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
     c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
               "must be positive definite");
+    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
+              b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
               b.start.orientation.norm(), "must be a unit quaternion");
   }
@@ -224,7 +226,10 @@ void Run::make_rates() {
     }
   }
   for (const BodyPart& b : bodies_) {
-    if (!b.moves_freely()) continue;
+    if (!b.moves_freely()) {
+      rate_.segment<3>(b.velocity()) = b.course_acceleration(time_);
+      continue;
+    }
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }

@@ -34,8 +34,10 @@ struct MotionBody {
       Eigen::Vector3d::Zero();  ///< constant, in the world frame, at the centre of mass [N]
   double linear_drag = 0.0;     ///< force -c v [N s/m], >= 0
   double angular_drag = 0.0;    ///< torque -c w [N m s/rad], >= 0
-  /// Moved as prescribed instead of freely: constant start.velocity and no rotation (a machine).
+  /// Moved as prescribed instead of freely: constant start.velocity, or the course, and no rotation (a machine).
   bool driven = false;
+  /// Of a driven body: velocity [m/s] at a time [s], continuous, and its derivative [m/s^2]. Both or none.
+  std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
 };
 
 /// Coulomb friction between wire and body.
