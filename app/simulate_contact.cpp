@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/contact_checkpoint.hpp"
 #include "app/experiment_input.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
@@ -15,6 +16,8 @@
 #include <cmath>
 #include <iostream>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace snare::app {
 
@@ -41,24 +44,97 @@ double angle(const multibody::RigidBodyState& s) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-ModelRun run_model(const ContactScenario& scenario, const WireModel& model, Console& console) {
-  ModelRun run;
-  run.model = &model;
-  run.side = scenario.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
-  const auto begin = std::chrono::steady_clock::now();
-  run.result =
-      coupling::simulate(coupling::motion_of(scenario, model), scenario.options, [&](const MotionSample& s) {
-        run.samples.push_back(s);
-        const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        const double share = s.time / scenario.options.duration;
-        console.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", model.name, s.time,
-                                     scenario.options.duration,
-                                     share > 0.0 ? spent * (1.0 - share) / share : 0.0));
-        return interrupted();
-      });
-  console.end_progress();
-  return run;
-}
+/// Runs a scenario's models in turn, with checkpoints between which nothing is lost.
+class ScenarioRun {
+ public:
+  ScenarioRun(const ContactScenario& scenario, const std::filesystem::path& out, Console& console)
+      : scenario_(scenario), file_(out / "checkpoint.bin"), console_(console), written_(Clock::now()) {
+    LoadedCheckpoint loaded = read_contact_checkpoint(file_, scenario.input);
+    if (!loaded.refusal.empty()) console.complain(loaded.refusal);
+    if (!loaded.progress || loaded.progress->finished.size() >= scenario.models.size()) return;
+    progress_ = std::move(*loaded.progress);
+    console.say(fmt::format("goes on from {}: {} at {:.6g} s", file_.string(),
+                            scenario.models[progress_.finished.size()].name,
+                            progress_.state ? progress_.state->time : 0.0));
+  }
+
+  /// Stops early when it is interrupted; then the checkpoint is kept for the next time.
+  [[nodiscard]] std::vector<ModelRun> all() {
+    bool stopped = false;
+    while (!stopped && progress_.finished.size() < scenario_.models.size()) {
+      stopped = !run_next();
+    }
+    if (!stopped) {
+      std::error_code ignored;
+      std::filesystem::remove(file_, ignored);
+    }
+    std::vector<ModelRun> runs;
+    for (ContactProgress::Model& model : progress_.finished) {
+      ModelRun run;
+      run.model = &scenario_.models[runs.size()];
+      run.side = scenario_.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+      run.samples = std::move(model.samples);
+      run.result = std::move(model.result);
+      runs.push_back(std::move(run));
+    }
+    return runs;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+
+  /// False when it was interrupted.
+  bool run_next() {
+    const WireModel& model = scenario_.models[progress_.finished.size()];
+    const double duration = scenario_.options.duration;
+    const std::optional<coupling::MotionState> from = progress_.state;
+    const double begun = from ? from->time : 0.0;
+    std::vector<MotionSample> samples = progress_.samples;
+    const auto begin = Clock::now();
+    coupling::MotionOptions options = scenario_.options;
+    options.stop = interrupted;
+    MotionResult result = coupling::simulate(
+        coupling::motion_of(scenario_, model), options,
+        [&](const MotionSample& s) {
+          samples.push_back(s);
+          const double share = (s.time - begun) / (duration - begun);
+          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", model.name, s.time, duration,
+                                        share > 0.0 ? seconds_since(begin) * (1.0 - share) / share : 0.0));
+          return false;
+        },
+        from ? &*from : nullptr,
+        [&](const coupling::MotionState& state) {
+          progress_.state = state;
+          progress_.samples.insert(progress_.samples.end(), samples.begin() + static_cast<std::ptrdiff_t>(progress_.samples.size()),
+                                   samples.end());
+          if (seconds_since(written_) >= scenario_.checkpoint_wall_time) write();
+        });
+    console_.end_progress();
+    const bool stopped = result.report.termination == numerics::Termination::interrupted;
+    if (stopped) write();  // before the model counts as finished: it goes on from its last checkpoint
+    progress_.finished.push_back({std::move(samples), std::move(result)});
+    if (stopped) return false;
+    progress_.samples.clear();
+    progress_.state.reset();
+    if (seconds_since(written_) >= scenario_.checkpoint_wall_time) write();
+    return true;
+  }
+
+  void write() {
+    write_contact_checkpoint(file_, scenario_.input, progress_);
+    written_ = Clock::now();
+  }
+
+  const ContactScenario& scenario_;
+  std::filesystem::path file_;
+  Console& console_;
+  ContactProgress progress_;
+  Clock::time_point written_;  // when a checkpoint was
+};
 
 void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
   numerics::CsvWriter csv(
@@ -152,7 +228,9 @@ json summary_of(const ContactScenario& scenario, const ModelRun& run) {
             {"work", r.energy.work},
             {"integrator", r.energy.integrator}}},
           {"momentum_error_Ns", vector_json(r.momentum_error)},
+          {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
           {"largest_penetration_m", r.largest_penetration},
+          {"largest_gap_m", r.largest_gap},
           {"largest_drift", r.largest_drift},
           {"steps", n.steps},
           {"residuals", n.residuals},
@@ -278,15 +356,15 @@ void write_shapes(const std::filesystem::path& out, const ModelRun& run) {
 ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options,
                             Console& console) {
   const ContactScenario scenario = coupling::read_contact_scenario(file, overrides_of(options));
-  std::vector<ModelRun> runs;
+  const std::vector<ModelRun> runs = ScenarioRun(scenario, options.out, console).all();
   ExitStatus status = ExitStatus::done;
-  for (const WireModel& model : scenario.models) {
-    runs.push_back(run_model(scenario, model, console));
-    const numerics::IdaReport& report = runs.back().result.report;
+  for (const ModelRun& run : runs) {
+    const numerics::IdaReport& report = run.result.report;
     if (report.usable()) continue;
-    console.complain(fmt::format("{}: {} (what was reached is kept)", model.name, report.message));
+    const bool stopped = report.termination == numerics::Termination::interrupted;
+    console.complain(fmt::format("{}: {} (what was reached is kept{})", run.model->name, report.message,
+                                 stopped ? "; the same command goes on from the last checkpoint" : ""));
     status = ExitStatus::solver_stopped;
-    if (interrupted()) break;
   }
   json summary{{"schema", "snare-summary/1"}, {"kind", "contact"},
                {"title", scenario.title},     {"source", scenario.source},

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -168,9 +169,16 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
 
   const TomlTable solver = root.table("solver");
   scenario.elements = solver.integer_or("elements", 60, 8, 20000);
-  o.relative_tolerance = solver.number_or("relative_tolerance", 1e-5, Range::from(1e-10, 1e-2));
-  o.position_tolerance = solver.number_or("position_tolerance_m", 1e-7, Range::above(0.0, 1e-3));
-  o.velocity_tolerance = solver.number_or("velocity_tolerance_m_s", 1e-4, Range::above(0.0, 1.0));
+  const auto tolerance = [&solver](std::string_view key, double& value, double most) {
+    value = solver.number_or(key, value, Range::above(0.0, most));
+  };
+  o.relative_tolerance = solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
+  tolerance("position_tolerance_m", o.position_tolerance, 1e-3);
+  tolerance("velocity_tolerance_m_s", o.velocity_tolerance, 1.0);
+  tolerance("body_position_tolerance_m", o.body_position_tolerance, 1e-3);
+  tolerance("body_velocity_tolerance_m_s", o.body_velocity_tolerance, 1.0);
+  tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
+  tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   o.max_order = solver.integer_or("max_order", 2, 1, 5);
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
   if (!solver.has("max_step_s")) {
@@ -180,7 +188,11 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
     const double reach = scenario.push.pusher.radius + 0.5 * scenario.push.wire.diameter;
     if (speed > 0.0) o.max_step = 0.2 * reach / speed;
   }
-  scenario.paraview = root.table("output").boolean_or("paraview", false);
+  const TomlTable output = root.table("output");
+  scenario.paraview = output.boolean_or("paraview", false);
+  o.checkpoint_interval = output.number_or("checkpoint_interval_s", std::min(1.0, o.duration / 10.0), Range::above(0.0, 1e6));
+  scenario.checkpoint_wall_time = output.number_or("checkpoint_wall_time_s", 10.0, Range::from(0.0, 1e6));
+  scenario.input = document.canonical();
   document.finish();
   return scenario;
 }

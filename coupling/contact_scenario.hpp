@@ -21,6 +21,7 @@ struct WireModel {
 struct ContactScenario {
   std::string title, source;
   std::filesystem::path file;
+  std::string input;  ///< canonical text of everything that was read: equal for equal scenarios
   PushTest push;  ///< wire, mounts, probe (the pusher) and contact position
   wire::RodDamping damping;
   int elements = 60;
@@ -30,6 +31,7 @@ struct ContactScenario {
   std::vector<WireModel> models;  ///< run one after the other
   MotionOptions options;
   bool paraview = false;  ///< shapes of the wire are written
+  double checkpoint_wall_time = 10.0;  ///< least wall time between two checkpoints that are written [s], >= 0
 };
 
 /// Reads a scenario; throws InputError with everything that is wrong in it.

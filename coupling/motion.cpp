@@ -13,6 +13,8 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <utility>
 
 namespace snare::coupling {
 
@@ -44,6 +46,15 @@ void validate(const Motion& motion, const MotionOptions& options) {
   positive("duration", options.duration);
   positive("output_interval", options.output_interval);
   positive("relative_tolerance", options.relative_tolerance);
+  positive("position_tolerance", options.position_tolerance);
+  positive("velocity_tolerance", options.velocity_tolerance);
+  positive("twist_tolerance", options.twist_tolerance);
+  positive("body_position_tolerance", options.body_position_tolerance);
+  positive("body_velocity_tolerance", options.body_velocity_tolerance);
+  positive("angle_tolerance", options.angle_tolerance);
+  positive("spin_tolerance", options.spin_tolerance);
+  positive("newton_share", options.newton_share);
+  c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
   c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order,
             "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
@@ -65,6 +76,8 @@ void validate(const Motion& motion, const MotionOptions& options) {
     const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
     c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
               "must be positive definite");
+    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
+              b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
               b.start.orientation.norm(), "must be a unit quaternion");
   }
@@ -87,29 +100,36 @@ void validate(const Motion& motion, const MotionOptions& options) {
   c.raise();
 }
 
-/// Powers and forces at one time, whose integrals along the run are kept.
-struct Rates {
-  double dissipated = 0.0;            // [W]
-  double work = 0.0;                  // [W]
-  Vector3d outer = Vector3d::Zero();  // sum of all outer forces on wires and free bodies [N]
-  std::vector<Vector3d> contact;      // on the wires [N]
-};
+/// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
+/// wires and free bodies, and the force of every contact on its wire and of every body on its spring [N].
+namespace integral {
+constexpr Eigen::Index dissipated = 0;
+constexpr Eigen::Index work = 1;
+constexpr Eigen::Index outer = 2;
+constexpr Eigen::Index outer_moment = 5;
+constexpr Eigen::Index contacts = 8;
+}  // namespace integral
 
 class Run {
  public:
   Run(const Motion& motion, const MotionOptions& options, const MotionObserver& observer);
-  MotionResult go();
+  void begin();
+  void resume(const MotionState& from);
+  /// Goes on to `limit` [s].
+  MotionResult go(double limit);
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
   void make_rates();
   void close(int contact);
   void settle();
-  [[nodiscard]] MotionSample sample(const DaePoint& at);
+  [[nodiscard]] MotionSample sample(const DaePoint& at, const VectorXd& integrals);
   [[nodiscard]] EnergyBalance stored(const DaePoint& at, MotionSample* into);
-  [[nodiscard]] Rates rates(const DaePoint& at);
-  void account(const Rates& now, double time);
+  void integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates);
+  void watch();
+  void add_reactions(std::size_t contact, const Vector3d& force, const DaePoint& at, Eigen::Ref<VectorXd> rates) const;
   [[nodiscard]] bool write_until(double time);
+  [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
   const Motion& motion_;
   MotionOptions options_;
@@ -121,14 +141,9 @@ class Run {
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   VectorXd y_, rate_;
+  VectorXd integrals_;
   double time_ = 0.0;
-  MotionResult result_;
-  double start_energy_ = 0.0;
-  Vector3d start_momentum_ = Vector3d::Zero();
-  Vector3d outer_impulse_ = Vector3d::Zero();
-  Rates last_;
-  double last_time_ = 0.0;
-  long written_ = 0;
+  MotionSums sums_;
 };
 
 Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserver& observer)
@@ -138,7 +153,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
     rod.properties.weight = rod.mass_per_length * motion.gravity;
     rods_.emplace_back(
         w.name, rod,
-        wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.angle_tolerance});
+        wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
   }
   for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
   for (const MotionContact& c : motion.contacts) {
@@ -160,9 +175,14 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   ida.relative_tolerance = options.relative_tolerance;
   ida.max_order = options.max_order;
   ida.max_step = options.max_step;
-  ida_ = std::make_unique<numerics::Ida>(*system_, ida);
-  result_.peak_force.assign(contacts_.size() + springs_.size(), 0.0);
-  result_.impulse.assign(contacts_.size() + springs_.size(), Vector3d::Zero());
+  ida.newton_share = options.newton_share;
+  const auto touching = static_cast<int>(contacts_.size() + springs_.size());
+  integrals_ = VectorXd::Zero(integral::contacts + 3 * touching);
+  ida_ = std::make_unique<numerics::Ida>(
+      *system_, ida,
+      numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
+                             [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
+  sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
 }
 
 std::vector<numerics::DaePart*> Run::parts() {
@@ -206,7 +226,10 @@ void Run::make_rates() {
     }
   }
   for (const BodyPart& b : bodies_) {
-    if (!b.moves_freely()) continue;
+    if (!b.moves_freely()) {
+      rate_.segment<3>(b.velocity()) = b.course_acceleration(time_);
+      continue;
+    }
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
@@ -235,11 +258,14 @@ void Run::make_rates() {
 void Run::close(int contact) {
   ContactPart& touched = contacts_[static_cast<std::size_t>(contact)];
   if (touched.close(y_)) system_->invalidate_pattern();
-  result_.events.push_back({time_, contact, MotionEvent::Kind::touch, -touched.gap_rate(y_)});
+  sums_.events.push_back({time_, contact, MotionEvent::Kind::touch, -touched.gap_rate(y_)});
   if (touched.has_law()) return;
   std::vector<const ContactPart*> constraints;
-  for (const ContactPart& c : contacts_) {
-    if (c.closed() && !c.has_law()) constraints.push_back(&c);
+  std::vector<std::size_t> index;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (!contacts_[k].closed() || contacts_[k].has_law()) continue;
+    constraints.push_back(&contacts_[k]);
+    index.push_back(k);
   }
   const auto n = static_cast<Eigen::Index>(constraints.size());
   Eigen::MatrixXd flexibility(n, n);
@@ -253,10 +279,15 @@ void Run::close(int contact) {
   }
   const VectorXd impulse = flexibility.partialPivLu().solve(missing);
   const double before = stored({time_, y_, rate_}, nullptr).kinetic;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    constraints[static_cast<std::size_t>(i)]->respond(y_, impulse[i], y_);
+  const double worked = integrals_[integral::work];
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const double p = impulse[static_cast<Eigen::Index>(i)];
+    const Vector3d along = p * constraints[i]->normal(y_);
+    integrals_.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(index[i])) += along;
+    add_reactions(index[i], along, {time_, y_, rate_}, integrals_);
+    constraints[i]->respond(y_, p, y_);
   }
-  result_.energy.impacts += before - stored({time_, y_, rate_}, nullptr).kinetic;
+  sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
 }
 
 // Contacts that would pull let go at once.
@@ -266,12 +297,11 @@ void Run::settle() {
     if (!contacts_[k].closed() || y_[contacts_[k].force_unknown()] >= -options_.force_tolerance) continue;
     if (contacts_[k].has_law()) continue;
     contacts_[k].open(y_);
-    result_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
+    sums_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
     make_rates();
   }
+  ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
-  last_ = rates({time_, y_, rate_});
-  last_time_ = time_;
 }
 
 EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
@@ -299,73 +329,92 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
   return e;
 }
 
-Rates Run::rates(const DaePoint& at) {
-  Rates r;
-  for (std::size_t i = 0; i < rods_.size(); ++i) {
-    const wire::RodPart::Energies w = rods_[i].energies(at);
-    const wire::RodInMotion& c = rods_[i].constants();
-    r.dissipated += w.dissipation;
-    r.outer += w.mount_forces[0] + w.mount_forces[1] + c.mass_per_length * c.length * motion_.gravity -
-               c.damping.mass_rate * w.momentum;
+// Of a contact's force (or impulse) on its wire: what a driven body gives, with its work, and what goes on to rigidly
+// held components, where it is no part of the rod's own reaction.
+void Run::add_reactions(std::size_t contact, const Vector3d& force, const DaePoint& at,
+                        Eigen::Ref<VectorXd> rates) const {
+  const ContactPart& c = contacts_[contact];
+  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact].wire)];
+  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact].body)];
+  const auto outer = [&rates](const Vector3d& f, const Vector3d& point) {
+    rates.segment<3>(integral::outer) += f;
+    rates.segment<3>(integral::outer_moment) += point.cross(f);
+  };
+  const std::array<Vector3d, 2> held = c.share_of_mounts(at.y, force);
+  outer(-held[0], at.y.segment<3>(rod.position_of(0)));
+  outer(-held[1], at.y.segment<3>(rod.position_of(rod.vertices() - 1)));
+  if (body.moves_freely()) return;
+  rates[integral::work] += force.dot(at.y.segment<3>(body.velocity()));
+  outer(force, c.sample(at).point);
+}
+
+void Run::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
+  for (wire::RodPart& rod : rods_) {
+    const wire::RodPart::Energies w = rod.energies(at);
+    const wire::RodInMotion& c = rod.constants();
+    rates[integral::dissipated] += w.dissipation;
+    rates.segment<3>(integral::outer) += w.mount_forces[0] + w.mount_forces[1] +
+                                         c.mass_per_length * c.length * motion_.gravity -
+                                         c.damping.mass_rate * w.momentum;
+    rates.segment<3>(integral::outer_moment) += w.mount_moments[0] + w.mount_moments[1] + w.weight_moment -
+                                                c.damping.mass_rate * w.angular_momentum;
   }
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
-    r.dissipated += b.drag_power(at.y);
-    r.work += b.force_power(at.y);
-    r.outer += b.body().force + b.body().properties.mass * motion_.gravity -
-               b.body().linear_drag * at.y.segment<3>(b.velocity());
+    rates[integral::dissipated] += b.drag_power(at.y);
+    rates[integral::work] += b.force_power(at.y);
+    const Vector3d force = b.body().force + b.body().properties.mass * motion_.gravity -
+                           b.body().linear_drag * at.y.segment<3>(b.velocity());
+    const multibody::RigidBodyState state = b.state(at.y);
+    rates.segment<3>(integral::outer) += force;
+    rates.segment<3>(integral::outer_moment) +=
+        state.position.cross(force) - b.body().angular_drag * (state.orientation * state.spin);
   }
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const ContactSample s = contacts_[k].sample(at);
-    const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[k].body)];
-    r.contact.push_back(s.force);
-    r.dissipated += contacts_[k].lost_power(at.y);
-    const std::array<Vector3d, 2> held = contacts_[k].force_on_mounts(at.y);
-    r.outer -= held[0] + held[1];
-    if (!body.moves_freely()) {
-      r.work += s.force.dot(at.y.segment<3>(body.velocity()));
-      r.outer += s.force;
-    }
-    if (s.closed) {
-      result_.peak_force[k] = std::max(result_.peak_force[k], s.normal_force);
-      if (!contacts_[k].has_law())
-        result_.largest_penetration = std::max(result_.largest_penetration, -s.gap);
-    }
+    if (!contacts_[k].closed()) continue;
+    const Vector3d force = contacts_[k].sample(at).force;
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(k)) = force;
+    rates[integral::dissipated] += contacts_[k].lost_power(at.y);
+    add_reactions(k, force, at, rates);
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const ContactSample s = springs_[k].sample(at.y);
-    r.contact.push_back(s.force);
-    r.dissipated += springs_[k].taken_power(at.y);
-    r.outer -= s.force;
-    double& peak = result_.peak_force[contacts_.size() + k];
-    peak = std::max(peak, s.normal_force);
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
+    rates[integral::dissipated] += springs_[k].taken_power(at.y);
+    rates.segment<3>(integral::outer) -= s.force;
+    rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
+  }
+}
+
+// Extremes over the accepted steps.
+void Run::watch() {
+  const DaePoint at{time_, y_, rate_};
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    if (!contacts_[k].closed()) continue;
+    const ContactSample s = contacts_[k].sample(at);
+    sums_.peak_force[k] = std::max(sums_.peak_force[k], s.normal_force);
+    if (contacts_[k].has_law()) continue;
+    sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+    sums_.largest_gap = std::max(sums_.largest_gap, std::abs(s.gap));
+  }
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    double& peak = sums_.peak_force[contacts_.size() + k];
+    peak = std::max(peak, springs_[k].sample(y_).normal_force);
   }
   for (const BodyPart& b : bodies_) {
-    result_.largest_drift =
-        std::max(result_.largest_drift, std::abs(at.y.segment<4>(b.quaternion()).norm() - 1.0));
+    sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
   }
-  return r;
+  for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
 }
 
-void Run::account(const Rates& now, double time) {
-  const double half = 0.5 * (time - last_time_);
-  result_.energy.dissipated += half * (last_.dissipated + now.dissipated);
-  result_.energy.work += half * (last_.work + now.work);
-  outer_impulse_ += half * (last_.outer + now.outer);
-  for (std::size_t k = 0; k < result_.impulse.size(); ++k)
-    result_.impulse[k] += half * (last_.contact[k] + now.contact[k]);
-  last_ = now;
-  last_time_ = time;
-}
-
-MotionSample Run::sample(const DaePoint& at) {
+MotionSample Run::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  e.dissipated = result_.energy.dissipated;
-  e.impacts = result_.energy.impacts;
-  e.work = result_.energy.work;
-  e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - start_energy_;
+  e.dissipated = integrals[integral::dissipated];
+  e.impacts = sums_.impacts;
+  e.work = integrals[integral::work];
+  e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - sums_.start_energy;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -386,34 +435,59 @@ MotionSample Run::sample(const DaePoint& at) {
 
 bool Run::write_until(double time) {
   if (!observer_) return false;
-  while (static_cast<double>(written_) * options_.output_interval <= time) {
-    const double t = static_cast<double>(written_) * options_.output_interval;
-    ++written_;
-    const VectorXd y = t == time_ ? y_ : ida_->interpolate(t);
-    const VectorXd rate = t == time_ ? rate_ : ida_->interpolate(t, 1);
-    if (observer_(sample({t, y, rate}))) return true;
+  while (static_cast<double>(sums_.samples) * options_.output_interval <= time) {
+    const double t = static_cast<double>(sums_.samples) * options_.output_interval;
+    ++sums_.samples;
+    if (t == time_) {
+      if (observer_(sample({t, y_, rate_}, integrals_))) return true;
+      continue;
+    }
+    const VectorXd y = ida_->interpolate(t);
+    const VectorXd rate = ida_->interpolate(t, 1);
+    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
   }
   return false;
 }
 
-MotionResult Run::go() {
-  const auto clock = std::chrono::steady_clock::now();
+void Run::begin() {
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
-  start_energy_ = energy.kinetic + energy.strain + energy.potential;
-  start_momentum_ = start.momentum;
-  bool stopped = false;
+  sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
+  sums_.start_momentum = start.momentum;
+  sums_.start_angular_momentum = start.angular_momentum;
   settle();
-  stopped = write_until(0.0);
-  while (!stopped) {
-    const numerics::IdaAdvance advance = ida_->advance(options_.duration);
+}
+
+void Run::resume(const MotionState& from) {
+  if (from.unknowns.size() != y_.size() || from.rates.size() != y_.size() ||
+      from.integrals.size() != integrals_.size() || from.sums.peak_force.size() != sums_.peak_force.size()) {
+    throw numerics::InputError({"", 0, "state", fmt::format("{} unknowns", from.unknowns.size()),
+                                fmt::format("must be that of the same motion, of {} unknowns", y_.size())});
+  }
+  time_ = from.time;
+  y_ = from.unknowns;
+  rate_ = from.rates;
+  integrals_ = from.integrals;
+  sums_ = from.sums;
+  system_->recall(y_, from.memory);
+  ida_->set_integrals(integrals_);
+  ida_->start(time_, y_, rate_);
+}
+
+MotionResult Run::go(double limit) {
+  const auto clock = std::chrono::steady_clock::now();
+  numerics::IdaReport report;
+  bool stopped = write_until(time_);
+  while (!stopped && time_ < limit) {
+    const numerics::IdaAdvance advance = ida_->advance(limit);
+    report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
     time_ = ida_->time();
     y_ = ida_->y();
     rate_ = ida_->rate();
-    account(rates({time_, y_, rate_}), time_);
-    stopped = write_until(time_);
-    if (advance == numerics::IdaAdvance::reached_limit) break;
+    integrals_ = ida_->integrals();
+    watch();
+    stopped = write_until(time_) || (options_.stop && options_.stop());
     if (advance != numerics::IdaAdvance::event) continue;
     bool changed = false;
     const std::vector<int> found = ida_->events_found();
@@ -422,7 +496,7 @@ MotionResult Run::go() {
       changed = true;
       if (contacts_[k].closed()) {
         contacts_[k].open(y_);
-        result_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
+        sums_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
       } else {
         close(static_cast<int>(k));
       }
@@ -432,30 +506,54 @@ MotionResult Run::go() {
       if (found[event] == 0) continue;
       changed = true;
       const bool touch = found[event] > 0;
-      result_.events.push_back({time_, static_cast<int>(event), touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off,
-                                0.0});
+      sums_.events.push_back({time_, static_cast<int>(event), touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off,
+                              0.0});
     }
     if (changed) settle();
-    if (static_cast<int>(result_.events.size()) > options_.max_events) {
-      result_.report.termination = numerics::Termination::iteration_limit;
-      result_.report.message =
-          fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
+    if (static_cast<int>(sums_.events.size()) > options_.max_events) {
+      report.termination = numerics::Termination::iteration_limit;
+      report.message = fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
       break;
     }
   }
-  if (result_.report.usable()) result_.report = ida_->report();
-  if (stopped && result_.report.usable()) {
-    result_.report.termination = numerics::Termination::interrupted;
-    result_.report.message = fmt::format("stopped by the observer at {:.9g} s", time_);
+  if (stopped && report.usable()) {
+    report.termination = numerics::Termination::interrupted;
+    report.message = fmt::format("stopped on request at {:.9g} s", time_);
   }
-  result_.report.time = time_;
-  const MotionSample last = sample({time_, y_, rate_});
-  result_.energy = last.energy;
-  result_.momentum_error = last.momentum - start_momentum_ - outer_impulse_;
-  result_.statistics = ida_->statistics();
-  result_.last = {time_, y_, rate_};
-  result_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-  return result_;
+  report.time = time_;
+  sums_.statistics += ida_->statistics();
+  sums_.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return result(std::move(report));
+}
+
+MotionResult Run::result(numerics::IdaReport report) {
+  MotionResult r;
+  r.report = std::move(report);
+  const MotionSample last = sample({time_, y_, rate_}, integrals_);
+  r.energy = last.energy;
+  r.momentum_error = last.momentum - sums_.start_momentum - integrals_.segment<3>(integral::outer);
+  r.angular_momentum_error =
+      last.angular_momentum - sums_.start_angular_momentum - integrals_.segment<3>(integral::outer_moment);
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(sums_.peak_force.size()); ++k)
+    r.impulse.emplace_back(integrals_.segment<3>(integral::contacts + 3 * k));
+  r.events = sums_.events;
+  r.peak_force = sums_.peak_force;
+  r.largest_penetration = sums_.largest_penetration;
+  r.largest_gap = sums_.largest_gap;
+  r.largest_drift = sums_.largest_drift;
+  r.statistics = sums_.statistics;
+  r.wall_seconds = sums_.wall_seconds;
+  r.last = {time_, y_, rate_, integrals_, system_->memory(), sums_};
+  return r;
+}
+
+/// The first checkpoint behind a time, or the end when none comes before it.
+double next_stop(const MotionOptions& options, double time) {
+  constexpr double round_off = 1e-9;  // of an interval
+  const double interval = options.checkpoint_interval;
+  if (!std::isfinite(interval)) return options.duration;
+  const double stop = (std::floor(time / interval + round_off) + 1.0) * interval;
+  return stop < options.duration - round_off * interval ? stop : options.duration;
 }
 
 }  // namespace
@@ -505,10 +603,26 @@ Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
   return x;
 }
 
-MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer) {
+MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,
+                      const MotionState* from, const MotionKeeper& keeper) {
   validate(motion, options);
-  Run run(motion, options, observer);
-  return run.go();
+  std::optional<MotionState> state;
+  if (from != nullptr) state = *from;
+  // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are those of one
+  // process or of several makes no difference.
+  for (;;) {
+    Run run(motion, options, observer);
+    if (state) {
+      run.resume(*state);
+    } else {
+      run.begin();
+    }
+    const double stop = next_stop(options, state ? state->time : 0.0);
+    MotionResult result = run.go(stop);
+    if (!result.report.usable() || result.report.time < stop || stop >= options.duration) return result;
+    state = std::move(result.last);
+    if (keeper) keeper(*state);
+  }
 }
 
 }  // namespace snare::coupling

@@ -34,8 +34,10 @@ struct MotionBody {
       Eigen::Vector3d::Zero();  ///< constant, in the world frame, at the centre of mass [N]
   double linear_drag = 0.0;     ///< force -c v [N s/m], >= 0
   double angular_drag = 0.0;    ///< torque -c w [N m s/rad], >= 0
-  /// Moved as prescribed instead of freely: constant start.velocity and no rotation (a machine).
+  /// Moved as prescribed instead of freely: constant start.velocity, or the course, and no rotation (a machine).
   bool driven = false;
+  /// Of a driven body: velocity [m/s] at a time [s], continuous, and its derivative [m/s^2]. Both or none.
+  std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
 };
 
 /// Coulomb friction between wire and body.
@@ -82,22 +84,24 @@ struct Motion {
 struct MotionOptions {
   double duration = 1.0;          ///< [s], > 0
   double output_interval = 1e-3;  ///< of the samples [s], > 0
-  double relative_tolerance = 1e-5;
-  double position_tolerance = 1e-7;  ///< [m]
-  double velocity_tolerance = 1e-4;  ///< [m/s]
-  double angle_tolerance = 1e-7;     ///< [rad], of quaternions
-  double spin_tolerance = 1e-4;      ///< [rad/s]
+  /// What a step may err by: the mean over a wire's vertices, over a body's components.        theory.md (M.12)
+  double relative_tolerance = 1e-7;       ///< of everything: of coordinates too, wherever their origin is [-]
+  double position_tolerance = 1e-8;       ///< of wires [m]
+  double velocity_tolerance = 1e-4;       ///< of wires [m/s]
+  double twist_tolerance = 1e-7;          ///< of wires [rad]
+  double body_position_tolerance = 1e-9;  ///< [m]
+  double body_velocity_tolerance = 1e-6;  ///< [m/s]
+  double angle_tolerance = 1e-9;          ///< of bodies' quaternions [rad]
+  double spin_tolerance = 1e-5;           ///< of bodies [rad/s]
   double force_tolerance = 1e-2;     ///< [N], of multipliers: for the Newton iteration only
   int max_order = 2;                 ///< of IDA: see theory.md (M.2)
+  double newton_share = 0.01;        ///< of these tolerances that Newton's method may leave at a step, in (0, 1)
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   int max_events = 100000;                                    ///< more are a failure
-};
-
-/// Where everything is at one time. `unknowns` and `rates` belong to the run that made them.
-struct MotionState {
-  double time = 0.0;
-  Eigen::VectorXd unknowns;
-  Eigen::VectorXd rates;
+  /// At every multiple of this the integration begins anew at first order from what a MotionState holds, so that going on
+  /// from there gives the same bits as having gone through [s], > 0.
+  double checkpoint_interval = std::numeric_limits<double>::infinity();
+  std::function<bool()> stop;  ///< asked after every step; true: stop. The observer is asked at output times only
 };
 
 /// What a contact does at one time.
@@ -145,16 +149,45 @@ struct MotionEvent {
   double approach_speed = 0.0;  ///< before a touch [m/s]
 };
 
+/// What a motion has summed up since its start.
+struct MotionSums {
+  std::vector<MotionEvent> events;
+  std::vector<double> peak_force;    ///< of every contact and spring, at accepted steps [N]
+  double largest_penetration = 0.0;  ///< of closed contacts without law [m]
+  double largest_gap = 0.0;          ///< of the same, to either side: what the constraint drifts [m]
+  double largest_drift = 0.0;        ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  double impacts = 0.0;              ///< energy lost at touches [J]
+  double start_energy = 0.0;         ///< kinetic + strain + potential [J]
+  Eigen::Vector3d start_momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+  Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+  long samples = 0;                                                  ///< given to the observer
+  numerics::IdaStatistics statistics;
+  double wall_seconds = 0.0;
+};
+
+/// All that a motion needs to go on from a time.
+struct MotionState {
+  double time = 0.0;
+  Eigen::VectorXd unknowns;
+  Eigen::VectorXd rates;
+  Eigen::VectorXd integrals;   ///< powers, reactions and contact forces over time
+  std::vector<double> memory;  ///< of the parts beside their unknowns: frames of the wires, states of the contacts
+  MotionSums sums;
+};
+
 struct MotionResult {
   numerics::IdaReport report;  ///< `message` names time, step and the worst unknowns on failure
   std::vector<MotionEvent> events;
   EnergyBalance energy;
   Eigen::Vector3d momentum_error =
       Eigen::Vector3d::Zero();           ///< change less the impulse of all outer forces [N s]
+  Eigen::Vector3d angular_momentum_error =
+      Eigen::Vector3d::Zero();           ///< about the origin: change less that of all outer moments [N m s]
   std::vector<double> peak_force;        ///< of every contact and spring, at accepted steps [N]
   std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
   double largest_penetration = 0.0;      ///< of closed contacts without law [m]
-  double largest_drift = 0.0;            ///< of quaternions' length from one, and of mounts [-], [m]
+  double largest_gap = 0.0;              ///< of the same, to either side: what the constraint drifts [m]
+  double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
   MotionState last;  ///< to go on from; kept on failure too
@@ -162,6 +195,9 @@ struct MotionResult {
 
 /// Called at every output time, in order; true: stop.
 using MotionObserver = std::function<bool(const MotionSample&)>;
+
+/// Called at every checkpoint, with what to go on from.
+using MotionKeeper = std::function<void(const MotionState&)>;
 
 /// A naturally straight elastic wire of a specification between clamps at the origin and at (span, 0, 0) [m].
 [[nodiscard]] wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements);
@@ -177,7 +213,10 @@ using MotionObserver = std::function<bool(const MotionSample&)>;
 /// Integrates a motion.                                                     theory.md (M.1)-(M.12)
 /// Wrong numbers throw InputError with all of them. A failure of the integration is in `report`; the rest is
 /// what was reached.
+/// from: go on from there instead of from the start; of the same motion (other forces and courses of its bodies are
+/// allowed). Sums, events and samples go on too. From a checkpoint the result has the same bits as without the stop.
 [[nodiscard]] MotionResult simulate(const Motion& motion, const MotionOptions& options,
-                                    const MotionObserver& observer = {});
+                                    const MotionObserver& observer = {}, const MotionState* from = nullptr,
+                                    const MotionKeeper& keeper = {});
 
 }  // namespace snare::coupling

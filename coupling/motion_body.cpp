@@ -28,10 +28,10 @@ BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const Motion
 void BodyPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::string& name = body_.name;
-  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.position_tolerance, 0});
+  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0});
   layout.add(
       {name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0});
-  layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.velocity_tolerance, 0});
+  layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.body_velocity_tolerance, 0});
   layout.add({name + " angular velocity", axes, 3, DaeKind::differential, options_.spin_tolerance, 0});
   layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, no_tolerance, 0});
 }
@@ -68,7 +68,7 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
       at.rate.segment<4>(quaternion()) - multibody::quaternion_rates(q) * w - at.y[length_multiplier()] * q;
   rows[length_multiplier()] += q.squaredNorm() - 1.0;
   if (body_.driven) {
-    rows.segment<3>(velocity()) += v - body_.start.velocity;
+    rows.segment<3>(velocity()) += v - course_velocity(at.time);
     rows.segment<3>(spin()) += w;
     return;
   }
@@ -124,9 +124,17 @@ void BodyPart::place(Eigen::VectorXd& y) const {
   const multibody::RigidBodyState& s = body_.start;
   y.segment<3>(position()) = s.position;
   y.segment<4>(quaternion()) << s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z();
-  y.segment<3>(velocity()) = s.velocity;
+  y.segment<3>(velocity()) = body_.driven ? course_velocity(0.0) : s.velocity;
   y.segment<3>(spin()) = body_.driven ? Vector3d::Zero() : s.spin;
   y[length_multiplier()] = 0.0;
+}
+
+Vector3d BodyPart::course_velocity(double time) const {
+  return body_.course_velocity ? body_.course_velocity(time) : body_.start.velocity;
+}
+
+Vector3d BodyPart::course_acceleration(double time) const {
+  return body_.course_acceleration ? body_.course_acceleration(time) : Vector3d::Zero();
 }
 
 multibody::RigidBodyState BodyPart::state(const numerics::VectorView& y) const {

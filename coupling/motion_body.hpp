@@ -18,6 +18,9 @@ class BodyPart final : public numerics::DaePart {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
   void place(Eigen::VectorXd& y) const;
+  /// Of a driven body at a time [s].
+  [[nodiscard]] Eigen::Vector3d course_velocity(double time) const;      ///< [m/s]
+  [[nodiscard]] Eigen::Vector3d course_acceleration(double time) const;  ///< [m/s^2]
   [[nodiscard]] multibody::RigidBodyState state(const numerics::VectorView& y) const;
   [[nodiscard]] const MotionBody& body() const { return body_; }
   [[nodiscard]] bool moves_freely() const { return !body_.driven; }

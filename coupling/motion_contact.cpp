@@ -511,17 +511,36 @@ void ContactPart::respond(const VectorView& y, double impulse, Eigen::VectorXd& 
 }
 
 std::array<Vector3d, 2> ContactPart::force_on_mounts(const VectorView& y) const {
+  if (!closed_) return {Vector3d::Zero(), Vector3d::Zero()};
+  return share_of_mounts(y, geometry(y).force);
+}
+
+std::array<Vector3d, 2> ContactPart::share_of_mounts(const VectorView& y, const Vector3d& force) const {
   std::array<Vector3d, 2> result{Vector3d::Zero(), Vector3d::Zero()};
-  if (!closed_) return result;
-  const Geometry g = geometry(y);
+  const CurveWeights w = curve_weights(rod_, std::clamp(y[first_], 0.0, rod_.coordinate(rod_.vertices() - 1)));
   for (int k = 0; k < 4; ++k) {
-    const int i = g.weights.first + k;
+    const int i = w.first + k;
     if (i != 0 && i != rod_.vertices() - 1) continue;
     for (int a = 0; a < 3; ++a) {
-      if (rod_.is_held(i, a)) result[i == 0 ? 0 : 1][a] += g.weights.value[k] * g.force[a];
+      if (rod_.is_held(i, a)) result[i == 0 ? 0 : 1][a] += w.value[k] * force[a];
     }
   }
   return result;
+}
+
+Vector3d ContactPart::normal(const VectorView& y) const {
+  return geometry(y).normal;
+}
+
+void ContactPart::remember(std::vector<double>& memory) const {
+  memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, touch_gap_, static_cast<double>(window_)});
+}
+
+void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memory) {
+  closed_ = numerics::take(memory) != 0.0;
+  kept_coordinate_ = numerics::take(memory);
+  touch_gap_ = numerics::take(memory);
+  window_ = static_cast<int>(numerics::take(memory));
 }
 
 double ContactPart::gap_rate_of(const VectorView& y, const Eigen::VectorXd& velocities) const {

@@ -54,8 +54,16 @@ class ContactPart final : public numerics::DaePart {
   /// Power lost to friction (and taken by a law) [W].
   [[nodiscard]] double lost_power(const numerics::VectorView& y) const;
 
+  void remember(std::vector<double>& memory) const override;
+  void recall(const numerics::VectorView& y, std::span<const double>& memory) override;
+
   /// What of the contact force falls on rigidly held components of the first and the last vertex [N].
   [[nodiscard]] std::array<Eigen::Vector3d, 2> force_on_mounts(const numerics::VectorView& y) const;
+  /// The same of any force (or impulse) on the wire at the contact.
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> share_of_mounts(const numerics::VectorView& y,
+                                                               const Eigen::Vector3d& force) const;
+  /// From the body to the wire, unit, in the world frame.
+  [[nodiscard]] Eigen::Vector3d normal(const numerics::VectorView& y) const;
 
   [[nodiscard]] int coordinate_unknown() const { return first_; }
   [[nodiscard]] int force_unknown() const { return first_ + 1; }

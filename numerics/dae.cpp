@@ -1,5 +1,7 @@
 #include "numerics/dae.hpp"
 
+#include "numerics/errors.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -70,6 +72,25 @@ void DaeSystem::accept(const DaePoint& at) {
   for (DaePart* part : parts_) {
     if (part->accept(at)) stale_pattern_ = true;
   }
+}
+
+double take(std::span<const double>& memory) {
+  if (memory.empty()) throw InputError({"", 0, "state", "", "must be that of the same motion: it is too short"});
+  const double first = memory.front();
+  memory = memory.subspan(1);
+  return first;
+}
+
+std::vector<double> DaeSystem::memory() const {
+  std::vector<double> memory;
+  for (const DaePart* part : parts_) part->remember(memory);
+  return memory;
+}
+
+void DaeSystem::recall(const VectorView& y, std::span<const double> memory) {
+  for (DaePart* part : parts_) part->recall(y, memory);
+  if (!memory.empty()) throw InputError({"", 0, "state", "", "must be that of the same motion: it is too long"});
+  stale_pattern_ = true;
 }
 
 }  // namespace snare::numerics

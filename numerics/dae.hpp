@@ -75,7 +75,15 @@ class DaePart {
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
   /// Told every accepted step. True: `couple` has changed (no restart is needed for that).
   virtual bool accept(const DaePoint& /*at*/) { return false; }
+  /// Appends what the part remembers beside its unknowns, so that `recall` puts another part of the same making into
+  /// the same state, bit by bit.
+  virtual void remember(std::vector<double>& /*memory*/) const {}
+  /// Takes back what `remember` has appended, from the front of `memory`, at the unknowns `y` that belong to it.
+  virtual void recall(const VectorView& /*y*/, std::span<const double>& /*memory*/) {}
 };
+
+/// Takes the first number off a memory. Throws InputError when there is none.
+[[nodiscard]] double take(std::span<const double>& memory);
 
 /// F(t, y, y') = 0 of several parts on one sparse pattern.                                       theory.md (M.1)
 class DaeSystem {
@@ -96,6 +104,10 @@ class DaeSystem {
   void events(const DaePoint& at, std::span<double> values);
   /// Told every accepted step.
   void accept(const DaePoint& at);
+  /// What all parts remember beside their unknowns.
+  [[nodiscard]] std::vector<double> memory() const;
+  /// Puts the parts into a remembered state. Throws InputError when `memory` is not of these parts.
+  void recall(const VectorView& y, std::span<const double> memory);
   /// How many times the pattern was made.
   [[nodiscard]] int pattern_version() const noexcept { return pattern_version_; }
   /// The pattern is made anew before the next Jacobian.

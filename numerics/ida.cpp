@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <ida/ida.h>
+#include <idas/idas.h>
 #include <sundials/sundials_linearsolver.h>
 #include <sunmatrix/sunmatrix_sparse.h>
+#include <sunnonlinsol/sunnonlinsol_newton.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +21,11 @@
 namespace snare::numerics {
 
 namespace {
+
+struct NonlinearSolverDeleter {
+  void operator()(SUNNonlinearSolver s) const noexcept { SUNNonlinSolFree(s); }
+};
+using SunNonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, NonlinearSolverDeleter>;
 
 struct IdaDeleter {
   void operator()(void* memory) const noexcept { IDAFree(&memory); }
@@ -50,6 +57,16 @@ struct Callbacks {
   std::exception_ptr failure;
   std::unique_ptr<Klu> klu;
   int analysed_pattern = 0;
+  IdaIntegrals integrals{};
+  // Of the Newton iteration: the first correction of this step, and what the last rate of convergence leaves after one.
+  double first_correction = 0.0;
+  double remainder = unknown_remainder;
+
+  static constexpr double unknown_remainder = 20.0;
+
+  double relative_tolerance = 0.0;
+  Eigen::VectorXd tolerance{};  // absolute
+  Eigen::VectorXd scale{};      // of both: see Memory
 };
 
 /// A false result is positive for IDA: it tries a smaller step.
@@ -75,6 +92,13 @@ extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vecto
 }
 
 // The values stay in the system's own matrix, where the linear solver finds them; IDA's is a place-holder.
+extern "C" int snare_ida_weights(N_Vector y, N_Vector weights, void* data) {
+  const auto& self = *static_cast<const Callbacks*>(data);
+  auto out = map(weights);
+  out = (self.scale.array() * (self.relative_tolerance * map(y).array().abs() + self.tolerance.array())).inverse();
+  return out.allFinite() ? 0 : -1;
+}
+
 extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix,
                                   void* data, N_Vector, N_Vector, N_Vector) {
   auto& self = *static_cast<Callbacks*>(data);
@@ -94,6 +118,18 @@ extern "C" int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype*
   });
 }
 
+extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vector values, void* data) {
+  auto& self = *static_cast<Callbacks*>(data);
+  return guarded(self, [&] {
+    const Stopwatch watch(self.statistics.integrand_seconds);
+    ++self.statistics.integrands;
+    auto out = map(values);
+    out.setZero();
+    self.integrals.rates({t, map(y), map(rate)}, out);
+    return out.allFinite();
+  });
+}
+
 Callbacks& content(SUNLinearSolver solver) {
   return *static_cast<Callbacks*>(solver->content);
 }
@@ -106,6 +142,7 @@ extern "C" int snare_klu_setup(SUNLinearSolver solver, SUNMatrix) {
   Callbacks& self = content(solver);
   return guarded(self, [&] {
     const Stopwatch watch(self.statistics.factor_seconds);
+    self.remainder = Callbacks::unknown_remainder;
     if (!self.klu || self.analysed_pattern != self.system.pattern_version()) {
       self.klu = std::make_unique<Klu>(self.system.matrix());
       self.analysed_pattern = self.system.pattern_version();
@@ -125,6 +162,30 @@ extern "C" int snare_klu_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_
     self.klu->solve(solution);
     return solution.allFinite();
   });
+}
+
+// IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
+// unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
+// quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10.
+extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype share,
+                                 N_Vector weight, void* data) {
+  auto& self = *static_cast<Callbacks*>(data);
+  constexpr double best_rate = 0.1;
+  constexpr double worst_rate = 0.9;
+  constexpr double converged_at_once = 1e-4;  // of the share
+  int iteration = 0;
+  SUNNonlinSolGetCurIter(solver, &iteration);
+  const double size = map(correction).cwiseProduct(map(weight)).lpNorm<Eigen::Infinity>();
+  if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;
+  if (iteration == 0) {
+    self.first_correction = size;
+    if (size <= converged_at_once * share) return SUN_NLS_SUCCESS;
+  } else {
+    const double rate = std::pow(size / self.first_correction, 1.0 / iteration);
+    if (rate > worst_rate) return SUN_NLS_CONV_RECVR;
+    self.remainder = rate / (1.0 - rate);
+  }
+  return std::max(self.remainder, best_rate) * size <= share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
 }
 
 SunLinearSolver make_linear_solver(Callbacks& callbacks, SUNContext context) {
@@ -169,10 +230,11 @@ struct Ida::Memory {
   Callbacks callbacks;
   IdaOptions options;
   sundials::Context context;
-  Eigen::VectorXd y, rate, tolerance, identity;
-  SunVector y_view, rate_view, tolerance_view, identity_view;
+  Eigen::VectorXd y, rate, tolerance, identity, integrals;
+  SunVector y_view, rate_view, tolerance_view, identity_view, integrals_view;
   SunMatrix matrix;
   SunLinearSolver linear;
+  SunNonlinearSolver newton;
   std::unique_ptr<void, IdaDeleter> ida;
   double time = 0.0;
   std::vector<int> events;
@@ -180,39 +242,59 @@ struct Ida::Memory {
   IdaStatistics counted;  // of earlier starts: IDA counts from each start
   double previous_time = 0.0;
 
-  Memory(DaeSystem& system, const IdaOptions& chosen);
+  Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted);
   void update_counts();
   void begin(double at, const Eigen::VectorXd& y0, const Eigen::VectorXd& rate0);
   void fail(int code, const std::string& function);
   [[nodiscard]] std::vector<std::string> worst_unknowns();
 };
 
-Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen)
-    : callbacks{system, {}, nullptr, nullptr, 0},
+Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted)
+    : callbacks{system, {}, nullptr, nullptr, 0, std::move(wanted)},
       options(chosen),
       y(Eigen::VectorXd::Zero(system.size())),
       rate(Eigen::VectorXd::Zero(system.size())),
       tolerance(system.size()),
       identity(system.size()),
+      integrals(Eigen::VectorXd::Zero(callbacks.integrals.count)),
       y_view(view(y, context)),
       rate_view(view(rate, context)),
       tolerance_view(view(tolerance, context)),
       identity_view(view(identity, context)),
+      integrals_view(view(integrals, context)),
       matrix(made(SUNSparseMatrix(system.size(), system.size(), 1, CSC_MAT, context), "SUNSparseMatrix")),
       linear(make_linear_solver(callbacks, context)),
+      newton(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton")),
       ida(made(IDACreate(context), "IDACreate")),
       events(static_cast<std::size_t>(system.event_count()), 0) {
+  // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
+  // wire's hundreds, the mean is made one over blocks: an unknown counts as one over the size of its block.
+  int tested = 0;
+  int blocks = 0;
   for (const DaeBlock& block : system.layout().blocks()) {
     tolerance.segment(block.first, block.count).setConstant(block.absolute_tolerance);
     identity.segment(block.first, block.count).setConstant(block.kind == DaeKind::differential ? 1.0 : 0.0);
+    if (block.kind == DaeKind::differential || options.test_algebraic) {
+      tested += block.count;
+      ++blocks;
+    }
   }
+  callbacks.relative_tolerance = options.relative_tolerance;
+  callbacks.scale = Eigen::VectorXd::Ones(system.size());
+  for (const DaeBlock& block : system.layout().blocks()) {
+    if (block.kind == DaeKind::differential || options.test_algebraic) {
+      callbacks.scale.segment(block.first, block.count)
+          .setConstant(std::sqrt(static_cast<double>(block.count) * blocks / tested));
+    }
+  }
+  callbacks.tolerance = tolerance;
   void* m = ida.get();
   check(IDASetErrHandlerFn(
             m, [](int, const char*, const char*, char*, void*) {}, nullptr),
         "IDASetErrHandlerFn");
   check(IDAInit(m, snare_ida_residual, 0.0, y_view.get(), rate_view.get()), "IDAInit");
   check(IDASetUserData(m, &callbacks), "IDASetUserData");
-  check(IDASVtolerances(m, options.relative_tolerance, tolerance_view.get()), "IDASVtolerances");
+  check(IDAWFtolerances(m, snare_ida_weights), "IDAWFtolerances");
   check(IDASetId(m, identity_view.get()), "IDASetId");
   check(IDASetSuppressAlg(m, options.test_algebraic ? 0 : 1), "IDASetSuppressAlg");
   check(IDASetMaxOrd(m, options.max_order), "IDASetMaxOrd");
@@ -220,12 +302,15 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen)
   check(IDASetNonlinConvCoef(m, options.newton_share), "IDASetNonlinConvCoef");
   check(IDASetMinStep(m, options.smallest_step), "IDASetMinStep");
   if (std::isfinite(options.max_step)) check(IDASetMaxStep(m, options.max_step), "IDASetMaxStep");
+  check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
+  check(SUNNonlinSolSetConvTestFn(newton.get(), snare_newton_test, &callbacks), "SUNNonlinSolSetConvTestFn");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
   if (system.event_count() > 0) {
     check(IDARootInit(m, system.event_count(), snare_ida_events), "IDARootInit");
     check(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");
   }
+  if (integrals.size() > 0) check(IDAQuadInit(m, snare_ida_integrands, integrals_view.get()), "IDAQuadInit");
 }
 
 void Ida::Memory::update_counts() {
@@ -250,6 +335,7 @@ void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::Vecto
   counted = callbacks.statistics;
   ++callbacks.statistics.restarts;
   check(IDAReInit(ida.get(), at, y_view.get(), rate_view.get()), "IDAReInit");
+  if (integrals.size() > 0) check(IDAQuadReInit(ida.get(), integrals_view.get()), "IDAQuadReInit");
   check(IDASetInitStep(ida.get(), options.first_step), "IDASetInitStep");
   std::fill(events.begin(), events.end(), 0);
 }
@@ -266,7 +352,7 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
     return {};
   }
   Eigen::VectorXd size = (map(current) - map(predicted)).cwiseAbs();
-  size.array() /= options.relative_tolerance * y.array().abs() + tolerance.array();
+  size.array() /= callbacks.scale.array() * (options.relative_tolerance * y.array().abs() + tolerance.array());
   if (rows != nullptr) {
     for (Eigen::Index i = 0; i < size.size(); ++i) {
       if (!std::isfinite(map(rows)[i])) size[i] = std::numeric_limits<double>::infinity();
@@ -298,7 +384,8 @@ void Ida::Memory::fail(int code, const std::string& function) {
                                name_of(code), time, report.step, fmt::join(report.culprits, "; "));
 }
 
-Ida::Ida(DaeSystem& system, const IdaOptions& options) : memory_(std::make_unique<Memory>(system, options)) {}
+Ida::Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals)
+    : memory_(std::make_unique<Memory>(system, options, std::move(integrals))) {}
 Ida::~Ida() = default;
 Ida::Ida(Ida&&) noexcept = default;
 Ida& Ida::operator=(Ida&&) noexcept = default;
@@ -344,6 +431,10 @@ IdaAdvance Ida::advance(double limit) {
   ++s.steps;
   s.smallest_step = std::min(s.smallest_step, m.report.step);
   s.largest_step = std::max(s.largest_step, m.report.step);
+  if (m.integrals.size() > 0) {
+    double at = reached;
+    check(IDAGetQuad(m.ida.get(), &at, m.integrals_view.get()), "IDAGetQuad");
+  }
   m.callbacks.system.accept({m.time, m.y, m.rate});
   if (code == IDA_ROOT_RETURN) {
     check(IDAGetRootInfo(m.ida.get(), m.events.data()), "IDAGetRootInfo");
@@ -361,6 +452,13 @@ const Eigen::VectorXd& Ida::y() const {
 }
 const Eigen::VectorXd& Ida::rate() const {
   return memory_->rate;
+}
+const Eigen::VectorXd& Ida::integrals() const {
+  return memory_->integrals;
+}
+void Ida::set_integrals(const Eigen::VectorXd& values) {
+  assert(values.size() == memory_->integrals.size());
+  memory_->integrals = values;
 }
 const std::vector<int>& Ida::events_found() const {
   return memory_->events;
@@ -386,6 +484,35 @@ Eigen::VectorXd Ida::interpolate(double time, int derivative) const {
   const SunVector out = view(result, memory_->context);
   check(IDAGetDky(memory_->ida.get(), time, derivative, out.get()), "IDAGetDky");
   return result;
+}
+
+Eigen::VectorXd Ida::interpolate_integrals(double time) const {
+  Eigen::VectorXd result(memory_->integrals.size());
+  if (result.size() == 0) return result;
+  const SunVector out = view(result, memory_->context);
+  check(IDAGetQuadDky(memory_->ida.get(), time, 0, out.get()), "IDAGetQuadDky");
+  return result;
+}
+
+IdaStatistics& IdaStatistics::operator+=(const IdaStatistics& other) {
+  steps += other.steps;
+  residuals += other.residuals;
+  jacobians += other.jacobians;
+  factorizations += other.factorizations;
+  analyses += other.analyses;
+  newton_iterations += other.newton_iterations;
+  newton_failures += other.newton_failures;
+  error_test_failures += other.error_test_failures;
+  restarts += other.restarts;
+  smallest_step = std::min(smallest_step, other.smallest_step);
+  largest_step = std::max(largest_step, other.largest_step);
+  integrands += other.integrands;
+  residual_seconds += other.residual_seconds;
+  jacobian_seconds += other.jacobian_seconds;
+  factor_seconds += other.factor_seconds;
+  solve_seconds += other.solve_seconds;
+  integrand_seconds += other.integrand_seconds;
+  return *this;
 }
 
 IdaReport integrate(Ida& ida, double end, const IdaObserver& observer) {

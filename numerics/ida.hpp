@@ -13,6 +13,8 @@
 
 namespace snare::numerics {
 
+/// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and of that over
+/// the blocks with differential unknowns, must be below one.
 struct IdaOptions {
   double relative_tolerance = 1e-5;  ///< of every unknown [-], in (0, 1)
   /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
@@ -23,7 +25,7 @@ struct IdaOptions {
   double smallest_step = 1e-13;
   double first_step = 0.0;      ///< [s]; 0: IDA chooses
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
-  double newton_share = 0.33;   ///< of the tolerance that the Newton iteration may leave [-]
+  double newton_share = 0.33;   ///< of its tolerance that the Newton iteration may leave of any unknown [-]
 };
 
 /// What was done since the integrator was made.
@@ -39,10 +41,23 @@ struct IdaStatistics {
   long restarts = 0;  ///< starts at first order, the first one included
   double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
   double largest_step = 0.0;                                       ///< [s]
+  long integrands = 0;                                             ///< evaluations of IdaIntegrals::rates
   double residual_seconds = 0.0;                                   ///< wall time in residuals [s]
   double jacobian_seconds = 0.0;                                   ///< in Jacobians
   double factor_seconds = 0.0;                                     ///< in KLU's analysis and factorisation
   double solve_seconds = 0.0;                                      ///< in KLU's solution
+  double integrand_seconds = 0.0;                                  ///< in IdaIntegrals::rates
+
+  /// Adds what another integration of the same motion did.
+  IdaStatistics& operator+=(const IdaStatistics& other);
+};
+
+/// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as
+/// the unknowns. What is linear in the unknowns and has f as its rate agrees with its integral to round-off and to what
+/// the Newton iteration leaves.                                                            theory.md (M.11)
+struct IdaIntegrals {
+  int count = 0;
+  std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> rates;
 };
 
 /// How an integration ended. On failure `message` names time, step and the worst rows.
@@ -60,17 +75,17 @@ enum class IdaAdvance {
   failed          ///< see `report`; the state is that of the last accepted step
 };
 
-/// SUNDIALS IDA (variable-order, variable-step BDF) with KLU on an analytic sparse Jacobian; the pattern is analysed
+/// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse Jacobian; the pattern is analysed
 /// when it changes only.                                                                  theory.md (M.1), (M.2)
 /// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up.
 class Ida {
  public:
-  Ida(DaeSystem& system, const IdaOptions& options);
+  Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals = {});
   ~Ida();
   Ida(Ida&&) noexcept;
   Ida& operator=(Ida&&) noexcept;
 
-  /// Begins at first order from a consistent (y, y'), after an event too.
+  /// Begins at first order from a consistent (y, y'), after an event too. The integrals go on from where they are.
   void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
   /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
   /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
@@ -85,6 +100,12 @@ class Ida {
   [[nodiscard]] const Eigen::VectorXd& rate() const;
   /// Derivative k of y at a time within the last step.
   [[nodiscard]] Eigen::VectorXd interpolate(double time, int derivative = 0) const;
+  /// The integrals at time(); zero at the first start unless `set_integrals`.
+  [[nodiscard]] const Eigen::VectorXd& integrals() const;
+  /// To be called before a start.
+  void set_integrals(const Eigen::VectorXd& values);
+  /// The integrals at a time within the last step.
+  [[nodiscard]] Eigen::VectorXd interpolate_integrals(double time) const;
   /// For every event function: 0, or the direction (-1, +1) in which it passed zero.
   [[nodiscard]] const std::vector<int>& events_found() const;
   [[nodiscard]] double last_step() const;

@@ -45,6 +45,9 @@ class TomlDocument {
   /// kept once.
   void add(InputProblem problem);
 
+  /// Of what the file says after its overrides; comments and the order of keys make no difference.
+  [[nodiscard]] std::string canonical() const { return canonical_text(root_); }
+
   /// Throws InputError if anything was wrong. Problems of the file come first, by line, then those of
   /// overrides and those that were added.
   void finish();

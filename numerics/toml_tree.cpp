@@ -316,4 +316,32 @@ void apply_override(TomlNode& root, const Override& change, std::vector<InputPro
   *node = std::move(*value);
 }
 
+std::string canonical_text(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::table: {
+      std::vector<const TomlEntry*> sorted;
+      for (const TomlEntry& e : node.entries) sorted.push_back(&e);
+      std::sort(sorted.begin(), sorted.end(), [](const TomlEntry* a, const TomlEntry* b) { return a->key < b->key; });
+      std::string text = "{";
+      for (const TomlEntry* e : sorted)
+        text += fmt::format("{}:{}={};", e->key.size(), e->key, canonical_text(e->node));
+      return text + "}";
+    }
+    case TomlNode::Kind::array: {
+      std::string text = "[";
+      for (const TomlNode& item : node.items) text += canonical_text(item) + ",";
+      return text + "]";
+    }
+    case TomlNode::Kind::text:
+      return fmt::format("{}:{}", node.text.size(), node.text);
+    case TomlNode::Kind::number:
+      return fmt::format("{:a}", node.number);
+    case TomlNode::Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case TomlNode::Kind::other:
+      break;
+  }
+  return node.written;
+}
+
 }  // namespace snare::numerics

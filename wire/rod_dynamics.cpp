@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -143,7 +144,12 @@ RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& 
   };
   hold(rod.properties.left, 0);
   hold(rod.properties.right, n - 1);
-  twist_free_ = !rod.properties.left.orients() && !rod.properties.right.orients();
+  if (!rod.properties.left.orients() && !rod.properties.right.orients()) {
+    // The drag on the spin of a straight wire is that of a wire bent by some 3e-5 rad in all: it exerts no moment of note.
+    constexpr double share = 1e-9;
+    holds_first_angle_ = rod.damping.bending_time == 0.0;
+    spin_drag_ = share * rod.damping.bending_time * rod.properties.bending_stiffness / rod.length;
+  }
   band_.resize(rod_.unknowns());
 }
 
@@ -177,7 +183,7 @@ void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
     const int vertex = i / block;
     if (is_angle(i)) {
       entries.emplace_back(at, at);
-      if (vertex == vertices() - 1 || (twist_free_ && vertex == 0)) continue;
+      if (holds_angle(vertex)) continue;
     } else {
       const int velocity = velocity_of(vertex) + i % block;
       entries.emplace_back(at, at);
@@ -207,7 +213,7 @@ void RodPart::bind(const numerics::SparseMatrix& pattern) {
     bool held = false;
     int row = at;
     if (is_angle(i)) {
-      held = vertex == vertices() - 1 || (twist_free_ && vertex == 0);
+      held = holds_angle(vertex);
     } else {
       row = velocity_of(vertex) + i % block;
       diagonal_[d + 1] = pattern.slot(at, row);
@@ -237,15 +243,20 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   trial_ = base_;
 }
 
-void RodPart::evaluate(const DaePoint& at) {
+void RodPart::take_unknowns(const numerics::VectorView& y) {
   for (int i = 0; i < vertices(); ++i) {
-    band_.segment<3>(block * i) = at.y.segment<3>(position_of(i));
-    band_[block * i + 3] = at.y[angle_of(i)];
+    band_.segment<3>(block * i) = y.segment<3>(position_of(i));
+    band_[block * i + 3] = y[angle_of(i)];
   }
+}
+
+void RodPart::evaluate(const DaePoint& at) {
+  take_unknowns(at.y);
   trial_ = base_;
   wire::accept(trial_, band_);
   rod_.assemble_forces(trial_, assembly_);
   viscous_power_ = 0.0;
+  viscous_couples_ = {Vector3d::Zero(), Vector3d::Zero()};
   add_viscous(at, assembly_.gradient);
 }
 
@@ -272,10 +283,13 @@ void RodPart::add_viscous(const DaePoint& at, Eigen::VectorXd& gradient) {
     const Vector3d rate_b = r.segment<3>(8) - r.segment<3>(4);
     for (int j = 0; j < 2; ++j) {
       PairGradient g;
-      cell.curvature(j).add_gradient(cell.inverse, g);
+      const WeightedCurvature curvature = cell.curvature(j);
+      curvature.add_gradient(cell.inverse, g);
       const double rate = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[3] + g.theta_b * r[7];
       const double moment = cell.coefficient[static_cast<std::size_t>(j)] * rate;
       viscous_power_ += moment * rate;
+      if (i == 0) viscous_couples_[0] -= moment * curvature.by_rotation();
+      if (i == n) viscous_couples_[1] += moment * curvature.by_rotation();
       if (i > 0) {
         gradient.segment<3>(block * (i - 1)) -= moment * g.a;
         gradient[block * (i - 1) + 3] += moment * g.theta_a;
@@ -307,9 +321,9 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
         rows[v] += m * (at.rate[v] + mass_rate * at.y[v]) + assembly_.gradient[block * i + k];
       }
     }
-    const bool held = i == n - 1 || (twist_free_ && i == 0);
-    rows[angle_of(i)] += held ? at.y[angle_of(i)] : assembly_.gradient[block * i + 3];
+    rows[angle_of(i)] += holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + 3];
   }
+  if (spin_drag_ > 0.0) rows[angle_of(0)] += spin_drag_ * at.rate[angle_of(0)];
 }
 
 void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
@@ -320,7 +334,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
     const int vertex = i / block;
     const auto d = static_cast<std::size_t>(3 * i);
     if (is_angle(i)) {
-      if (vertex == vertices() - 1 || (twist_free_ && vertex == 0)) add_to(values, diagonal_[d], 1.0);
+      if (holds_angle(vertex)) add_to(values, diagonal_[d], 1.0);
     } else if (is_held(vertex, i % block)) {
       add_to(values, diagonal_[d], 1.0);
       add_to(values, diagonal_[d + 2], 1.0);
@@ -338,6 +352,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
       if (i != j) add_to(values, band_slots_[at_slot(j, i)], value);
     }
   }
+  if (spin_drag_ > 0.0) add_to(values, diagonal_[9], c * spin_drag_);  // of band index 3, the first angle
   add_viscous_jacobian(at, c, values);
 }
 
@@ -399,12 +414,39 @@ void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<dou
 }
 
 bool RodPart::accept(const DaePoint& at) {
-  for (int i = 0; i < vertices(); ++i) {
-    band_.segment<3>(block * i) = at.y.segment<3>(position_of(i));
-    band_[block * i + 3] = at.y[angle_of(i)];
-  }
+  take_unknowns(at.y);
   wire::accept(base_, band_);
   return false;
+}
+
+void RodPart::remember(std::vector<double>& memory) const {
+  for (const Frame& f : base_.frames) {
+    for (int k = 0; k < 3; ++k) memory.push_back(f.tangent[k]);
+    for (int k = 0; k < 3; ++k) memory.push_back(f.director[k]);
+  }
+  memory.insert(memory.end(), base_.reference_twist.begin(), base_.reference_twist.end());
+}
+
+void RodPart::recall(const numerics::VectorView& y, std::span<const double>& memory) {
+  take_unknowns(y);
+  base_ = rod_.make_state(band_, controls_);
+  for (Frame& f : base_.frames) {
+    for (int k = 0; k < 3; ++k) f.tangent[k] = numerics::take(memory);
+    for (int k = 0; k < 3; ++k) f.director[k] = numerics::take(memory);
+  }
+  for (double& m : base_.reference_twist) m = numerics::take(memory);
+  trial_ = base_;
+}
+
+double RodPart::mount_error(const numerics::VectorView& y) const {
+  double worst = 0.0;
+  for (const int i : {0, vertices() - 1}) {
+    const SpatialEnd& end = i == 0 ? rod_.properties().left : rod_.properties().right;
+    for (int k = 0; k < 3; ++k) {
+      if (is_held(i, k)) worst = std::max(worst, std::abs(y[position_of(i) + k] - end.position[k]));
+    }
+  }
+  return worst;
 }
 
 RodPart::Energies RodPart::energies(const DaePoint& at) {
@@ -424,6 +466,12 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
   result.kinetic = 0.5 * square;
   result.strain = assembly_.energy - result.potential;
   result.dissipation = viscous_power_ + constants_.damping.mass_rate * square;
+  const Vector3d& weight = rod_.properties().weight;
+  for (int i = 0; weight != Vector3d::Zero() && i < vertices(); ++i) {
+    // Half the weight of each edge is at its ends, as the mass is.
+    result.weight_moment += mass_of(i) / constants_.mass_per_length * vertex(trial_, i).cross(weight);
+  }
+  const std::array<Vector3d, 2> moments = rod_.end_moments(trial_);
   for (std::size_t side = 0; side < 2; ++side) {
     const SpatialEnd& end = side == 0 ? rod_.properties().left : rod_.properties().right;
     if (end.kind == SpatialEnd::Kind::free) continue;
@@ -433,6 +481,8 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
       result.mount_forces[side].x() =
           -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
     }
+    result.mount_moments[side] = vertex(trial_, i).cross(result.mount_forces[side]) + viscous_couples_[side] +
+                                 (side == 0 ? Vector3d(-moments[0]) : moments[1]);
   }
   return result;
 }

@@ -41,7 +41,9 @@ struct RodTolerances {
 ///                                                                                  theory.md (M.3), (M.4)
 ///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
 /// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. Rigidly held unknowns have x = X, v = 0 instead; the
-/// force of the mount is what the row would have left. Without a mount that holds the twist theta_0 = 0.
+/// force of the mount is what the row would have left. Without a mount that holds the twist nothing but the damping of
+/// bending feels the spin of the whole wire about itself: undamped theta_0 = 0, damped the spin that dissipates least
+/// (and a round-off's share of drag that decides for a straight wire).
 class RodPart final : public numerics::DaePart {
  public:
   RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
@@ -53,6 +55,8 @@ class RodPart final : public numerics::DaePart {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Carries the reference frames along.
   bool accept(const numerics::DaePoint& at) override;
+  void remember(std::vector<double>& memory) const override;
+  void recall(const numerics::VectorView& y, std::span<const double>& memory) override;
 
   /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
@@ -66,6 +70,8 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] bool is_held(int vertex, int k) const {
     return held_[static_cast<std::size_t>(3 * vertex + k)];
   }
+  /// Largest distance of rigidly held components from their mounts [m].
+  [[nodiscard]] double mount_error(const numerics::VectorView& y) const;
   [[nodiscard]] double coordinate(int vertex) const { return rod_.mesh().coordinate(vertex, controls_); }
   [[nodiscard]] const SpatialRod& rod() const { return rod_; }
   /// Band index of the rod's own unknown -> unknown of the DAE.
@@ -81,6 +87,9 @@ class RodPart final : public numerics::DaePart {
     Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
     /// Forces of the left and the right mount that balance the wire's own forces [N].
     std::array<Eigen::Vector3d, 2> mount_forces{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    /// The same as moments about the origin, with the couples of mounts that orient [N m].       theory.md (M.11)
+    std::array<Eigen::Vector3d, 2> mount_moments{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    Eigen::Vector3d weight_moment = Eigen::Vector3d::Zero();  ///< of the weight about the origin [N m]
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
   [[nodiscard]] const RodInMotion& constants() const { return constants_; }
@@ -90,6 +99,10 @@ class RodPart final : public numerics::DaePart {
   void evaluate(const numerics::DaePoint& at);
   void add_viscous(const numerics::DaePoint& at, Eigen::VectorXd& gradient);
   void add_viscous_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
+  void take_unknowns(const numerics::VectorView& y);
+  [[nodiscard]] bool holds_angle(int vertex) const {
+    return vertex == vertices() - 1 || (holds_first_angle_ && vertex == 0);
+  }
 
   std::string name_;
   RodInMotion constants_;
@@ -98,13 +111,15 @@ class RodPart final : public numerics::DaePart {
   Controls controls_;
   std::vector<double> mass_;
   std::vector<bool> held_;   // of 3 components a vertex
-  bool twist_free_ = false;  // no mount holds the twist
+  bool holds_first_angle_ = false;  // nothing else determines the spin of the wire about itself
+  double spin_drag_ = 0.0;          // on the rate of the first angle [N m s]
   int x_ = 0, theta_ = 0, v_ = 0;
   SpatialState base_;  // frames of the last accepted state
   SpatialState trial_;
   RodAssembly assembly_;
   Eigen::VectorXd band_;
   double viscous_power_ = 0.0;
+  std::array<Eigen::Vector3d, 2> viscous_couples_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of the mounts
   std::vector<int> band_slots_;  // of the lower band in the rows of v and theta, both triangles
   std::vector<int> rate_slots_;  // the same in the columns of v
   std::vector<int> diagonal_;    // of x, v: (x,x) (x,v) (v,v)

@@ -240,6 +240,18 @@ PairHessian hessian_of(const Cell& cell, const Edge& before, const Edge& after) 
   return h;
 }
 
+/// Derivative of the cell's energy by a rigid rotation omega of what follows: dc = t.(omega x u),
+/// dtau = omega.(t + u)/chi.
+Vector3d moment_of(const Cell& cell, const Edge& before, const Edge& after) {
+  Vector3d moment = Vector3d::Zero();
+  if (cell.bends) moment -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
+  if (cell.directed) {
+    moment += WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).by_rotation();
+  }
+  if (cell.twists) moment += cell.torque * cell.turn.mean;
+  return moment;
+}
+
 /// Everything that belongs to one edge alone, collected from its two vertices and its stretching.
 struct EdgeBlock {
   Vector3d force = Vector3d::Zero();      // dE/de
@@ -594,18 +606,23 @@ void SpatialRod::hold_mounts(RodAssembly& assembly) const {
 }
 
 Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
-  Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, mesh_.vertices());
-  visit_cells(
-      mesh_, state, Law(properties_), [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
-        // By a rotation omega of what follows: dc = t.(omega x u), dtau = omega.(t + u)/chi.
-        if (cell.bends) result.col(i) -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
-        if (cell.directed) {
-          result.col(i) +=
-              WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).by_rotation();
-        }
-        if (cell.twists) result.col(i) += cell.torque * cell.turn.mean;
-      });
+  Eigen::Matrix3Xd result(3, mesh_.vertices());
+  visit_cells(mesh_, state, Law(properties_),
+              [&](int i, const Cell& cell, const Edge& before, const Edge& after) {
+                result.col(i) = moment_of(cell, before, after);
+              });
   return result;
+}
+
+std::array<Vector3d, 2> SpatialRod::end_moments(const SpatialState& state) const {
+  const Law law(properties_);
+  const int n = mesh_.edges();
+  const Edge left = mount_edge(properties_.left, state.left_mount, law);
+  const Edge right = mount_edge(properties_.right, state.right_mount, law);
+  const Edge first = edge_at(0, mesh_, state, law);
+  const Edge last = edge_at(n - 1, mesh_, state, law);
+  return {moment_of(cell_at(0, n, left, first, state, law), left, first),
+          moment_of(cell_at(n, n, last, right, state, law), last, right)};
 }
 
 Eigen::VectorXd SpatialRod::torques(const SpatialState& state) const {

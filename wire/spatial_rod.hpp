@@ -129,6 +129,9 @@ class SpatialRod {
   /// turning left in the plane, with the torque as component along the wire. The end columns belong to the
   /// mounts.                                                                              theory.md (W.29)
   [[nodiscard]] Eigen::Matrix3Xd moments(const SpatialState& state) const;
+  /// The end columns of `moments`: the couple of the left mount on the rod is minus the first, that of the right mount
+  /// the second [N m].
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> end_moments(const SpatialState& state) const;
   /// Twisting moment of every vertex [N m], positive for a right-handed turn along the wire.
   [[nodiscard]] Eigen::VectorXd torques(const SpatialState& state) const;
   /// Axial force of every edge [N], tension positive.

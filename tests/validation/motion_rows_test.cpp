@@ -1,5 +1,6 @@
 // Those rows of the motion that take seconds, not minutes, under the sanitizers; `snare validate` has all.
 
+#include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
 
 #include <gtest/gtest.h>
@@ -23,6 +24,22 @@ TEST(SlowMotionRows, ChainAndPendulumSwingAsPublished) {
 }
 TEST(SlowMotionRows, ASlowPushEndsInTheStaticCurve) {
   expect_within(slow_push_rows());
+}
+
+TEST(SlowMotionRows, BalancesClose) {
+  expect_within(balance_rows());
+}
+TEST(SlowMotionRows, ForceAndImpulseConvergeWithTheTolerance) {
+  expect_within(tolerance_rows());
+}
+TEST(SlowMotionRows, ASlowPushWithFrictionFollowsTheStaticLoop) {
+  expect_within(friction_reversal_rows());
+}
+TEST(SlowMotionRows, ASlowPushSnapsFromBranchToBranch) {
+  expect_within(snap_through_rows());
+}
+TEST(SlowMotionRows, AFoldedChainFallsAsPublished) {
+  expect_within(folded_chain_rows());
 }
 
 }  // namespace

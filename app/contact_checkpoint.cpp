@@ -1,0 +1,142 @@
+#include "app/contact_checkpoint.hpp"
+
+#include "app/commands.hpp"
+#include "numerics/archive.hpp"
+#include "numerics/files.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+// What the structures consist of. A size that no longer fits says that a member came or went: it belongs here too.
+namespace snare::multibody {
+template <class Archive>
+void fields(Archive& a, RigidBodyState& s) {
+  a(s.position)(s.orientation.coeffs())(s.velocity)(s.spin);
+}
+}  // namespace snare::multibody
+
+namespace snare::numerics {
+template <class Archive>
+void fields(Archive& a, IdaStatistics& s) {
+  static_assert(sizeof(IdaStatistics) == 17 * sizeof(double));
+  a(s.steps)(s.residuals)(s.jacobians)(s.factorizations)(s.analyses)(s.newton_iterations)(s.newton_failures)(
+      s.error_test_failures)(s.restarts)(s.smallest_step)(s.largest_step)(s.integrands)(s.residual_seconds)(
+      s.jacobian_seconds)(s.factor_seconds)(s.solve_seconds)(s.integrand_seconds);
+}
+template <class Archive>
+void fields(Archive& a, IdaReport& r) {
+  a(r.termination)(r.iterations)(r.residual_norm)(r.message)(r.time)(r.step)(r.culprits);
+}
+}  // namespace snare::numerics
+
+namespace snare::coupling {
+template <class Archive>
+void fields(Archive& a, ContactSample& s) {
+  static_assert(sizeof(ContactSample) == 11 * sizeof(double));
+  a(s.closed)(s.gap)(s.force)(s.normal_force)(s.point)(s.arc)(s.slip_speed);
+}
+template <class Archive>
+void fields(Archive& a, EnergyBalance& e) {
+  static_assert(sizeof(EnergyBalance) == 7 * sizeof(double));
+  a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.impacts)(e.work)(e.integrator);
+}
+template <class Archive>
+void fields(Archive& a, MotionSample& s) {
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.energy)(s.momentum)(s.angular_momentum);
+}
+template <class Archive>
+void fields(Archive& a, MotionEvent& e) {
+  static_assert(sizeof(MotionEvent) == 3 * sizeof(double));
+  a(e.time)(e.contact)(e.kind)(e.approach_speed);
+}
+template <class Archive>
+void fields(Archive& a, MotionSums& s) {
+  a(s.events)(s.peak_force)(s.largest_penetration)(s.largest_gap)(s.largest_drift)(s.impacts)(s.start_energy)(
+      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+}
+template <class Archive>
+void fields(Archive& a, MotionState& s) {
+  a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
+}
+template <class Archive>
+void fields(Archive& a, MotionResult& r) {
+  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.impulse)(
+      r.largest_penetration)(r.largest_gap)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+}
+}  // namespace snare::coupling
+
+namespace snare::app {
+
+template <class Archive>
+void fields(Archive& a, ContactProgress::Model& m) {
+  a(m.samples)(m.result);
+}
+template <class Archive>
+void fields(Archive& a, ContactProgress& p) {
+  bool begun = p.state.has_value();
+  a(p.finished)(p.samples)(begun);
+  if (!begun) return;
+  if (!p.state) p.state.emplace();
+  a(*p.state);
+}
+
+namespace {
+
+constexpr std::string_view mark = "snare contact checkpoint 1\n";
+
+/// Of the input and of the program that is to go on with it.
+std::uint64_t key_of(const std::string& input) {
+  return numerics::fingerprint(version() + '\n' + input);
+}
+
+}  // namespace
+
+// The mark, the key, the fingerprint of the content, the content.
+void write_contact_checkpoint(const std::filesystem::path& file, const std::string& input, ContactProgress& progress) {
+  numerics::ByteWriter content;
+  content(progress);
+  numerics::ByteWriter head;
+  std::uint64_t key = key_of(input);
+  std::uint64_t sum = numerics::fingerprint(content.bytes());
+  head(key)(sum);
+  numerics::AtomicFile out(file);
+  out.write(mark);
+  out.write(head.bytes());
+  out.write(content.bytes());
+  out.commit();
+}
+
+LoadedCheckpoint read_contact_checkpoint(const std::filesystem::path& file, const std::string& input) {
+  std::error_code code;
+  if (!std::filesystem::exists(file, code)) return {};
+  const auto refused = [&file](const std::string& why) {
+    return LoadedCheckpoint{std::nullopt, fmt::format("{}: {}; begins anew", file.string(), why)};
+  };
+  try {
+    const std::string text = numerics::read_text(file, std::numeric_limits<std::size_t>::max());
+    std::string_view rest = text;
+    if (rest.substr(0, mark.size()) != mark) return refused("is no checkpoint of this program");
+    rest.remove_prefix(mark.size());
+    std::uint64_t key = 0;
+    std::uint64_t sum = 0;
+    numerics::ByteReader head(rest);
+    head(key)(sum);
+    rest.remove_prefix(sizeof key + sizeof sum);
+    if (key != key_of(input)) return refused("the checkpoint is of other input or of another version");
+    if (sum != numerics::fingerprint(rest)) return refused("the checkpoint is damaged");
+    LoadedCheckpoint loaded;
+    loaded.progress.emplace();
+    numerics::ByteReader content(rest);
+    content(*loaded.progress);
+    return loaded;
+  } catch (const std::exception& error) {
+    return refused(error.what());
+  }
+}
+
+}  // namespace snare::app

@@ -1,0 +1,359 @@
+#include "validation/motion_accuracy_checks.hpp"
+
+#include "coupling/motion.hpp"
+#include "coupling/push_solver.hpp"
+#include "validation/declared_wire.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+namespace snare::validation {
+
+namespace {
+
+using coupling::Motion;
+using coupling::MotionOptions;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double mm = 1e-3;
+constexpr double span = 175.0 * mm;
+constexpr double radius = 6.0 * mm;
+constexpr double body_mass = 8.9;  // [kg]
+constexpr double speed = 0.1;      // [m/s]
+constexpr double energy = 0.5 * body_mass * speed * speed;
+
+/// A body of 8.9 kg meets the declared wire with a probe 50 mm beside and 100 mm before its centre of mass.
+Motion impact(double damping, const coupling::MotionFriction& friction) {
+  const wire::WireSpecification w = declared_specification();
+  constexpr int elements = 60;
+  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  rod.damping.bending_time = rod.damping.axial_time = damping;
+  Motion motion;
+  motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
+  coupling::MotionBody body;
+  body.properties.mass = body_mass;
+  body.properties.inertia = 0.16 * Eigen::Matrix3d::Identity();
+  const double top = motion.wires[0].positions(1, elements / 2);
+  body.start.position = {37.5 * mm, top - radius - 0.5 * w.diameter - 100.1 * mm, 0.0};
+  body.start.velocity = {0.0, speed, 0.0};
+  motion.bodies.push_back(body);
+  coupling::MotionContact contact;
+  contact.shape = std::make_shared<coupling::EndlessCylinder>(radius);
+  contact.shape_position = {50.0 * mm, 100.0 * mm, 0.0};
+  contact.wire_radius = 0.5 * w.diameter;
+  contact.friction = friction;
+  motion.contacts.push_back(contact);
+  return motion;
+}
+
+MotionOptions scaled(double factor) {
+  MotionOptions options;
+  for (double* tolerance :
+       {&options.relative_tolerance, &options.position_tolerance, &options.velocity_tolerance, &options.twist_tolerance,
+        &options.body_position_tolerance, &options.body_velocity_tolerance, &options.angle_tolerance,
+        &options.spin_tolerance}) {
+    *tolerance *= factor;
+  }
+  return options;
+}
+
+double value_of(const MotionResult& result, double value) {
+  return result.report.usable() ? value : std::nan("");
+}
+
+}  // namespace
+
+std::vector<Row> balance_rows() {
+  std::vector<Row> rows;
+  const std::string conserved = "conservation";
+  {
+    MotionOptions options;
+    options.duration = 0.04;
+    const MotionResult r = coupling::simulate(impact(0.0, {}), options);
+    rows.push_back({"balances", "undamped impact, default tolerances, integrator's energy over the impact's", "",
+                    conserved, 0.0, value_of(r, r.energy.integrator / energy), ErrorKind::absolute, 1e-3});
+  }
+  {
+    // A Kelvin-Voigt time that quiets nothing but the axial modes of a few elements.
+    MotionOptions options;
+    options.duration = 0.04;
+    options.relative_tolerance = 1e-8;
+    options.velocity_tolerance = 1e-6;
+    options.body_position_tolerance = 1e-10;
+    options.body_velocity_tolerance = 1e-7;
+    options.max_order = 5;
+    const MotionResult r = coupling::simulate(impact(1e-7, {}), options);
+    rows.push_back({"balances", "impact, tolerances that resolve the waves, integrator's energy over the impact's", "",
+                    conserved, 0.0, value_of(r, r.energy.integrator / energy), ErrorKind::absolute, 1e-6});
+  }
+  MotionOptions options;
+  options.duration = 0.3;
+  const MotionResult r = coupling::simulate(impact(1e-5, {0.3, 0.1, 0.01, 1.0}), options);
+  const double impulse = r.impulse[0].norm();
+  rows.push_back({"balances", "momentum less the impulse of mounts, damped impact with friction, over the impulse", "",
+                  "Newton", 0.0, value_of(r, r.momentum_error.norm() / impulse), ErrorKind::absolute, 1e-6});
+  rows.push_back({"balances", "angular momentum less that of mounts with couples, over impulse times span", "", "Euler",
+                  0.0, value_of(r, r.angular_momentum_error.norm() / (impulse * span)), ErrorKind::absolute, 1e-6});
+  rows.push_back({"balances", "energy left when damping and friction are taken off, over the impact's", "", conserved,
+                  0.0, value_of(r, r.energy.integrator / energy), ErrorKind::absolute, 1e-3});
+  rows.push_back({"balances", "drift of the gap", "m", "constraint", 0.0, value_of(r, r.largest_gap), ErrorKind::absolute, 1e-9});
+  rows.push_back({"balances", "drift of quaternion and mounts", "", "constraint", 0.0, value_of(r, r.largest_drift),
+                  ErrorKind::absolute, 1e-9});
+  // The axial wave crosses an element in h/c.
+  const wire::WireSpecification w = declared_specification();
+  const double crossing = w.length / 60 / std::sqrt(w.axial_stiffness() / w.mass_per_length());
+  rows.push_back({"balances", "time in which the axial wave crosses an element, over the mean step", "",
+                  "no step is limited by the wave", 0.0,
+                  value_of(r, crossing * static_cast<double>(r.statistics.steps) / options.duration),
+                  ErrorKind::absolute, 0.05});
+  return rows;
+}
+
+// Against a run at a hundredth of the default tolerances; a damped wire, whose waves all runs resolve alike.
+std::vector<Row> tolerance_rows() {
+  const Motion motion = impact(1e-5, {});
+  const auto run = [&motion](double factor) {
+    MotionOptions options = scaled(factor);
+    options.duration = 0.04;
+    return coupling::simulate(motion, options);
+  };
+  const MotionResult finest = run(0.003);
+  std::vector<Row> rows;
+  constexpr std::array<double, 3> factors{10.0, 1.0, 0.1};
+  std::array<double, 3> impulse_error{};
+  std::array<double, 3> force_error{};
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const MotionResult r = run(factors[k]);
+    impulse_error[k] = value_of(r, (r.impulse[0] - finest.impulse[0]).norm() / finest.impulse[0].norm());
+    force_error[k] = value_of(r, std::abs(r.peak_force[0] / finest.peak_force[0] - 1.0));
+    const std::string at = fmt::format("{:g} times the default tolerances, {} steps", factors[k], r.statistics.steps);
+    const double limit = std::array{1e-2, 1e-3, 1e-4}[k];
+    rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances", finest.impulse[0].norm(),
+                    r.impulse[0].norm(), ErrorKind::relative, limit});
+    rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances", finest.peak_force[0],
+                    r.peak_force[0], ErrorKind::relative, 3.0 * limit});
+  }
+  return rows;
+}
+
+namespace {
+
+/// A driven cylinder at a place along the chord and the static push that it follows.
+struct SlowPush {
+  Motion motion;
+  coupling::PushTest test;
+  coupling::PushOptions options;
+};
+
+SlowPush slow_push(double position, int elements, double friction, coupling::PushDirection direction) {
+  SlowPush p;
+  const wire::WireSpecification w = declared_specification();
+  p.test = declared_wire(position, radius);
+  p.test.pusher.friction = friction;
+  p.test.pusher.direction = direction;
+  p.options.elements = elements;
+  p.options.grading = 0.0;
+  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  rod.damping.bending_time = rod.damping.axial_time = 1e-5;
+  rod.damping.mass_rate = 200.0;
+  p.motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
+  coupling::MotionBody pusher;
+  pusher.driven = true;
+  p.motion.bodies.push_back(pusher);
+  coupling::MotionContact contact;
+  contact.shape = std::make_shared<coupling::EndlessCylinder>(radius);
+  contact.wire_radius = 0.5 * w.diameter;
+  // So slow that the wire slides faster than the law creeps.
+  contact.friction = {friction, friction, 1e-5, 1.0};
+  p.motion.contacts.push_back(contact);
+  return p;
+}
+
+/// Static force at the travels, in their order.
+std::vector<double> static_forces(SlowPush& p, const std::vector<double>& travel) {
+  p.test.travel = travel;
+  const coupling::PushCurve curve = coupling::solve_push(p.test, p.options);
+  std::vector<double> forces(travel.size(), std::nan(""));
+  for (std::size_t k = 0; k < std::min(forces.size(), curve.points.size()); ++k) forces[k] = curve.points[k].force;
+  return forces;
+}
+
+/// Height of the pusher's centre at first touch in the static push.
+double touch_height(SlowPush& p) {
+  p.test.travel = {0.01 * mm};
+  return coupling::solve_push(p.test, p.options).touch_height;
+}
+
+}  // namespace
+
+std::vector<Row> friction_reversal_rows() {
+  constexpr double position = 65.0 * mm;
+  constexpr double pace = 5.0 * mm;  // [m/s]
+  constexpr double load = 0.4;       // [s]
+  constexpr double turn = 0.04;
+  SlowPush p = slow_push(position, 200, 0.2, coupling::PushDirection::outward);
+  const double touch = touch_height(p);
+  // Up, a smooth turn, down.
+  coupling::MotionBody& pusher = p.motion.bodies[0];
+  pusher.start.position = {position, touch - 1e-6, 0.0};
+  pusher.course_velocity = [](double t) {
+    const double x = std::clamp((t - load) / turn, 0.0, 1.0);
+    return Vector3d(0.0, pace * std::cos(pi * x), 0.0);
+  };
+  pusher.course_acceleration = [](double t) {
+    const double x = (t - load) / turn;
+    return Vector3d(0.0, x > 0.0 && x < 1.0 ? -pace * pi / turn * std::sin(pi * x) : 0.0, 0.0);
+  };
+  MotionOptions options;
+  options.duration = 2.0 * load + turn - 0.1;
+  options.output_interval = 0.01;
+  std::vector<double> travel;
+  std::vector<double> force;
+  const MotionResult r = coupling::simulate(p.motion, options, [&](const MotionSample& s) {
+    if (s.contacts[0].closed && s.time > 0.05) {
+      travel.push_back(s.bodies[0].position.y() - touch);
+      force.push_back(s.contacts[0].force.y());
+    }
+    return false;
+  });
+  const std::vector<double> reference = static_forces(p, travel);
+  std::vector<Row> rows;
+  const auto deepest = static_cast<std::size_t>(std::max_element(travel.begin(), travel.end()) - travel.begin());
+  const auto row = [&](const std::string& name, std::size_t k) {
+    rows.push_back({"quasi-static limit", fmt::format("friction 0.2, {} at {:.3f} mm", name, travel[k] / mm), "N",
+                    "static curve, loaded and unloaded", reference[k], value_of(r, force[k]), ErrorKind::relative, 1e-3});
+  };
+  if (travel.size() < 20 || deepest + 10 >= travel.size()) return {{"quasi-static limit", "friction reversal", "N", "", 1.0, std::nan(""), ErrorKind::relative, 1e-3}};
+  row("loading", deepest / 2);
+  row("loading", deepest - 4);
+  row("unloading", deepest + (travel.size() - deepest) / 2);
+  row("unloading", travel.size() - 1);
+  return rows;
+}
+
+std::vector<Row> snap_through_rows() {
+  constexpr double position = 80.0 * mm;
+  constexpr double pace = 20.0 * mm;  // [m/s]
+  constexpr int elements = 100;
+  SlowPush p = slow_push(position, elements, 0.0, coupling::PushDirection::inward);
+  const double touch = touch_height(p);
+  coupling::MotionBody& pusher = p.motion.bodies[0];
+  pusher.start.position = {position, touch + 1e-6, 0.0};
+  pusher.start.velocity = {0.0, -pace, 0.0};
+  // The wire that has snapped is the one pushed outward, upside down.
+  SlowPush after = slow_push(position, elements, 0.0, coupling::PushDirection::outward);
+  const double far_touch = -touch_height(after);
+  constexpr double beyond = 1.5 * mm;
+  MotionOptions options;
+  options.duration = (touch - far_touch + beyond) / pace;
+  options.output_interval = 0.25 * mm / pace;
+  struct Point {
+    double y, force;
+    bool closed;
+  };
+  std::vector<Point> points;
+  const MotionResult r = coupling::simulate(p.motion, options, [&](const MotionSample& s) {
+    points.push_back({s.bodies[0].position.y(), -s.contacts[0].force.y(), s.contacts[0].closed});
+    return false;
+  });
+  std::vector<Row> rows;
+  const auto row = [&](const std::string& name, double reference, double value) {
+    rows.push_back({"quasi-static limit", name, "N", "static curve", reference, value_of(r, value), ErrorKind::relative, 1e-3});
+  };
+  std::vector<double> travel;
+  std::vector<double> force;
+  bool snapped = false;
+  for (const Point& point : points) {
+    snapped = snapped || (!travel.empty() && !point.closed);
+    if (point.closed && !snapped && touch - point.y > 0.1 * mm) {
+      travel.push_back(touch - point.y);
+      force.push_back(point.force);
+    }
+  }
+  const std::vector<double> reference = static_forces(p, travel);
+  for (const double share : {0.25, 0.5, 0.75}) {
+    if (travel.empty()) break;
+    const auto k = static_cast<std::size_t>(share * static_cast<double>(travel.size() - 1));
+    row(fmt::format("inward, before the snap, at {:.2f} mm", travel[k] / mm), reference[k], force[k]);
+  }
+  const double depth = points.empty() ? std::nan("") : far_touch - points.back().y;
+  const std::vector<double> outward = static_forces(after, {0.5 * depth, depth});
+  row(fmt::format("after the snap, at {:.2f} mm on the other side", depth / mm), outward.back(),
+      points.empty() ? std::nan("") : points.back().force);
+  return rows;
+}
+
+// Of length L, folded tightly: v^2 = g x (2 L - x)/(L - x) after a fall x of the free end when nothing is lost.
+std::vector<Row> folded_chain_rows() {
+  constexpr double g = 9.81;
+  constexpr double length = 0.5;
+  constexpr double fold = 2.5 * mm;  // radius
+  constexpr int elements = 200;
+  wire::WireSpecification w = declared_specification();
+  w.bending_stiffness_override = 1e-8;
+  wire::RodInMotion rod = coupling::rod_in_motion(w, 0.0, elements);
+  rod.length = length;
+  rod.properties.left.kind = wire::SpatialEnd::Kind::pin;
+  rod.properties.right.kind = wire::SpatialEnd::Kind::free;
+  rod.properties.right.position = Vector3d::Zero();
+  rod.damping.axial_time = 1e-5;
+  Motion motion;
+  motion.gravity = {0.0, -g, 0.0};
+  Eigen::Matrix3Xd x(3, elements + 1);
+  const double leg = 0.5 * (length - pi * fold);
+  for (int i = 0; i <= elements; ++i) {
+    const double s = length * i / elements;
+    if (s <= leg) {
+      x.col(i) = Vector3d(0.0, -s, 0.0);
+    } else if (s >= length - leg) {
+      x.col(i) = Vector3d(2.0 * fold, s - length, 0.0);
+    } else {
+      const double a = (s - leg) / fold;
+      x.col(i) = Vector3d(fold - fold * std::cos(a), -leg - fold * std::sin(a), 0.0);
+    }
+  }
+  motion.wires.push_back({"chain", rod, x, {}});
+  constexpr double share = 0.9;
+  // With x = L z^2: t = 2 sqrt(L/g) times the integral of sqrt((1 - z^2)/(2 - z^2)) dz, by the midpoint rule.
+  double time = 0.0;
+  constexpr int intervals = 20000;
+  const double end = std::sqrt(share);
+  for (int k = 0; k < intervals; ++k) {
+    const double square = std::pow(end * (k + 0.5) / intervals, 2);
+    time += 2.0 * std::sqrt(length / g) * end / intervals * std::sqrt((1.0 - square) / (2.0 - square));
+  }
+  MotionOptions options;
+  options.duration = 1.1 * time;
+  options.output_interval = time / 1000.0;
+  double passed = std::nan("");
+  double last = 0.0;
+  double last_time = 0.0;
+  const MotionResult r = coupling::simulate(motion, options, [&](const MotionSample& s) {
+    const double fallen = -s.wires[0](1, elements);
+    if (last < share * length && fallen >= share * length)
+      passed = last_time + (s.time - last_time) * (share * length - last) / (fallen - last);
+    last = fallen;
+    last_time = s.time;
+    return false;
+  });
+  return {{"gravity", "folded chain, time for nine tenths of the fall", "s", "Calkin and March 1989, energy conserved", time,
+           value_of(r, passed), ErrorKind::relative, 5e-3}};
+}
+
+std::vector<Check> motion_accuracy_checks() {
+  return {{"balances of a motion", balance_rows},
+          {"tolerances of a motion", tolerance_rows},
+          {"slow push with friction", friction_reversal_rows},
+          {"slow snap-through", snap_through_rows},
+          {"folded chain", folded_chain_rows}};
+}
+
+}  // namespace snare::validation
