@@ -6,22 +6,31 @@
 
 namespace snare::coupling {
 
-/// A signed distance with its derivatives at a point, in the shape's own frame.
+/// A signed distance with its derivatives at a point, in the shape's own frame.               theory.md (G.1)
 struct DistanceField {
   double distance = 0.0;                              ///< [m], negative inside
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< its gradient: unit, outward
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< of the distance [1/m]
 };
 
-/// A rigid surface that a wire can touch, as a signed distance.
+/// A rigid surface that a wire can touch, as its signed distance: exact outside, so that |phi(p) - phi(q)| <= |p - q|.
+///
+/// Outside, phi is once differentiable everywhere but on the shape's outer medial surface, and twice but where the
+/// nearest feature changes (face to edge, edge to vertex): there the Hessian jumps between finite values, as the curvature of
+/// the surface at the distance of the wire's radius does.                                          theory.md (G.2)
 class ContactShape {
  public:
   ContactShape() = default;
   virtual ~ContactShape() = default;
   ContactShape(const ContactShape&) = delete;
   ContactShape& operator=(const ContactShape&) = delete;
-  /// p: a point in the shape's frame [m]. Must be twice differentiable wherever a wire's centreline can come.
+  /// p: a point in the shape's frame [m].
   [[nodiscard]] virtual DistanceField at(const Eigen::Vector3d& p) const = 0;
+  /// The distance alone [m].
+  [[nodiscard]] virtual double distance(const Eigen::Vector3d& p) const { return at(p).distance; }
+  /// Whether the surface itself has a normal everywhere. A shape with edges needs a wire of some radius: on an edge a
+  /// bare line would have no direction of contact.
+  [[nodiscard]] virtual bool has_smooth_surface() const = 0;
 };
 
 /// A ball about the origin; radius 0 is a point.
@@ -29,6 +38,7 @@ class Ball final : public ContactShape {
  public:
   explicit Ball(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
+  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
 
  private:
   double radius_;
@@ -39,9 +49,24 @@ class EndlessCylinder final : public ContactShape {
  public:
   explicit EndlessCylinder(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
+  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
 
  private:
   double radius_;
+};
+
+/// All points within `radius` of the segment from (0, 0, -length/2) to (0, 0, length/2); radius 0 is a knife edge, a finite
+/// line.
+class Capsule final : public ContactShape {
+ public:
+  /// radius >= 0 [m]; length > 0 of the segment, without the round ends [m].
+  Capsule(double radius, double length) : radius_(radius), half_length_(0.5 * length) {}
+  [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
+  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
+
+ private:
+  double radius_;
+  double half_length_;
 };
 
 }  // namespace snare::coupling
