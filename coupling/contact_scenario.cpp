@@ -103,12 +103,27 @@ void read_body(const TomlTable& table, ContactScenario& scenario) {
 }
 
 MotionFriction read_friction(const TomlTable& table, double dynamic) {
+  static constexpr Choice<FrictionLaw> laws[] = {{"stick_slip", FrictionLaw::stick_slip}, {"smooth", FrictionLaw::smooth}};
   MotionFriction f;
+  if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
   f.dynamic_coefficient = dynamic;
   f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
-  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::above(0.0, 10.0));
-  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::above(0.0, 100.0));
-  if (f.dynamic_speed <= f.static_speed) table.fail("dynamic_speed_m_s", "must be > static_speed_m_s");
+  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
+  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
+  f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
+  f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
+  f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
+  const bool at_once = f.law == FrictionLaw::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  if (f.dynamic_speed <= f.static_speed && !at_once)
+    table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
+  if (f.law == FrictionLaw::smooth) {
+    if (f.static_speed == 0.0) table.fail("static_speed_m_s", "must be > 0 with the smooth law");
+    for (const char* key : {"bristle_displacement_m", "bristle_force_N", "bristle_time_s"}) {
+      if (table.has(key)) table.fail(key, "belongs to law = \"stick_slip\"");
+    }
+  } else if (f.static_coefficient < dynamic) {
+    table.fail("static_friction", "must be at least pusher.friction with law = \"stick_slip\"");
+  }
   return f;
 }
 

@@ -68,7 +68,7 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
       at.rate.segment<4>(quaternion()) - multibody::quaternion_rates(q) * w - at.y[length_multiplier()] * q;
   rows[length_multiplier()] += q.squaredNorm() - 1.0;
   if (body_.driven) {
-    rows.segment<3>(velocity()) += v - body_.start.velocity;
+    rows.segment<3>(velocity()) += v - (body_.driven_velocity ? body_.driven_velocity(at.time) : body_.start.velocity);
     rows.segment<3>(spin()) += w;
     return;
   }
@@ -124,7 +124,7 @@ void BodyPart::place(Eigen::VectorXd& y) const {
   const multibody::RigidBodyState& s = body_.start;
   y.segment<3>(position()) = s.position;
   y.segment<4>(quaternion()) << s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z();
-  y.segment<3>(velocity()) = s.velocity;
+  y.segment<3>(velocity()) = body_.driven && body_.driven_velocity ? body_.driven_velocity(0.0) : s.velocity;
   y.segment<3>(spin()) = body_.driven ? Vector3d::Zero() : s.spin;
   y[length_multiplier()] = 0.0;
 }
