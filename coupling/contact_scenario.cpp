@@ -26,12 +26,13 @@ void require_schema(const TomlTable& root) {
   if (given != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
 }
 
-enum class ModelKind { wire, spring_dashpot, power, quadratic, stretched_wire, stretched_wire_linear };
+enum class ModelKind { wire, spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
 
 WireModel read_model(const TomlTable& table) {
   static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
                                                 {"spring_dashpot", ModelKind::spring_dashpot},
                                                 {"power", ModelKind::power},
+                                                {"step_damped", ModelKind::step_damped},
                                                 {"quadratic", ModelKind::quadratic},
                                                 {"stretched_wire", ModelKind::stretched_wire},
                                                 {"stretched_wire_linear", ModelKind::stretched_wire_linear}};
@@ -48,10 +49,17 @@ WireModel read_model(const TomlTable& table) {
     case ModelKind::spring_dashpot:
       model.law = spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
       break;
-    case ModelKind::power:
-      model.law =
-          power_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
-                    table.number_or("c", 0.0, damping), table.number_or("q", 1.0, Range::from(1.0, 10.0)));
+    case ModelKind::power: {
+      const double p = table.number("p", Range::from(1.0, 10.0));
+      const double n = table.number_or("n", p, Range::from(0.0, 10.0));
+      if (n > 0.0 && n < 1.0) table.fail("n", "must be 0 or >= 1: between, the force would rise infinitely fast");
+      model.law = power_law(table.number("k", stiffness), p, table.number_or("c", 0.0, damping),
+                            table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
+      break;
+    }
+    case ModelKind::step_damped:
+      model.law = step_damped_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
+                                  table.number("c_Ns_m", damping), table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
       break;
     case ModelKind::quadratic: {
       const Range coefficient = Range::from(-1e12, 1e12);
@@ -171,13 +179,18 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
     if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
   }
-  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
-    if (tables.wire.has(key)) tables.wire.fail(key, "the wire is elastic and naturally straight in motion");
+  for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
+    if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
   }
 
   const TomlTable damping = root.table("damping");
   scenario.damping.bending_time = damping.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
   scenario.damping.axial_time = damping.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  if (scenario.push.wire.strand_friction) {
+    scenario.strand_time = damping.number_or("strand_time_s", scenario.strand_time, Range::from(1e-9, 1.0));
+  } else if (damping.has("strand_time_s")) {
+    damping.fail("strand_time_s", "needs wire.strand_extra_stiffness_Nm2");
+  }
   scenario.damping.mass_rate = damping.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
   read_body(root.table("body"), scenario);
   scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction);
@@ -216,6 +229,7 @@ Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
   rod.damping = scenario.damping;
+  rod.strands.time = scenario.strand_time;
   const Eigen::Matrix3Xd rest = resting_wire(rod);
 
   // The probe stands below the wire (above it for a push against the bulge) at the asked place.

@@ -76,6 +76,10 @@ void validate(const Motion& motion, const MotionOptions& options) {
     positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
     positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
     c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
+    if (w.rod.strands.act()) {
+      positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
+      positive(w.name + ".strands.time", w.rod.strands.time);
+    }
     c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
               static_cast<double>(w.positions.cols()), "must be one more than the elements");
     c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
@@ -231,6 +235,7 @@ void Run::make_rates() {
       for (int k = 0; k < 3; ++k) {
         if (!r.is_held(i, k)) rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.mass_of(i);
       }
+      if (r.constants().strands.act()) rate_.segment<2>(r.strand_of(i)) = -rows.segment<2>(r.strand_of(i));
     }
   }
   for (const BodyPart& b : bodies_) {
@@ -534,6 +539,10 @@ wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, do
   rod.properties.axial_stiffness = specification.axial_stiffness();
   rod.properties.right.position = {span, 0.0, 0.0};
   rod.mass_per_length = specification.mass_per_length();
+  if (specification.strand_friction) {
+    rod.strands.extra_stiffness = specification.strand_friction->extra_stiffness;
+    rod.strands.slip_curvature = specification.strand_friction->slip_curvature;
+  }
   rod.length = specification.length;
   rod.elements = elements;
   return rod;

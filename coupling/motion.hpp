@@ -164,7 +164,7 @@ struct MotionResult {
 /// Called at every output time, in order; true: stop.
 using MotionObserver = std::function<bool(const MotionSample&)>;
 
-/// A naturally straight elastic wire of a specification between clamps at the origin and at (span, 0, 0) [m].
+/// A naturally straight wire of a specification (with its strands' friction) between clamps at the origin and at (span, 0, 0) [m].
 [[nodiscard]] wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements);
 
 /// Vertices evenly spread between the mounts' positions (or from `from` to `to`).

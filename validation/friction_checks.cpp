@@ -241,17 +241,14 @@ std::vector<Row> stick_slip_rows() {
            ErrorKind::relative, 2e-3}};
 }
 
-// The cylinder goes 2 mm in and comes back, slowly; the static wire does the same with one coefficient.
-std::vector<Row> reversed_push_rows() {
-  constexpr double radius = 6.0 * mm;
+namespace {
+
+/// The pusher goes 2 mm in and comes back, slowly; the static wire does the same on the same mesh. Friction of one
+/// coefficient, or strands.
+std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name, const std::vector<double>& stations) {
   constexpr double depth = 2.0 * mm;
   constexpr int elements = 200;
-  coupling::PushTest test;
-  test.wire = declared_specification();
-  test.mount.span = 175.0 * mm;
-  test.contact_position = 65.0 * mm;
-  test.pusher.radius = radius;
-  test.pusher.friction = 0.2;
+  const double radius = test.pusher.radius;
   coupling::PushOptions push;
   push.elements = elements;
   push.grading = 0.0;
@@ -260,16 +257,16 @@ std::vector<Row> reversed_push_rows() {
 
   wire::RodInMotion rod = coupling::rod_in_motion(test.wire, test.mount.span, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
-  rod.damping.mass_rate = 200.0;
+  rod.damping.mass_rate = 20.0;
   Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
   coupling::MotionContact contact;
   contact.shape = std::make_shared<coupling::EndlessCylinder>(radius);
   contact.wire_radius = 0.5 * test.wire.diameter;
-  contact.friction = two_coefficients(0.2, 0.2);
-  contact.friction.bristle_displacement = 1e-7;  // a twentieth of a thousandth of the travel
+  contact.friction = two_coefficients(test.pusher.friction, test.pusher.friction);
+  contact.friction.bristle_displacement = 1e-7;  // 5e-5 of the travel
   motion.contacts.push_back(contact);
-  // In and out by half a cosine of the speed's turn: d(t) smooth, speed zero at the start, the turn and the end.
+  // The speed is a sine: zero at the start, the turn and the end.
   constexpr double half = 0.5;
   coupling::MotionBody pusher;
   pusher.driven = true;
@@ -290,7 +287,6 @@ std::vector<Row> reversed_push_rows() {
     return false;
   });
   // The static wire turns where the integrated motion has turned (1 um short of 2 mm).
-  const std::vector<double> stations{0.5 * mm, 1.0 * mm, 1.5 * mm, 1.9 * mm};
   test.travel = stations;
   test.travel.push_back(*std::max_element(travels.begin(), travels.end()));
   test.travel.insert(test.travel.end(), stations.rbegin(), stations.rend());
@@ -309,14 +305,31 @@ std::vector<Row> reversed_push_rows() {
       force = forces[i - 1] + share * (forces[i] - forces[i - 1]);
       break;
     }
-    // At the turn the least motion back unloads the stuck contact: there the largest force counts.
+    // At the turn the least motion back unloads what sticks: there the largest force counts.
     if (k == stations.size()) force = *std::max_element(forces.begin(), forces.end());
     if (!r.report.usable()) force = std::nan("");
-    rows.push_back({"friction",
-                    fmt::format("slow push with friction, {} {:.3g} mm, over the largest force", loading ? "in" : "back at", d / mm),
+    rows.push_back({"friction", fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at", d / mm),
                     "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute, 1e-3});
   }
   return rows;
+}
+
+}  // namespace
+
+std::vector<Row> reversed_push_rows() {
+  coupling::PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
+  test.pusher.friction = 0.2;
+  return reversed_push(test, "friction on the pusher", {0.5 * mm, 1.0 * mm, 1.5 * mm, 1.9 * mm});
+}
+
+// A straight wire, so that both begin without a moment; soft in tension, so that it bends.
+std::vector<Row> strand_push_rows() {
+  coupling::PushTest test = declared_wire(87.5 * mm, 6.0 * mm);
+  test.wire.length = test.mount.span;
+  test.wire.bending_stiffness_override = 5e-3;
+  test.wire.axial_stiffness_override = 1e3;
+  test.wire.strand_friction = wire::StrandFriction{2e-2, 0.2};
+  return reversed_push(test, "strands", {0.1 * mm, 0.3 * mm, 1.0 * mm, 1.5 * mm, 1.9 * mm});
 }
 
 std::vector<Check> friction_checks() {
@@ -324,7 +337,8 @@ std::vector<Check> friction_checks() {
           {"friction stops a block", stopping_block_rows},
           {"rolling without sliding", rolling_rows},
           {"stick and slip", stick_slip_rows},
-          {"slow push with friction", reversed_push_rows}};
+          {"slow push with friction", reversed_push_rows},
+          {"slow push of a wire with strands", strand_push_rows}};
 }
 
 }  // namespace snare::validation

@@ -6,8 +6,8 @@
 
 namespace snare::validation {
 
-/// Friction in motion: rest and sliding on an incline, a block that stops, rolling, stick-slip, a slow push with its
-/// friction reversed beside the static wire. Takes about a minute.
+/// Friction in motion: rest and sliding on an incline, a block that stops, rolling, stick-slip, slow pushes with their
+/// friction reversed beside the static wire. Takes some seconds.
 [[nodiscard]] std::vector<Check> friction_checks();
 
 /// Rows of `friction_checks`.
@@ -16,5 +16,6 @@ namespace snare::validation {
 [[nodiscard]] std::vector<Row> rolling_rows();
 [[nodiscard]] std::vector<Row> stick_slip_rows();
 [[nodiscard]] std::vector<Row> reversed_push_rows();
+[[nodiscard]] std::vector<Row> strand_push_rows();
 
 }  // namespace snare::validation
