@@ -142,7 +142,7 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
              "body_x_mm",       "body_y_mm",      "body_angle_deg", "body_vx_m_s",     "body_vy_m_s",
              "body_spin_rad_s", "mount_left_x_N", "mount_left_y_N", "mount_right_x_N", "mount_right_y_N",
              "kinetic_J",       "strain_J",       "potential_J",    "dissipated_J",    "impacts_J",
-             "work_J",          "integrator_J"});
+             "work_J",          "integrator_J",   "slip_speed_m_s",  "sticking"});
   for (const ModelRun& run : runs) {
     for (const MotionSample& s : run.samples) {
       const coupling::ContactSample& c = s.contacts.front();
@@ -170,7 +170,9 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
                s.energy.dissipated,
                s.energy.impacts,
                s.energy.work,
-               s.energy.integrator});
+               s.energy.integrator,
+               c.slip_speed,
+               static_cast<long long>(c.sticking)});
     }
   }
   csv.commit();
@@ -189,10 +191,10 @@ json summary_of(const ContactScenario& scenario, const ModelRun& run) {
   int touches = 0;
   json events = json::array();
   for (const coupling::MotionEvent& e : r.events) {
-    const bool touch = e.kind == coupling::MotionEvent::Kind::touch;
-    if (touch && touches++ == 0) first = e.time;
-    if (!touch) last = e.time;
-    events.push_back({{"time_s", e.time}, {"what", touch ? "touch" : "lift_off"}});
+    using Kind = coupling::MotionEvent::Kind;
+    if (e.kind == Kind::touch && touches++ == 0) first = e.time;
+    if (e.kind == Kind::lift_off) last = e.time;
+    events.push_back({{"time_s", e.time}, {"what", coupling::to_string(e.kind)}});
   }
   // Travel of the probe from where it would touch.
   double deepest = 0.0;

@@ -3,6 +3,8 @@
 #include "numerics/files.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/distil_checks.hpp"
+#include "validation/contact_law_checks.hpp"
+#include "validation/friction_checks.hpp"
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
@@ -63,6 +65,8 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   for (validation::Check& check : validation::distil_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::motion_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::motion_accuracy_checks()) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::friction_checks()) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::contact_law_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::air_table_checks()) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");

@@ -1,5 +1,6 @@
 #include "coupling/contact_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace snare::coupling {
@@ -23,12 +24,27 @@ ContactLaw spring_dashpot(double k, double c) {
 }
 
 ContactLaw power_law(double k, double p, double c, double q) {
-  return [k, p, c, q](double d, double rate) {
+  return power_law(k, p, c, q, p);
+}
+
+ContactLaw power_law(double k, double p, double c, double q, double n) {
+  return [k, p, c, q, n](double d, double rate) {
     if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    const double damping = c * std::copysign(std::pow(std::abs(rate), q), rate);
-    const double by_rate = c * q * std::pow(std::abs(rate), q - 1.0);
-    const double size = std::pow(d, p);
-    return pushing({(k + damping) * size, (k + damping) * p * size / d, by_rate * size});
+    const double spring = k * std::pow(d, p);
+    const double depth = c * std::pow(d, n);
+    const double damping = depth * std::copysign(std::pow(std::abs(rate), q), rate);
+    return pushing({spring + damping, (p * spring + n * damping) / d, depth * q * std::pow(std::abs(rate), q - 1.0)});
+  };
+}
+
+ContactLaw step_damped_law(double k, double p, double c, double depth) {
+  return [k, p, c, depth](double d, double rate) {
+    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
+    const double x = std::min(d / depth, 1.0);
+    const double step = x * x * (3.0 - 2.0 * x);
+    const double slope = 6.0 * x * (1.0 - x) / depth;
+    const double spring = k * std::pow(d, p);
+    return pushing({spring + c * step * rate, p * spring / d + c * slope * rate, c * step});
   };
 }
 

@@ -18,6 +18,13 @@ using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate
 /// q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q);
 
+/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 (a force jump at the touch) or n >= 1.
+[[nodiscard]] ContactLaw power_law(double k, double p, double c, double q, double n);
+
+/// F = k d^p + c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  theory.md (L.2); Abiko et al., eq. 3
+/// The form of ADAMS' IMPACT. k >= 0 [N/m^p], p >= 1, c >= 0 [N s/m], depth > 0 [m].
+[[nodiscard]] ContactLaw step_damped_law(double k, double p, double c, double depth);
+
 /// F = A d^2 + B d + C.                                                 theory.md (L.3); Abiko et al., Table 4
 [[nodiscard]] ContactLaw quadratic_law(double a, double b, double c);
 

@@ -27,12 +27,13 @@ void require_schema(const TomlTable& root) {
   if (given != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
 }
 
-enum class ModelKind { wire, spring_dashpot, power, quadratic, stretched_wire, stretched_wire_linear };
+enum class ModelKind { wire, spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
 
 WireModel read_model(const TomlTable& table) {
   static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
                                                 {"spring_dashpot", ModelKind::spring_dashpot},
                                                 {"power", ModelKind::power},
+                                                {"step_damped", ModelKind::step_damped},
                                                 {"quadratic", ModelKind::quadratic},
                                                 {"stretched_wire", ModelKind::stretched_wire},
                                                 {"stretched_wire_linear", ModelKind::stretched_wire_linear}};
@@ -49,10 +50,17 @@ WireModel read_model(const TomlTable& table) {
     case ModelKind::spring_dashpot:
       model.law = spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
       break;
-    case ModelKind::power:
-      model.law =
-          power_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
-                    table.number_or("c", 0.0, damping), table.number_or("q", 1.0, Range::from(1.0, 10.0)));
+    case ModelKind::power: {
+      const double p = table.number("p", Range::from(1.0, 10.0));
+      const double n = table.number_or("n", p, Range::from(0.0, 10.0));
+      if (n > 0.0 && n < 1.0) table.fail("n", "must be 0 or >= 1: between, the force would rise infinitely fast");
+      model.law = power_law(table.number("k", stiffness), p, table.number_or("c", 0.0, damping),
+                            table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
+      break;
+    }
+    case ModelKind::step_damped:
+      model.law = step_damped_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
+                                  table.number("c_Ns_m", damping), table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
       break;
     case ModelKind::quadratic: {
       const Range coefficient = Range::from(-1e12, 1e12);
@@ -104,12 +112,27 @@ void read_body(const TomlTable& table, ContactScenario& scenario) {
 }
 
 MotionFriction read_friction(const TomlTable& table, double dynamic) {
+  static constexpr Choice<FrictionLaw> laws[] = {{"stick_slip", FrictionLaw::stick_slip}, {"smooth", FrictionLaw::smooth}};
   MotionFriction f;
+  if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
   f.dynamic_coefficient = dynamic;
   f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
-  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::above(0.0, 10.0));
-  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::above(0.0, 100.0));
-  if (f.dynamic_speed <= f.static_speed) table.fail("dynamic_speed_m_s", "must be > static_speed_m_s");
+  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
+  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
+  f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
+  f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
+  f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
+  const bool at_once = f.law == FrictionLaw::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  if (f.dynamic_speed <= f.static_speed && !at_once)
+    table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
+  if (f.law == FrictionLaw::smooth) {
+    if (f.static_speed == 0.0) table.fail("static_speed_m_s", "must be > 0 with the smooth law");
+    for (const char* key : {"bristle_displacement_m", "bristle_force_N", "bristle_time_s"}) {
+      if (table.has(key)) table.fail(key, "belongs to law = \"stick_slip\"");
+    }
+  } else if (f.static_coefficient < dynamic) {
+    table.fail("static_friction", "must be at least pusher.friction with law = \"stick_slip\"");
+  }
   return f;
 }
 
@@ -156,6 +179,11 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   const TomlTable damping = root.table("damping");
   scenario.damping.bending_time = damping.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
   scenario.damping.axial_time = damping.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  if (scenario.push.wire.strand_friction) {
+    scenario.strand_time = damping.number_or("strand_time_s", scenario.strand_time, Range::from(1e-9, 1.0));
+  } else if (damping.has("strand_time_s")) {
+    damping.fail("strand_time_s", "needs wire.strand_extra_stiffness_Nm2");
+  }
   scenario.damping.mass_rate = damping.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
   read_body(root.table("body"), scenario);
   scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction);
@@ -205,6 +233,7 @@ Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
   rod.damping = scenario.damping;
+  rod.strands.time = scenario.strand_time;
   const Eigen::Matrix3Xd rest = resting_wire(rod);
 
   // The probe stands below the wire (above it for a push against the bulge) at the asked place.

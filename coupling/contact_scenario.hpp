@@ -24,6 +24,7 @@ struct ContactScenario {
   std::string input;  ///< canonical text of everything that was read: equal for equal scenarios
   PushTest push;  ///< wire, mounts, probe (the pusher) and contact position
   wire::RodDamping damping;
+  double strand_time = wire::RodStrands{}.time;  ///< of a wire with strand friction [s]
   int elements = 60;
   MotionBody body;                                  ///< at the start
   Eigen::Vector3d probe = Eigen::Vector3d::Zero();  ///< p_BP of the probe's axis [m]

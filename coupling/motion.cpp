@@ -38,6 +38,29 @@ class Complaints {
   std::vector<numerics::InputProblem> problems_;
 };
 
+void validate_friction(Complaints& c, const std::string& key, const MotionFriction& f) {
+  const auto not_negative = [&](const std::string& name, double value) {
+    c.require(std::isfinite(value) && value >= 0.0, key + name, value, "must be >= 0");
+  };
+  not_negative("static_coefficient", f.static_coefficient);
+  not_negative("dynamic_coefficient", f.dynamic_coefficient);
+  if (f.law == FrictionLaw::smooth) {
+    c.require(f.static_speed > 0.0 && f.dynamic_speed > f.static_speed, key + "static_speed", f.static_speed,
+              "must be > 0 and < dynamic_speed");
+    return;
+  }
+  const bool at_once = f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  c.require(at_once || (f.static_speed >= 0.0 && f.dynamic_speed > f.static_speed), key + "static_speed",
+            f.static_speed, "must be >= 0 and < dynamic_speed, or both 0");
+  c.require(f.static_coefficient >= f.dynamic_coefficient, key + "static_coefficient", f.static_coefficient,
+            "must be at least the dynamic coefficient");
+  for (const auto& [name, value] : {std::pair{"bristle_displacement", f.bristle_displacement},
+                                    {"bristle_force", f.bristle_force},
+                                    {"bristle_time", f.bristle_time}}) {
+    c.require(std::isfinite(value) && value > 0.0, key + name, value, "must be > 0");
+  }
+}
+
 void validate(const Motion& motion, const MotionOptions& options) {
   Complaints c;
   const auto positive = [&c](const std::string& key, double value) {
@@ -64,6 +87,10 @@ void validate(const Motion& motion, const MotionOptions& options) {
     positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
     positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
     c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
+    if (w.rod.strands.act()) {
+      positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
+      positive(w.name + ".strands.time", w.rod.strands.time);
+    }
     c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
               static_cast<double>(w.positions.cols()), "must be one more than the elements");
     c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
@@ -87,8 +114,7 @@ void validate(const Motion& motion, const MotionOptions& options) {
     c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
-    c.require(k.friction.static_speed > 0.0 && k.friction.dynamic_speed > k.friction.static_speed,
-              k.name + ".friction.static_speed", k.friction.static_speed, "must be > 0 and < dynamic_speed");
+    validate_friction(c, k.name + ".friction.", k.friction);
   }
   for (const MotionSpring& s : motion.springs) {
     c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
@@ -123,6 +149,9 @@ class Run {
   void make_rates();
   void close(int contact);
   void settle();
+  void let_go(int contact);
+  [[nodiscard]] bool switch_friction(int contact);
+  [[nodiscard]] bool leave_broken_modes(bool at_event);
   [[nodiscard]] MotionSample sample(const DaePoint& at, const VectorXd& integrals);
   [[nodiscard]] EnergyBalance stored(const DaePoint& at, MotionSample* into);
   void integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates);
@@ -138,6 +167,7 @@ class Run {
   std::deque<BodyPart> bodies_;
   std::deque<ContactPart> contacts_;
   std::deque<SpringPart> springs_;
+  std::deque<FrictionEvent> friction_events_;  // behind all other events
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   VectorXd y_, rate_;
@@ -161,6 +191,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
                            bodies_[static_cast<std::size_t>(c.body)], options);
   }
   for (const MotionSpring& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  for (const ContactPart& c : contacts_) friction_events_.emplace_back(c);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
@@ -169,7 +200,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   for (const BodyPart& b : bodies_) b.place(y_);
   for (ContactPart& c : contacts_) {
     y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
-    c.open(y_);
+    static_cast<void>(c.open(y_));
   }
   numerics::IdaOptions ida;
   ida.relative_tolerance = options.relative_tolerance;
@@ -191,6 +222,7 @@ std::vector<numerics::DaePart*> Run::parts() {
   for (auto& b : bodies_) list.push_back(&b);
   for (auto& c : contacts_) list.push_back(&c);
   for (auto& s : springs_) list.push_back(&s);
+  for (auto& f : friction_events_) list.push_back(&f);
   return list;
 }
 
@@ -223,6 +255,7 @@ void Run::make_rates() {
       for (int k = 0; k < 3; ++k) {
         if (!r.is_held(i, k)) rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.mass_of(i);
       }
+      if (r.constants().strands.act()) rate_.segment<2>(r.strand_of(i)) = -rows.segment<2>(r.strand_of(i));
     }
   }
   for (const BodyPart& b : bodies_) {
@@ -234,23 +267,23 @@ void Run::make_rates() {
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
   const auto n = static_cast<Eigen::Index>(constraints.size());
-  if (n == 0) return;
   Eigen::MatrixXd flexibility(n, n);
   VectorXd missing(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
     missing[i] = -(c.gap_rate_of(y_, rate_) + c.gap_acceleration_at_rest(y_));
     VectorXd unit = VectorXd::Zero(y_.size());
-    c.respond(y_, 1.0, unit);
+    c.respond_with_friction(y_, 1.0, unit);
     for (Eigen::Index j = 0; j < n; ++j)
       flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
-  const VectorXd force = flexibility.partialPivLu().solve(missing);
+  const VectorXd force = n > 0 ? VectorXd(flexibility.partialPivLu().solve(missing)) : VectorXd();
   for (Eigen::Index i = 0; i < n; ++i) {
     const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
     y_[c.force_unknown()] = force[i];
-    c.respond(y_, force[i], rate_);
+    c.respond_with_friction(y_, force[i], rate_);
   }
+  for (const ContactPart& c : contacts_) c.set_bristle_rate(y_, rate_);
 }
 
 // The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0
@@ -290,14 +323,49 @@ void Run::close(int contact) {
   sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
 }
 
+void Run::let_go(int contact) {
+  integrals_[integral::dissipated] += contacts_[static_cast<std::size_t>(contact)].open(y_);
+  sums_.events.push_back({time_, contact, MotionEvent::Kind::lift_off, 0.0});
+}
+
+// True: the contact has a bristle and was switched.
+bool Run::switch_friction(int contact) {
+  ContactPart& c = contacts_[static_cast<std::size_t>(contact)];
+  if (!c.closed() || !c.has_bristle()) return false;
+  const bool slips = c.friction_mode() == FrictionMode::stick;
+  c.set_friction_mode(slips ? FrictionMode::slip : FrictionMode::stick);
+  sums_.events.push_back({time_, contact, slips ? MotionEvent::Kind::slip : MotionEvent::Kind::stick, c.sliding_speed(y_)});
+  return true;
+}
+
+// Stick and slip that have ended: found as events, or left behind by a start that no mode fitted.
+bool Run::leave_broken_modes(bool at_event) {
+  bool changed = false;
+  const std::size_t first = static_cast<std::size_t>(system_->event_count()) - contacts_.size();
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const bool ended = at_event && ida_->events_found()[first + k] < 0;
+    if (ended || contacts_[k].friction_margin(y_) < 0.0) changed = switch_friction(static_cast<int>(k)) || changed;
+  }
+  return changed;
+}
+
 // Contacts that would pull let go at once.
 void Run::settle() {
   make_rates();
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (!contacts_[k].closed() || y_[contacts_[k].force_unknown()] >= -options_.force_tolerance) continue;
     if (contacts_[k].has_law()) continue;
-    contacts_[k].open(y_);
-    sums_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
+    let_go(static_cast<int>(k));
+    make_rates();
+  }
+  // Friction that starts outside of its mode changes it; a change may move the normal forces, so that it is asked again.
+  constexpr int most_changes = 4;
+  for (int change = 0; change < most_changes; ++change) {
+    bool changed = false;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+      if (contacts_[k].friction_margin(y_) < 0.0) changed = switch_friction(static_cast<int>(k)) || changed;
+    }
+    if (!changed) break;
     make_rates();
   }
   ida_->set_integrals(integrals_);
@@ -317,6 +385,7 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[0]);
     into->mount_forces.push_back(w.mount_forces[1]);
   }
+  for (const ContactPart& c : contacts_) e.strain += c.bristle_energy(at.y);
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
     const multibody::RigidBodyState s = b.state(at.y);
@@ -378,9 +447,10 @@ void Run::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     add_reactions(k, force, at, rates);
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const ContactSample s = springs_[k].sample(at.y);
+    const ContactSample s = springs_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
-    rates[integral::dissipated] += springs_[k].taken_power(at.y);
+    rates[integral::dissipated] += springs_[k].taken_power(at);
+    rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
@@ -399,7 +469,7 @@ void Run::watch() {
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     double& peak = sums_.peak_force[contacts_.size() + k];
-    peak = std::max(peak, springs_[k].sample(y_).normal_force);
+    peak = std::max(peak, springs_[k].sample(at).normal_force);
   }
   for (const BodyPart& b : bodies_) {
     sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
@@ -424,7 +494,7 @@ MotionSample Run::sample(const DaePoint& at, const VectorXd& integrals) {
     s.mount_forces[2 * w] -= held[0];
     s.mount_forces[2 * w + 1] -= held[1];
   }
-  for (const SpringPart& spring : springs_) s.contacts.push_back(spring.sample(at.y));
+  for (const SpringPart& spring : springs_) s.contacts.push_back(spring.sample(at));
   for (const wire::RodPart& r : rods_) {
     Eigen::Matrix3Xd x(3, r.vertices());
     for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));
@@ -488,15 +558,17 @@ MotionResult Run::go(double limit) {
     integrals_ = ida_->integrals();
     watch();
     stopped = write_until(time_) || (options_.stop && options_.stop());
-    if (advance != numerics::IdaAdvance::event) continue;
-    bool changed = false;
+    bool changed = leave_broken_modes(advance == numerics::IdaAdvance::event);
+    if (advance != numerics::IdaAdvance::event) {
+      if (changed) settle();
+      continue;
+    }
     const std::vector<int> found = ida_->events_found();
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       if (found[k] >= 0) continue;  // only a falling gap or force is an event
       changed = true;
       if (contacts_[k].closed()) {
-        contacts_[k].open(y_);
-        sums_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
+        let_go(static_cast<int>(k));
       } else {
         close(static_cast<int>(k));
       }
@@ -565,6 +637,10 @@ wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, do
   rod.properties.axial_stiffness = specification.axial_stiffness();
   rod.properties.right.position = {span, 0.0, 0.0};
   rod.mass_per_length = specification.mass_per_length();
+  if (specification.strand_friction) {
+    rod.strands.extra_stiffness = specification.strand_friction->extra_stiffness;
+    rod.strands.slip_curvature = specification.strand_friction->slip_curvature;
+  }
   rod.length = specification.length;
   rod.elements = elements;
   return rod;
@@ -601,6 +677,16 @@ Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
     x.col(i) = from + p.x() * along + p.y() * up;
   }
   return x;
+}
+
+std::string to_string(MotionEvent::Kind kind) {
+  switch (kind) {
+    case MotionEvent::Kind::touch: return "touch";
+    case MotionEvent::Kind::lift_off: return "lift_off";
+    case MotionEvent::Kind::stick: return "stick";
+    case MotionEvent::Kind::slip: return "slip";
+  }
+  return "";
 }
 
 MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/contact_law.hpp"
+#include "coupling/motion_friction.hpp"
 #include "coupling/motion_shape.hpp"
 #include "multibody/rigid_body.hpp"
 #include "numerics/ida.hpp"
@@ -40,14 +41,6 @@ struct MotionBody {
   std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
 };
 
-/// Coulomb friction between wire and body.
-struct MotionFriction {
-  double static_coefficient = 0.0;   ///< at the speed static_speed, >= 0
-  double dynamic_coefficient = 0.0;  ///< from dynamic_speed on, >= 0
-  double static_speed = 1e-3;        ///< below it the friction falls to zero [m/s], > 0
-  double dynamic_speed = 1.0;        ///< [m/s], > static_speed
-};
-
 /// A shape that belongs to a body and may touch a wire at one point.
 struct MotionContact {
   std::string name = "contact";
@@ -69,6 +62,7 @@ struct MotionSpring {
   int body = 0;                                            ///< index
   Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< p_BP, of the probe [m]
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< of the probe at first touch [m]
+  double origin_speed = 0.0;                               ///< at which the plane moves along `direction` [m/s]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitY();    ///< of the push, unit
   ContactLaw law;                                          ///< of penetration along `direction` and its rate
 };
@@ -113,12 +107,13 @@ struct ContactSample {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the wire's centreline [m]
   double arc = 0.0;                                 ///< material coordinate [m]
   double slip_speed = 0.0;                          ///< [m/s]
+  bool sticking = false;                            ///< closed, with a bristle that does not slide
 };
 
 /// Energies [J] of all wires and free bodies.
 struct EnergyBalance {
   double kinetic = 0.0;
-  double strain = 0.0;
+  double strain = 0.0;  ///< of the wires, and of bristles
   double potential = 0.0;
   double dissipated = 0.0;  ///< by damping, drag, friction and contact laws, integrated along the run
   double impacts = 0.0;     ///< lost when local masses of the wire take on a body's velocity at once
@@ -142,13 +137,16 @@ struct MotionSample {
 
 /// What happened at a contact.
 struct MotionEvent {
-  enum class Kind { touch, lift_off };
+  /// A touch begins in the stick; where it slides at once, `slip` follows at the same time.
+  enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
   int contact = 0;  ///< index; springs count on after the contacts
   Kind kind = Kind::touch;
-  double approach_speed = 0.0;  ///< before a touch [m/s]
+  double approach_speed = 0.0;  ///< before a touch; of the sliding at `stick` and `slip` [m/s]
 };
 
+/// "touch", "lift_off", "stick", "slip".
+[[nodiscard]] std::string to_string(MotionEvent::Kind kind);
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
@@ -199,7 +197,7 @@ using MotionObserver = std::function<bool(const MotionSample&)>;
 /// Called at every checkpoint, with what to go on from.
 using MotionKeeper = std::function<void(const MotionState&)>;
 
-/// A naturally straight elastic wire of a specification between clamps at the origin and at (span, 0, 0) [m].
+/// A naturally straight wire of a specification (with its strands' friction) between clamps at the origin and at (span, 0, 0) [m].
 [[nodiscard]] wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements);
 
 /// Vertices evenly spread between the mounts' positions (or from `from` to `to`).

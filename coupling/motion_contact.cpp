@@ -7,6 +7,7 @@
 namespace snare::coupling {
 
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 using numerics::DaeKind;
@@ -43,32 +44,6 @@ SlopeWeights slope_weights(const wire::RodPart& rod, int i) {
   // The parabola's slope at its end: twice that of the chord less that at the middle.
   if (i < middle) return {0, 2.0 / h0 * Vector3d(-1.0, 1.0, 0.0) - at_middle};
   return {middle - 1, 2.0 / h1 * Vector3d(0.0, -1.0, 1.0) - at_middle};
-}
-
-/// Friction coefficient over the sliding speed and its derivative by the speed, both finite at rest.   theory.md (M.9)
-struct FrictionLaw {
-  double over_speed = 0.0;  ///< mu(s)/s [s/m]
-  double slope = 0.0;       ///< d(mu/s)/ds / s [s^3/m^3]
-};
-
-FrictionLaw friction_law(const MotionFriction& f, double s) {
-  // Cubic steps: from -static at -static_speed to +static at +static_speed, then on to the dynamic coefficient.
-  double mu = f.dynamic_coefficient;
-  double by_s = 0.0;
-  if (s < f.static_speed) {
-    const double x = s / f.static_speed;
-    // mu/s = static/static_speed (3 - x^2)/2
-    const double scale = f.static_coefficient / f.static_speed;
-    return {0.5 * scale * (3.0 - x * x), -scale / (f.static_speed * f.static_speed)};
-  }
-  if (s < f.dynamic_speed) {
-    const double width = f.dynamic_speed - f.static_speed;
-    const double x = (s - f.static_speed) / width;
-    const double fall = f.dynamic_coefficient - f.static_coefficient;
-    mu = f.static_coefficient + fall * x * x * (3.0 - 2.0 * x);
-    by_s = fall * 6.0 * x * (1.0 - x) / width;
-  }
-  return {mu / s, (by_s / s - mu / (s * s)) / s};
 }
 
 }  // namespace
@@ -118,11 +93,13 @@ struct ContactPart::Geometry {
   double gap = 0.0;
   Vector3d omega, body_velocity, relative;  // relative: wire less body at X
   double gap_rate = 0.0;
-  Vector3d sliding;  // relative without its normal component
-  double lambda = 0.0;
+  Vector3d along, across;  // axes a, b of the tangent plane
+  double run = 0.0;        // length of X' in it
+  BristleState state;
   double mu = 0.0;
-  FrictionLaw friction;
+  TangentForce friction;
   Vector3d force;  // on the wire
+  [[nodiscard]] Vector3d in_world(const Vector2d& u) const { return u.x() * along + u.y() * across; }
 };
 
 /// Changes of: vertices (through the weights), body, multipliers.
@@ -131,10 +108,12 @@ struct ContactPart::Direction {
   Vector3d p = Vector3d::Zero(), turn = Vector3d::Zero(), body_velocity = Vector3d::Zero(),
            spin = Vector3d::Zero();
   double zeta = 0.0, lambda = 0.0;
+  Vector2d bristle = Vector2d::Zero();
 };
 
 struct ContactPart::Change {
   double gap = 0.0, tangency = 0.0, gap_rate = 0.0;
+  Vector2d sliding = Vector2d::Zero(), friction = Vector2d::Zero();
   Vector3d normal = Vector3d::Zero(), force = Vector3d::Zero(),
            torque = Vector3d::Zero();  // torque in B on the body
 };
@@ -150,6 +129,11 @@ void ContactPart::declare(numerics::DaeLayout& layout) {
       {contact_.name + " material coordinate", {}, 1, DaeKind::algebraic, options_.position_tolerance, 0});
   layout.add({contact_.name + " normal force", {}, 1, DaeKind::algebraic, options_.force_tolerance, 0});
   layout.add({contact_.name + " stabiliser", {}, 1, DaeKind::algebraic, no_tolerance, 0});
+  // A hundredth of what it gives before it slips.
+  if (has_bristle()) {
+    layout.add({contact_.name + " bristle", {"along", "across"}, 2, DaeKind::differential,
+                0.01 * contact_.friction.bristle_displacement, 0});
+  }
 }
 
 std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
@@ -160,12 +144,12 @@ std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
     for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
   }
   for (int k = 0; k < 13; ++k) list.push_back(body_.position() + k);
-  for (int k = 0; k < 3; ++k) list.push_back(first_ + k);
+  for (int k = 0; k < own_unknowns(); ++k) list.push_back(first_ + k);
   return list;
 }
 
 void ContactPart::couple(std::vector<std::pair<int, int>>& entries) const {
-  for (int k = 0; k < 3; ++k) entries.emplace_back(first_ + k, first_ + k);
+  for (int k = 0; k < own_unknowns(); ++k) entries.emplace_back(first_ + k, first_ + k);
   const std::vector<int> all = local_unknowns(window_);
   const int end = std::min(rod_.vertices(), window_ + window_size);
   const auto whole_row = [&](int row) {
@@ -181,7 +165,7 @@ void ContactPart::couple(std::vector<std::pair<int, int>>& entries) const {
   if (body_.moves_freely()) {
     for (int k = 0; k < 6; ++k) whole_row(body_.velocity() + k);
   }
-  for (int k = 0; k < 3; ++k) whole_row(first_ + k);
+  for (int k = 0; k < own_unknowns(); ++k) whole_row(first_ + k);
 }
 
 void ContactPart::bind(const numerics::SparseMatrix& pattern) {
@@ -214,13 +198,16 @@ ContactPart::Geometry ContactPart::geometry(const VectorView& y) const {
   g.body_velocity = y.segment<3>(body_.velocity());
   g.relative = g.v - g.body_velocity - g.omega.cross(g.arm);
   g.gap_rate = g.normal.dot(g.relative);
-  g.sliding = g.relative - g.gap_rate * g.normal;
-  g.lambda = y[force_unknown()];
+  const Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
+  g.run = level.norm();
+  g.along = level / g.run;
+  g.across = g.normal.cross(g.along);
+  g.state.sliding = {g.along.dot(g.relative), g.across.dot(g.relative)};
+  g.state.normal = y[force_unknown()];
+  if (has_bristle()) g.state.bristle = y.segment<2>(bristle_unknown());
   g.mu = y[stabiliser_unknown()];
-  if (contact_.friction.static_coefficient > 0.0 || contact_.friction.dynamic_coefficient > 0.0) {
-    g.friction = friction_law(contact_.friction, g.sliding.norm());
-  }
-  g.force = g.lambda * (g.normal - g.friction.over_speed * g.sliding);
+  g.friction = tangent_force(contact_.friction, mode_, g.state);
+  g.force = g.state.normal * g.normal - g.in_world(g.friction.force);
   return g;
 }
 
@@ -238,10 +225,17 @@ ContactPart::Change ContactPart::change(const Geometry& g, const Direction& d) c
   const Vector3d drelative =
       d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
-  const Vector3d dsliding = drelative - c.gap_rate * g.normal - g.gap_rate * c.normal;
-  c.force = d.lambda * (g.normal - g.friction.over_speed * g.sliding) +
-            g.lambda * (c.normal - g.friction.over_speed * dsliding -
-                        g.friction.slope * g.sliding.dot(dsliding) * g.sliding);
+  c.force = d.lambda * g.normal + g.state.normal * c.normal;
+  if (contact_.friction.acts()) {
+    // The axes turn with X' and n: |u| da = du - a (a.du) for u = X' less its normal part.
+    const Vector3d du = dslope - (c.normal.dot(g.slope) + g.normal.dot(dslope)) * g.normal -
+                        g.normal.dot(g.slope) * c.normal;
+    const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
+    const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
+    c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};
+    c.friction = g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * d.lambda;
+    c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
+  }
   const Vector3d moment = -g.arm.cross(g.force);
   const Vector3d dmoment = -darm.cross(g.force) - g.arm.cross(c.force);
   c.torque = g.r_wb.transpose() * (dmoment - d.turn.cross(moment));
@@ -253,6 +247,7 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
     rows[first_] += at.y[first_] - kept_coordinate_;
     rows[force_unknown()] += at.y[force_unknown()];
     rows[stabiliser_unknown()] += at.y[stabiliser_unknown()];
+    if (has_bristle()) rows.segment<2>(bristle_unknown()) += at.y.segment<2>(bristle_unknown());
     return;
   }
   const Geometry g = geometry(at.y);
@@ -268,9 +263,13 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
     rows.segment<3>(body_.velocity()) += g.force;
     rows.segment<3>(body_.spin()) += g.r_wb.transpose() * g.arm.cross(g.force);
   }
+  if (has_bristle()) {
+    rows.segment<2>(bristle_unknown()) +=
+        at.rate.segment<2>(bristle_unknown()) - bristle_rate(contact_.friction, mode_, g.state);
+  }
   rows[first_] += g.normal.dot(g.slope);
   if (has_law()) {
-    rows[force_unknown()] += g.lambda - contact_.law(-g.gap, -g.gap_rate)[0];
+    rows[force_unknown()] += g.state.normal - contact_.law(-g.gap, -g.gap_rate)[0];
     rows[stabiliser_unknown()] += g.mu;
   } else {
     rows[force_unknown()] += g.gap;
@@ -278,13 +277,13 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
   }
 }
 
-void ContactPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
+void ContactPart::jacobian(const DaePoint& at, double rate_factor, std::vector<double>& values) {
   const auto add = [&](int row, int column, double value) {
     const int slot = pattern_->slot(row, column);
     if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
   };
   if (!closed_) {
-    for (int k = 0; k < 3; ++k) add(first_ + k, first_ + k, 1.0);
+    for (int k = 0; k < own_unknowns(); ++k) add(first_ + k, first_ + k, 1.0);
     return;
   }
   const Geometry g = geometry(at.y);
@@ -303,6 +302,13 @@ void ContactPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
         add(body_.velocity() + a, unknown, c.force[a]);
         add(body_.spin() + a, unknown, -c.torque[a]);
       }
+    }
+    for (int a = 0; has_bristle() && a < 2; ++a) {
+      const double rate = mode_ == FrictionMode::stick
+                              ? c.sliding[a]
+                              : (c.friction[a] / contact_.friction.bristle_stiffness() - d.bristle[a]) /
+                                    contact_.friction.bristle_time;
+      add(bristle_unknown() + a, unknown, -rate);
     }
     add(first_, unknown, c.tangency);
     if (has_law()) {
@@ -353,6 +359,12 @@ void ContactPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
   Direction e;
   e.lambda = 1.0;
   column(force_unknown(), e);
+  for (int a = 0; has_bristle() && a < 2; ++a) {
+    Direction z;
+    z.bristle = Vector2d::Unit(a);
+    column(bristle_unknown() + a, z);
+    add(bristle_unknown() + a, bristle_unknown() + a, rate_factor);
+  }
   if (has_law()) add(stabiliser_unknown(), stabiliser_unknown(), 1.0);
 }
 
@@ -433,6 +445,7 @@ bool ContactPart::follow(const VectorView& y) {
 
 bool ContactPart::close(Eigen::VectorXd& y) {
   closed_ = true;
+  mode_ = FrictionMode::stick;
   y[first_] = nearest(y).coordinate;
   y[stabiliser_unknown()] = 0.0;
   // The wire is moved out by what a touch is noticed late, so that the constraint holds from the start.
@@ -455,12 +468,15 @@ bool ContactPart::close(Eigen::VectorXd& y) {
   return follow(y);
 }
 
-void ContactPart::open(Eigen::VectorXd& y) {
+double ContactPart::open(Eigen::VectorXd& y) {
+  const double held = closed_ ? bristle_energy(y) : 0.0;
   closed_ = false;
   touch_gap_ = std::min(0.0, geometry(y).gap) - touch_depth;
   kept_coordinate_ = y[first_];
   y[force_unknown()] = 0.0;
   y[stabiliser_unknown()] = 0.0;
+  if (has_bristle()) y.segment<2>(bristle_unknown()).setZero();
+  return held;
 }
 
 ContactSample ContactPart::sample(const DaePoint& at) const {
@@ -470,10 +486,11 @@ ContactSample ContactPart::sample(const DaePoint& at) const {
     const Geometry g = geometry(at.y);
     s.gap = g.gap;
     s.force = g.force;
-    s.normal_force = g.lambda;
+    s.normal_force = g.state.normal;
     s.point = g.x;
     s.arc = at.y[first_];
-    s.slip_speed = g.sliding.norm();
+    s.slip_speed = g.state.sliding.norm();
+    s.sticking = has_bristle() && mode_ == FrictionMode::stick;
     return s;
   }
   const Nearest n = nearest(at.y);
@@ -492,22 +509,50 @@ double ContactPart::lost_power(const VectorView& y) const {
   if (!closed_) return 0.0;
   const Geometry g = geometry(y);
   // What the pair of forces takes from wire and body together; a law's spring part returns it.
-  return has_law() ? -g.force.dot(g.relative) : g.lambda * g.friction.over_speed * g.sliding.squaredNorm();
+  const double heat = friction_heat(contact_.friction, mode_, g.state);
+  return has_law() ? heat - g.state.normal * g.gap_rate : heat;
+}
+
+double ContactPart::friction_margin(const VectorView& y) const {
+  if (!closed_ || !has_bristle()) return 1.0;
+  return coupling::friction_margin(contact_.friction, mode_, geometry(y).state);
+}
+
+double ContactPart::sliding_speed(const VectorView& y) const {
+  return geometry(y).state.sliding.norm();
+}
+
+double ContactPart::bristle_energy(const VectorView& y) const {
+  if (!has_bristle()) return 0.0;
+  return 0.5 * contact_.friction.bristle_stiffness() * y.segment<2>(bristle_unknown()).squaredNorm();
+}
+
+void ContactPart::set_bristle_rate(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
+  if (!has_bristle()) return;
+  rate.segment<2>(bristle_unknown()).setZero();
+  if (closed_) rate.segment<2>(bristle_unknown()) = bristle_rate(contact_.friction, mode_, geometry(y).state);
+}
+
+void ContactPart::respond_along(const Geometry& g, const Vector3d& impulse, Eigen::VectorXd& dv) const {
+  for (int k = 0; k < 4; ++k) {
+    const int i = g.weights.first + k;
+    for (int a = 0; a < 3; ++a) {
+      if (!rod_.is_held(i, a)) dv[rod_.velocity_of(i) + a] += g.weights.value[k] * impulse[a] / rod_.mass_of(i);
+    }
+  }
+  if (!body_.moves_freely()) return;
+  dv.segment<3>(body_.velocity()) -= impulse / body_.body().properties.mass;
+  dv.segment<3>(body_.spin()) -= body_.inverse_inertia() * (g.r_wb.transpose() * g.arm.cross(impulse));
 }
 
 void ContactPart::respond(const VectorView& y, double impulse, Eigen::VectorXd& dv) const {
   const Geometry g = geometry(y);
-  for (int k = 0; k < 4; ++k) {
-    const int i = g.weights.first + k;
-    for (int a = 0; a < 3; ++a) {
-      if (rod_.is_held(i, a)) continue;
-      dv[rod_.velocity_of(i) + a] += impulse * g.weights.value[k] * g.normal[a] / rod_.mass_of(i);
-    }
-  }
-  if (!body_.moves_freely()) return;
-  dv.segment<3>(body_.velocity()) -= impulse / body_.body().properties.mass * g.normal;
-  dv.segment<3>(body_.spin()) -=
-      impulse * (body_.inverse_inertia() * (g.r_wb.transpose() * g.arm.cross(g.normal)));
+  respond_along(g, impulse * g.normal, dv);
+}
+
+void ContactPart::respond_with_friction(const VectorView& y, double force, Eigen::VectorXd& rate) const {
+  const Geometry g = geometry(y);
+  respond_along(g, force * (g.normal - g.in_world(g.friction.by_normal)), rate);
 }
 
 std::array<Vector3d, 2> ContactPart::force_on_mounts(const VectorView& y) const {
@@ -533,7 +578,8 @@ Vector3d ContactPart::normal(const VectorView& y) const {
 }
 
 void ContactPart::remember(std::vector<double>& memory) const {
-  memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, touch_gap_, static_cast<double>(window_)});
+  memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, touch_gap_, static_cast<double>(window_),
+                                mode_ == FrictionMode::stick ? 1.0 : 0.0});
 }
 
 void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memory) {
@@ -541,6 +587,7 @@ void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memor
   kept_coordinate_ = numerics::take(memory);
   touch_gap_ = numerics::take(memory);
   window_ = static_cast<int>(numerics::take(memory));
+  mode_ = numerics::take(memory) != 0.0 ? FrictionMode::stick : FrictionMode::slip;
 }
 
 double ContactPart::gap_rate_of(const VectorView& y, const Eigen::VectorXd& velocities) const {

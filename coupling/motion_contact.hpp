@@ -20,6 +20,8 @@ struct CurveWeights {
 ///
 ///   closed:  n.X'(zeta) = 0,  g = 0,  dg/dt = 0;   x_k' = v_k + N_k n mu/m_k
 ///   open:    zeta = where it was, lambda = 0, mu = 0
+/// A bristle adds its deflection z in the tangent plane's axes a = X'/|X'| and b = n x a, which go with wire and body:
+///   closed:  dz/dt = (f/k - z)/tau, friction f of tangent_force;    open:  z = 0
 /// With a law instead of the constraint lambda = law(-g, -dg/dt) while closed.
 class ContactPart final : public numerics::DaePart {
  public:
@@ -47,7 +49,8 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] Nearest nearest(const numerics::VectorView& y) const;
   /// Closes at the closest point and sets the contact's own unknowns. True: the pattern changes.
   [[nodiscard]] bool close(Eigen::VectorXd& y);
-  void open(Eigen::VectorXd& y);
+  /// Returns the energy that the bristle still held and that is lost [J].
+  double open(Eigen::VectorXd& y);
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
   /// Relative normal speed dg/dt [m/s].
   [[nodiscard]] double gap_rate(const numerics::VectorView& y) const;
@@ -56,6 +59,19 @@ class ContactPart final : public numerics::DaePart {
 
   void remember(std::vector<double>& memory) const override;
   void recall(const numerics::VectorView& y, std::span<const double>& memory) override;
+  [[nodiscard]] bool has_bristle() const { return contact_.friction.has_bristle(); }
+  /// Stick or slip of a closed contact with a bristle. With the unknowns it is all that the friction remembers.
+  [[nodiscard]] FrictionMode friction_mode() const { return mode_; }
+  void set_friction_mode(FrictionMode mode) { mode_ = mode; }
+  /// What keeps the mode [N]: see coupling::friction_margin. One newton where nothing can switch.
+  [[nodiscard]] double friction_margin(const numerics::VectorView& y) const;
+  [[nodiscard]] double sliding_speed(const numerics::VectorView& y) const;
+  /// Energy of the bristle, k |z|^2/2 [J].
+  [[nodiscard]] double bristle_energy(const numerics::VectorView& y) const;
+  /// dz/dt into `rate`.
+  void set_bristle_rate(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  /// Accelerations by a normal force and the friction that is proportional to it, added to `rate`.
+  void respond_with_friction(const numerics::VectorView& y, double force, Eigen::VectorXd& rate) const;
 
   /// What of the contact force falls on rigidly held components of the first and the last vertex [N].
   [[nodiscard]] std::array<Eigen::Vector3d, 2> force_on_mounts(const numerics::VectorView& y) const;
@@ -68,6 +84,8 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] int coordinate_unknown() const { return first_; }
   [[nodiscard]] int force_unknown() const { return first_ + 1; }
   [[nodiscard]] int stabiliser_unknown() const { return first_ + 2; }
+  /// First of the two of z; only with a bristle.
+  [[nodiscard]] int bristle_unknown() const { return first_ + 3; }
 
   /// Velocity changes of an impulse at the contact [N s], added to dv.
   void respond(const numerics::VectorView& y, double impulse, Eigen::VectorXd& dv) const;
@@ -86,17 +104,39 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] Change change(const Geometry& g, const Direction& d) const;
   [[nodiscard]] bool follow(const numerics::VectorView& y);
   [[nodiscard]] std::vector<int> local_unknowns(int first_vertex) const;
+  [[nodiscard]] int own_unknowns() const { return has_bristle() ? 5 : 3; }
+  void respond_along(const Geometry& g, const Eigen::Vector3d& impulse, Eigen::VectorXd& dv) const;
 
   MotionContact contact_;
   const wire::RodPart& rod_;
   const BodyPart& body_;
   MotionOptions options_;
   bool closed_ = false;
+  FrictionMode mode_ = FrictionMode::stick;
   double kept_coordinate_ = 0.0;
   double touch_gap_ = 0.0;  // of the next touch [m], <= 0
   int window_ = 0;          // first vertex that the pattern covers
   int first_ = 0;
   const numerics::SparseMatrix* pattern_ = nullptr;
+};
+
+/// The event at which a contact changes between stick and slip. It owns no unknowns; a part of its own, so that the
+/// contacts' events keep one place each.
+class FrictionEvent final : public numerics::DaePart {
+ public:
+  explicit FrictionEvent(const ContactPart& contact) : contact_(contact) {}
+  void declare(numerics::DaeLayout& /*layout*/) override {}
+  void couple(std::vector<std::pair<int, int>>& /*entries*/) const override {}
+  void bind(const numerics::SparseMatrix& /*pattern*/) override {}
+  void residual(const numerics::DaePoint& /*at*/, Eigen::Ref<Eigen::VectorXd> /*rows*/) override {}
+  void jacobian(const numerics::DaePoint& /*at*/, double /*c*/, std::vector<double>& /*values*/) override {}
+  [[nodiscard]] int event_count() const override { return 1; }
+  void events(const numerics::DaePoint& at, std::span<double> values) override {
+    values[0] = contact_.friction_margin(at.y);
+  }
+
+ private:
+  const ContactPart& contact_;
 };
 
 }  // namespace snare::coupling

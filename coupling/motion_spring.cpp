@@ -26,13 +26,14 @@ struct SpringPart::Geometry {
   Vector3d law;  // force and its derivatives
 };
 
-SpringPart::Geometry SpringPart::geometry(const numerics::VectorView& y) const {
+SpringPart::Geometry SpringPart::geometry(double time, const numerics::VectorView& y) const {
   Geometry g;
   g.r = multibody::rotation(y.segment<4>(body_.quaternion()));
   g.arm = spring_.point;
   g.swing = Vector3d(y.segment<3>(body_.spin())).cross(g.arm);
-  g.penetration = spring_.direction.dot(y.segment<3>(body_.position()) + g.r * g.arm - spring_.origin);
-  g.rate = spring_.direction.dot(y.segment<3>(body_.velocity()) + g.r * g.swing);
+  g.penetration = spring_.direction.dot(y.segment<3>(body_.position()) + g.r * g.arm - spring_.origin) -
+                  spring_.origin_speed * time;
+  g.rate = spring_.direction.dot(y.segment<3>(body_.velocity()) + g.r * g.swing) - spring_.origin_speed;
   g.law = spring_.law(g.penetration, g.rate);
   return g;
 }
@@ -54,14 +55,14 @@ void SpringPart::bind(const numerics::SparseMatrix& pattern) {
 }
 
 void SpringPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  const Geometry g = geometry(at.y);
+  const Geometry g = geometry(at.time, at.y);
   // Rows are inertia less forces; the moment is about the centre of mass, in B.
   rows.segment<3>(body_.velocity()) += g.law.x() * spring_.direction;
   rows.segment<3>(body_.spin()) += g.law.x() * g.arm.cross(g.r.transpose() * spring_.direction);
 }
 
 void SpringPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
-  const Geometry g = geometry(at.y);
+  const Geometry g = geometry(at.time, at.y);
   const Vector4d q = at.y.segment<4>(body_.quaternion());
   const Vector3d& n = spring_.direction;
   Eigen::Matrix<double, 1, columns> force_by;
@@ -83,22 +84,22 @@ void SpringPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>&
 }
 
 void SpringPart::events(const DaePoint& at, std::span<double> values) {
-  values[0] = geometry(at.y).penetration;
+  values[0] = geometry(at.time, at.y).penetration;
 }
 
-ContactSample SpringPart::sample(const numerics::VectorView& y) const {
-  const Geometry g = geometry(y);
+ContactSample SpringPart::sample(const DaePoint& at) const {
+  const Geometry g = geometry(at.time, at.y);
   ContactSample s;
   s.closed = g.penetration > 0.0;
   s.gap = -g.penetration;
   s.normal_force = g.law.x();
   s.force = g.law.x() * spring_.direction;
-  s.point = y.segment<3>(body_.position()) + g.r * g.arm;
+  s.point = at.y.segment<3>(body_.position()) + g.r * g.arm;
   return s;
 }
 
-double SpringPart::taken_power(const numerics::VectorView& y) const {
-  const Geometry g = geometry(y);
+double SpringPart::taken_power(const DaePoint& at) const {
+  const Geometry g = geometry(at.time, at.y);
   return g.law.x() * g.rate;
 }
 

@@ -8,7 +8,7 @@
 namespace snare::coupling {
 
 /// A law between a point of a body and a plane fixed in the world, in place of a wire.        theory.md (L.5)
-///   d = n.(p_WP - p_0),  d' = n.v_WP;  the body gets -F(d, d') n at P
+///   d = n.(p_WP - p_0) - v_0 t,  d' = n.v_WP - v_0;  the body gets -F(d, d') n at P
 /// It has no unknowns of its own and adds to the body's rows.
 class SpringPart final : public numerics::DaePart {
  public:
@@ -23,13 +23,13 @@ class SpringPart final : public numerics::DaePart {
   [[nodiscard]] int event_count() const override { return 1; }
   void events(const numerics::DaePoint& at, std::span<double> values) override;
 
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
-  /// Power that the law takes from the body [W]; negative when it gives back.
-  [[nodiscard]] double taken_power(const numerics::VectorView& y) const;
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
+  /// Power that the law takes from body and plane [W]; negative when it gives back.
+  [[nodiscard]] double taken_power(const numerics::DaePoint& at) const;
 
  private:
   struct Geometry;
-  [[nodiscard]] Geometry geometry(const numerics::VectorView& y) const;
+  [[nodiscard]] Geometry geometry(double time, const numerics::VectorView& y) const;
 
   MotionSpring spring_;
   const BodyPart& body_;

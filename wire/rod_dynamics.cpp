@@ -11,8 +11,10 @@
 
 namespace snare::wire {
 
+using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::DaeKind;
 using numerics::DaePoint;
@@ -83,6 +85,7 @@ struct RodPart::ViscousCell {
   Turn turn;
   InverseLengths inverse;
   Directors before, after;
+  double length = 0.0;                  // of the cell [m]
   std::array<double, 2> coefficient{};  // tau k_j [N m s]
   LocalVector rate = LocalVector::Zero();
 
@@ -113,12 +116,33 @@ struct RodPart::ViscousCell {
     turn = make_turn(tangents[0], tangents[1]);
     const double rest_before = i > 0 ? part.rod_.mesh().rest_length(i - 1, part.controls_) : 0.0;
     const double rest_after = i < n ? part.rod_.mesh().rest_length(i, part.controls_) : 0.0;
-    const double length = 0.5 * (rest_before + rest_after);
+    length = 0.5 * (rest_before + rest_after);
     coefficient = {part.constants_.damping.bending_time * p.bending_stiffness / length,
                    part.constants_.damping.bending_time * p.second_bending_stiffness / length};
   }
   [[nodiscard]] WeightedCurvature curvature(int j) const {
     return {turn, before, after, j == 0 ? Eigen::Vector2d(1.0, 0.0) : Eigen::Vector2d(0.0, 1.0)};
+  }
+};
+
+/// What the strands of a vertex answer.                                                            theory.md (M.14)
+struct RodPart::StrandCell {
+  Vector2d moment;    // of the strands [N m]
+  Vector2d rate;      // z' [1/(m s)]
+  Matrix2d by_reach;  // d(moment/extra_stiffness) / de
+
+  StrandCell(const RodStrands& s, const Vector2d& held, const Vector2d& curvature_rate) {
+    const Vector2d e = held + s.time * curvature_rate;
+    const double size = e.norm();
+    Vector2d m = e;
+    by_reach.setIdentity();
+    if (size > s.slip_curvature) {
+      const Vector2d direction = e / size;
+      m = s.slip_curvature * direction;
+      by_reach = s.slip_curvature / size * (Matrix2d::Identity() - direction * direction.transpose());
+    }
+    moment = s.extra_stiffness * m;
+    rate = (m - held) / s.time;
   }
 };
 
@@ -159,6 +183,11 @@ void RodPart::declare(numerics::DaeLayout& layout) {
   x_ = layout.add({name_ + " position", axes, 3 * n, DaeKind::differential, tolerances_.position, 0});
   theta_ = layout.add({name_ + " twist angle", {}, n, DaeKind::algebraic, tolerances_.angle, 0});
   v_ = layout.add({name_ + " velocity", axes, 3 * n, DaeKind::differential, tolerances_.velocity, 0});
+  if (constants_.strands.act()) {
+    // A thousandth of the curvature at which they slip.
+    strand_ = layout.add({name_ + " strands", {"1", "2"}, 2 * n, DaeKind::differential,
+                          1e-3 * constants_.strands.slip_curvature, 0});
+  }
 }
 
 int RodPart::unknown_of(int band) const {
@@ -177,7 +206,19 @@ bool is_angle(int band) {
 
 void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
   const int bands = rod_.unknowns();
-  const bool damped = constants_.damping.bending_time > 0.0 || constants_.damping.axial_time > 0.0;
+  const bool damped = bends_with_loss() || constants_.damping.axial_time > 0.0;
+  for (int i = 0; constants_.strands.act() && i < vertices(); ++i) {
+    for (int z = strand_of(i); z < strand_of(i) + 2; ++z) {
+      entries.emplace_back(z, strand_of(i));
+      entries.emplace_back(z, strand_of(i) + 1);
+      for (int j = std::max(0, block * (i - 1)); j < std::min(bands, block * (i - 1) + local); ++j) {
+        const int vertex = j / block;
+        entries.emplace_back(z, unknown_of(j));
+        if (!is_angle(j)) entries.emplace_back(z, velocity_of(vertex) + j % block);
+        entries.emplace_back(is_angle(j) ? unknown_of(j) : velocity_of(vertex) + j % block, z);
+      }
+    }
+  }
   for (int i = 0; i < bands; ++i) {
     const int at = unknown_of(i);
     const int vertex = i / block;
@@ -201,6 +242,7 @@ void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
 }
 
 void RodPart::bind(const numerics::SparseMatrix& pattern) {
+  pattern_ = &pattern;
   const int bands = rod_.unknowns();
   band_slots_.assign(static_cast<std::size_t>(bands * width), -1);
   rate_slots_.assign(static_cast<std::size_t>(bands * width), -1);
@@ -255,8 +297,9 @@ void RodPart::evaluate(const DaePoint& at) {
   trial_ = base_;
   wire::accept(trial_, band_);
   rod_.assemble_forces(trial_, assembly_);
-  viscous_power_ = 0.0;
+  viscous_power_ = strand_energy_ = 0.0;
   viscous_couples_ = {Vector3d::Zero(), Vector3d::Zero()};
+  strand_rates_.assign(static_cast<std::size_t>(vertices()), Vector2d::Zero());
   add_viscous(at, assembly_.gradient);
 }
 
@@ -274,22 +317,39 @@ void RodPart::add_viscous(const DaePoint& at, Eigen::VectorXd& gradient) {
       viscous_power_ += force * rate * rest;
     }
   }
-  if (constants_.damping.bending_time == 0.0) return;
+  if (!bends_with_loss()) return;
   for (int i = 0; i <= n; ++i) {
     const ViscousCell cell(*this, at, i);
     if (!cell.exists) continue;
     const LocalVector& r = cell.rate;
     const Vector3d rate_a = r.segment<3>(4) - r.segment<3>(0);
     const Vector3d rate_b = r.segment<3>(8) - r.segment<3>(4);
+    std::array<PairGradient, 2> gradients;
+    Vector2d rates;
     for (int j = 0; j < 2; ++j) {
-      PairGradient g;
-      const WeightedCurvature curvature = cell.curvature(j);
-      curvature.add_gradient(cell.inverse, g);
-      const double rate = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[3] + g.theta_b * r[7];
-      const double moment = cell.coefficient[static_cast<std::size_t>(j)] * rate;
-      viscous_power_ += moment * rate;
-      if (i == 0) viscous_couples_[0] -= moment * curvature.by_rotation();
-      if (i == n) viscous_couples_[1] += moment * curvature.by_rotation();
+      PairGradient& g = gradients[static_cast<std::size_t>(j)];
+      cell.curvature(j).add_gradient(cell.inverse, g);
+      rates[j] = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[3] + g.theta_b * r[7];
+    }
+    Vector2d strands = Vector2d::Zero();
+    if (constants_.strands.act()) {
+      const Vector2d held = at.y.segment<2>(strand_of(i));
+      const StrandCell s(constants_.strands, held, rates / cell.length);
+      strands = s.moment;
+      strand_rates_[static_cast<std::size_t>(i)] = s.rate;
+      const double stiffness = constants_.strands.extra_stiffness * cell.length;
+      strand_energy_ += 0.5 * stiffness * held.squaredNorm();
+      // The dashpot's heat and that of the sliding.
+      viscous_power_ += stiffness * constants_.strands.time * s.rate.squaredNorm() +
+                        s.moment.dot(rates - cell.length * s.rate);
+    }
+    for (int j = 0; j < 2; ++j) {
+      const PairGradient& g = gradients[static_cast<std::size_t>(j)];
+      const double viscous = cell.coefficient[static_cast<std::size_t>(j)] * rates[j];
+      const double moment = viscous + strands[j];
+      viscous_power_ += viscous * rates[j];
+      if (i == 0) viscous_couples_[0] -= moment * cell.curvature(j).by_rotation();
+      if (i == n) viscous_couples_[1] += moment * cell.curvature(j).by_rotation();
       if (i > 0) {
         gradient.segment<3>(block * (i - 1)) -= moment * g.a;
         gradient[block * (i - 1) + 3] += moment * g.theta_a;
@@ -322,6 +382,9 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
       }
     }
     rows[angle_of(i)] += holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + 3];
+    if (constants_.strands.act()) {
+      rows.segment<2>(strand_of(i)) += at.rate.segment<2>(strand_of(i)) - strand_rates_[static_cast<std::size_t>(i)];
+    }
   }
   if (spin_drag_ > 0.0) rows[angle_of(0)] += spin_drag_ * at.rate[angle_of(0)];
 }
@@ -381,10 +444,11 @@ void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<dou
       }
     }
   }
-  if (constants_.damping.bending_time == 0.0) return;
+  if (!bends_with_loss()) return;
   for (int i = 0; i <= n; ++i) {
     const ViscousCell cell(*this, at, i);
-    if (!cell.exists) continue;
+    if (constants_.strands.act()) add_strands_jacobian(cell, i, at, c, values);
+    if (!cell.exists || constants_.damping.bending_time == 0.0) continue;
     LocalMatrix by_local = LocalMatrix::Zero();
     LocalMatrix by_rate = LocalMatrix::Zero();
     for (int j = 0; j < 2; ++j) {
@@ -409,6 +473,70 @@ void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<dou
         add_to(values, band_slots_[slot], by_local(a, b) + (is_angle(column) ? c * by_rate(a, b) : 0.0));
         if (!is_angle(column)) add_to(values, rate_slots_[slot], by_rate(a, b));
       }
+    }
+  }
+}
+
+void RodPart::add_strands_jacobian(const ViscousCell& cell, int vertex, const DaePoint& at, double c,
+                                   std::vector<double>& values) {
+  const int z = strand_of(vertex);
+  const auto add = [&](int row, int column, double value) { add_to(values, pattern_->slot(row, column), value); };
+  add(z, z, c);
+  add(z + 1, z + 1, c);
+  if (!cell.exists) return;
+  const RodStrands& s = constants_.strands;
+  const int bands = rod_.unknowns();
+  std::array<LocalVector, 2> slope;    // of kappa_j
+  std::array<LocalMatrix, 2> hessian;  // of kappa_j
+  std::array<LocalVector, 2> turning;  // of kappa_j' by the local unknowns
+  Vector2d rates;
+  for (std::size_t j = 0; j < 2; ++j) {
+    PairGradient g;
+    PairHessian h;
+    const WeightedCurvature curvature = cell.curvature(static_cast<int>(j));
+    curvature.add_gradient(cell.inverse, g);
+    curvature.add_hessian(cell.inverse, h);
+    slope[j] = to_local(g);
+    hessian[j] = to_local(h);
+    turning[j] = hessian[j] * cell.rate;
+    rates[static_cast<Eigen::Index>(j)] = slope[j].dot(cell.rate);
+  }
+  const StrandCell strands(s, at.y.segment<2>(z), rates / cell.length);
+  LocalMatrix by_local = strands.moment[0] * hessian[0] + strands.moment[1] * hessian[1];
+  LocalMatrix by_rate = LocalMatrix::Zero();
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (std::size_t m = 0; m < 2; ++m) {
+      const double share = strands.by_reach(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(m));
+      const double factor = s.extra_stiffness * s.time / cell.length * share;
+      by_local += factor * slope[j] * turning[m].transpose();
+      by_rate += factor * slope[j] * slope[m].transpose();
+      const int row = z + static_cast<int>(j);
+      const int column = z + static_cast<int>(m);
+      add(row, column, -(share - (j == m ? 1.0 : 0.0)) / s.time);
+      for (int a = 0; a < local; ++a) {
+        const int band = block * (vertex - 1) + a;
+        // The last angle belongs to no edge: the mount's stands in its place.
+        if (band < 0 || band >= bands - 1) continue;
+        const double by_position = -share / cell.length * turning[m][a];
+        const double by_velocity = -share / cell.length * slope[m][a];
+        add(row, unknown_of(band), by_position + (is_angle(band) ? c * by_velocity : 0.0));
+        if (!is_angle(band)) add(row, velocity_of(band / block) + band % block, by_velocity);
+        // Rows of the forces, but of what is held.
+        if (band_slots_[at_slot(band, band)] < 0) continue;
+        add(is_angle(band) ? unknown_of(band) : velocity_of(band / block) + band % block, column,
+            s.extra_stiffness * share * slope[j][a]);
+      }
+    }
+  }
+  for (int a = 0; a < local; ++a) {
+    const int row = block * (vertex - 1) + a;
+    if (row < 0 || row >= bands) continue;
+    for (int b = 0; b < local; ++b) {
+      const int column = block * (vertex - 1) + b;
+      if (column < 0 || column >= bands - 1) continue;
+      const std::size_t slot = at_slot(row, column);
+      add_to(values, band_slots_[slot], by_local(a, b) + (is_angle(column) ? c * by_rate(a, b) : 0.0));
+      if (!is_angle(column)) add_to(values, rate_slots_[slot], by_rate(a, b));
     }
   }
 }
@@ -464,7 +592,7 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
                         rod_.properties().weight.dot(vertex(trial_, e) + vertex(trial_, e + 1));
   }
   result.kinetic = 0.5 * square;
-  result.strain = assembly_.energy - result.potential;
+  result.strain = assembly_.energy - result.potential + strand_energy_;
   result.dissipation = viscous_power_ + constants_.damping.mass_rate * square;
   const Vector3d& weight = rod_.properties().weight;
   for (int i = 0; weight != Vector3d::Zero() && i < vertices(); ++i) {

@@ -20,6 +20,18 @@ struct RodDamping {
   double mass_rate = 0.0;   ///< force -a m v against motion in the world [1/s], >= 0: damping ratio a/(2 w)
 };
 
+/// Strands that slide on each other when the wire bends (Papailiou 1997), the slider of (W.13) in both directions of
+/// bending, with a dashpot beside its spring:                                                       theory.md (M.14)
+///   z' = (m - z)/tau,   m = e for |e| <= slip_curvature, else slip_curvature e/|e|,   e = z + tau kappa'
+/// z: curvature that the friction holds [1/m]; the strands add the moment extra_stiffness m to EI kappa. A wire
+/// begins with z = 0, as one that has been shaken.
+struct RodStrands {
+  double extra_stiffness = 0.0;  ///< added to EI while the strands stick [N m^2], >= 0; 0: none
+  double slip_curvature = 0.0;   ///< at which a virgin section begins to slip [1/m], > 0
+  double time = 1e-5;            ///< tau, short beside the motion [s], > 0
+  [[nodiscard]] bool act() const { return extra_stiffness > 0.0; }
+};
+
 /// Constants of a wire in motion.
 struct RodInMotion {
   SpatialRodProperties properties;  ///< stiffness, mounts, weight
@@ -28,6 +40,7 @@ struct RodInMotion {
   int elements = 60;                ///< >= 4
   double grading = 0.0;             ///< of the mesh, see MaterialMesh; 0: equal edges
   RodDamping damping;
+  RodStrands strands;
 };
 
 /// Tolerances of a wire's unknowns.
@@ -40,6 +53,7 @@ struct RodTolerances {
 /// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without inertia.
 ///                                                                                  theory.md (M.3), (M.4)
 ///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
+/// With strands two unknowns z a vertex are added, and their moments to the forces (M.14).
 /// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. Rigidly held unknowns have x = X, v = 0 instead; the
 /// force of the mount is what the row would have left. Without a mount that holds the twist nothing but the damping of
 /// bending feels the spin of the whole wire about itself: undamped theta_0 = 0, damped the spin that dissipates least
@@ -74,6 +88,8 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] double mount_error(const numerics::VectorView& y) const;
   [[nodiscard]] double coordinate(int vertex) const { return rod_.mesh().coordinate(vertex, controls_); }
   [[nodiscard]] const SpatialRod& rod() const { return rod_; }
+  /// First of the two of z of a vertex; only with strands.
+  [[nodiscard]] int strand_of(int vertex) const { return strand_ + 2 * vertex; }
   /// Band index of the rod's own unknown -> unknown of the DAE.
   [[nodiscard]] int unknown_of(int band) const;
 
@@ -96,6 +112,12 @@ class RodPart final : public numerics::DaePart {
 
  private:
   struct ViscousCell;
+  struct StrandCell;
+  void add_strands_jacobian(const ViscousCell& cell, int vertex, const numerics::DaePoint& at, double c,
+                            std::vector<double>& values);
+  [[nodiscard]] bool bends_with_loss() const {
+    return constants_.damping.bending_time > 0.0 || constants_.strands.act();
+  }
   void evaluate(const numerics::DaePoint& at);
   void add_viscous(const numerics::DaePoint& at, Eigen::VectorXd& gradient);
   void add_viscous_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
@@ -113,13 +135,16 @@ class RodPart final : public numerics::DaePart {
   std::vector<bool> held_;   // of 3 components a vertex
   bool holds_first_angle_ = false;  // nothing else determines the spin of the wire about itself
   double spin_drag_ = 0.0;          // on the rate of the first angle [N m s]
-  int x_ = 0, theta_ = 0, v_ = 0;
+  int x_ = 0, theta_ = 0, v_ = 0, strand_ = 0;
   SpatialState base_;  // frames of the last accepted state
   SpatialState trial_;
   RodAssembly assembly_;
   Eigen::VectorXd band_;
   double viscous_power_ = 0.0;
   std::array<Eigen::Vector3d, 2> viscous_couples_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of the mounts
+  double strand_energy_ = 0.0;
+  std::vector<Eigen::Vector2d> strand_rates_;  // z' by the last evaluation [1/(m s)]
+  const numerics::SparseMatrix* pattern_ = nullptr;
   std::vector<int> band_slots_;  // of the lower band in the rows of v and theta, both triangles
   std::vector<int> rate_slots_;  // the same in the columns of v
   std::vector<int> diagonal_;    // of x, v: (x,x) (x,v) (v,v)

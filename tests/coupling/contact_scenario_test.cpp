@@ -35,6 +35,26 @@ TEST(ContactScenario, ReadsTheAirTable) {
   EXPECT_FALSE(s.models[0].law);
   EXPECT_NEAR(s.models[1].law(5e-3, 0.0).x(), 890183.0 * 25e-6 - 1297.6 * 5e-3 + 0.3457, 1e-12);
   EXPECT_LT(s.options.max_step, 0.02);  // a fifth of 6.75 mm at 0.1 m/s
+  EXPECT_EQ(s.friction.law, FrictionLaw::stick_slip);
+  EXPECT_DOUBLE_EQ(s.friction.static_coefficient, 0.3);
+  EXPECT_DOUBLE_EQ(s.friction.bristle_displacement, 1e-6);
+}
+
+TEST(ContactScenario, SmoothFrictionHasNoBristle) {
+  EXPECT_EQ(air_table_with({"friction.law=\"smooth\""}).friction.law, FrictionLaw::smooth);
+  const std::pair<std::vector<std::string>, const char*> wrong[] = {
+      {{"friction.law=\"smooth\"", "friction.bristle_time_s=1e-5"}, "belongs to law = \"stick_slip\""},
+      {{"friction.law=\"smooth\"", "friction.static_speed_m_s=0"}, "must be > 0 with the smooth law"}};
+  for (const auto& [settings, message] : wrong) {
+    try {
+      (void)air_table_with(settings);
+      ADD_FAILURE() << message;
+    } catch (const numerics::InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+  const ContactScenario at_once = air_table_with({"friction.static_speed_m_s=0", "friction.dynamic_speed_m_s=0"});
+  EXPECT_EQ(at_once.friction.dynamic_speed, 0.0);
 }
 
 TEST(ContactScenario, SaysWhatIsWrong) {
@@ -52,6 +72,12 @@ TEST(ContactScenario, SaysWhatIsWrong) {
       {"mount.slip_tension_N=10", "mounts are rigid in motion"},
       {"wire.natural_curvature_1_m=2", "naturally straight in motion"},
       {"friction.dynamic_speed_m_s=0.005", "must be > static_speed_m_s"},
+      {"friction.law=\"bristle\"", "\"stick_slip\""},
+      {"friction.static_friction=0.05", "must be at least pusher.friction"},
+      {"friction.bristle_displacement_m=0", "friction.bristle_displacement_m = 0, must be"},
+      {"friction.bristle_time_s=-1e-5", "friction.bristle_time_s = -1e-5, must be"},
+      {"friction.bristle_force_N=0", "friction.bristle_force_N = 0, must be > 0"},
+      {"friction.bristle_m=1", "unknown"},
       {"solver.elements=2", "elements = 2"},
       {"wire.diameter_mm=0", "diameter_mm = 0"},
   };
@@ -96,7 +122,7 @@ TEST(SpringPart, JacobianMatchesDifferences) {
   y.segment<3>(part.velocity()) << 0.1, 0.3, -0.1;
   y.segment<3>(part.spin()) << 0.3, -0.2, 0.5;
   const VectorXd rate = VectorXd::Zero(y.size());
-  ASSERT_GT(law.sample(y).normal_force, 1.0);
+  ASSERT_GT(law.sample({0.0, y, rate}).normal_force, 1.0);
   constexpr double c = 10.0;
   const numerics::SparseMatrix& sparse = system.jacobian({0.0, y, rate}, c);
   const Eigen::Vector4d q = y.segment<4>(part.quaternion());

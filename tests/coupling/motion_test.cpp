@@ -82,7 +82,7 @@ TEST(MotionCurve, IsSmoothAndHitsItsVertices) {
 
 TEST(MotionJacobian, MatchesDifferencesInContact) {
   Motion motion = ball_below(soft_rod(8, wire::SpatialEnd::Kind::clamp), 0.1);
-  motion.contacts[0].friction = {0.3, 0.1, 0.01, 1.0};
+  motion.contacts[0].friction = {0.3, 0.1, 0.01, 1.0, FrictionLaw::smooth};
   const MotionOptions options;
   wire::RodPart rod("wire", motion.wires[0].rod, {});
   BodyPart body(motion.bodies[0], Vector3d::Zero(), options);
