@@ -2,6 +2,7 @@
 
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_linkage.hpp"
 #include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
 #include "wire/loose_wire.hpp"
@@ -13,6 +14,8 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <span>
 
 namespace snare::coupling {
 
@@ -28,6 +31,7 @@ class Complaints {
   void require(bool fine, const std::string& key, double value, const std::string& requirement) {
     if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
   }
+  std::vector<numerics::InputProblem>& problems() { return problems_; }
   void raise() {
     if (!problems_.empty()) throw numerics::InputError(problems_);
   }
@@ -84,6 +88,7 @@ void validate(const Motion& motion, const MotionOptions& options) {
               "must be a unit vector");
     c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
   }
+  Linkage::check(motion, c.problems());
   c.raise();
 }
 
@@ -118,6 +123,7 @@ class Run {
   std::deque<BodyPart> bodies_;
   std::deque<ContactPart> contacts_;
   std::deque<SpringPart> springs_;
+  std::optional<Linkage> linkage_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   VectorXd y_, rate_;
@@ -146,12 +152,14 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
                            bodies_[static_cast<std::size_t>(c.body)], options);
   }
   for (const MotionSpring& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  linkage_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
   for (std::size_t i = 0; i < rods_.size(); ++i)
     rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
   for (const BodyPart& b : bodies_) b.place(y_);
+  linkage_->place(y_);
   for (ContactPart& c : contacts_) {
     y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
     c.open(y_);
@@ -171,6 +179,7 @@ std::vector<numerics::DaePart*> Run::parts() {
   for (auto& b : bodies_) list.push_back(&b);
   for (auto& c : contacts_) list.push_back(&c);
   for (auto& s : springs_) list.push_back(&s);
+  linkage_->append(list);
   return list;
 }
 
@@ -192,6 +201,7 @@ void Run::make_rates() {
     y_[c.force_unknown()] = 0.0;
     if (c.closed() && !c.has_law()) constraints.push_back(&c);
   }
+  linkage_->loosen(y_);
   VectorXd rows(system_->size());
   system_->residual({time_, y_, rate_}, rows);
   for (const ContactPart& c : contacts_) {
@@ -210,15 +220,22 @@ void Run::make_rates() {
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
+  linkage_->solve_rates(y_, rows, rate_);
   const auto n = static_cast<Eigen::Index>(constraints.size());
-  if (n == 0) return;
+  if (n == 0) {
+    linkage_->set_multipliers(linkage_->hold_rates(y_, rate_), y_);
+    return;
+  }
+  VectorXd held_rate = rate_;
+  static_cast<void>(linkage_->hold_rates(y_, held_rate));
   Eigen::MatrixXd flexibility(n, n);
   VectorXd missing(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    missing[i] = -(c.gap_rate_of(y_, rate_) + c.gap_acceleration_at_rest(y_));
+    missing[i] = -(c.gap_rate_of(y_, held_rate) + c.gap_acceleration_at_rest(y_));
     VectorXd unit = VectorXd::Zero(y_.size());
     c.respond(y_, 1.0, unit);
+    linkage_->hold(y_, unit);
     for (Eigen::Index j = 0; j < n; ++j)
       flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
@@ -228,6 +245,7 @@ void Run::make_rates() {
     y_[c.force_unknown()] = force[i];
     c.respond(y_, force[i], rate_);
   }
+  linkage_->set_multipliers(linkage_->hold_rates(y_, rate_), y_);
 }
 
 // The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0
@@ -248,14 +266,16 @@ void Run::close(int contact) {
     missing[i] = -constraints[static_cast<std::size_t>(i)]->gap_rate(y_);
     VectorXd unit = VectorXd::Zero(y_.size());
     constraints[static_cast<std::size_t>(i)]->respond(y_, 1.0, unit);
+    linkage_->hold(y_, unit);
     for (Eigen::Index j = 0; j < n; ++j)
       flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
   const VectorXd impulse = flexibility.partialPivLu().solve(missing);
   const double before = stored({time_, y_, rate_}, nullptr).kinetic;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    constraints[static_cast<std::size_t>(i)]->respond(y_, impulse[i], y_);
-  }
+  VectorXd change = VectorXd::Zero(y_.size());
+  for (Eigen::Index i = 0; i < n; ++i) constraints[static_cast<std::size_t>(i)]->respond(y_, impulse[i], change);
+  linkage_->hold(y_, change);
+  y_ += change;
   result_.energy.impacts += before - stored({time_, y_, rate_}, nullptr).kinetic;
 }
 
@@ -296,6 +316,8 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
     into->momentum += b.body().properties.mass * s.velocity;
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
+  linkage_->add_energy(at.y, e, into);
+  if (into != nullptr) linkage_->fill(at.y, *into);
   return e;
 }
 
@@ -340,6 +362,10 @@ Rates Run::rates(const DaePoint& at) {
     double& peak = result_.peak_force[contacts_.size() + k];
     peak = std::max(peak, s.normal_force);
   }
+  const Linkage::Outer linked = linkage_->outer(at);
+  r.outer += linked.force;
+  r.work += linked.power;
+  result_.largest_drift = std::max(result_.largest_drift, linkage_->largest_gap(at.y));
   for (const BodyPart& b : bodies_) {
     result_.largest_drift =
         std::max(result_.largest_drift, std::abs(at.y.segment<4>(b.quaternion()).norm() - 1.0));
@@ -362,9 +388,9 @@ MotionSample Run::sample(const DaePoint& at) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  e.dissipated = result_.energy.dissipated;
+  e.dissipated += result_.energy.dissipated;
   e.impacts = result_.energy.impacts;
-  e.work = result_.energy.work;
+  e.work += result_.energy.work;
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - start_energy_;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
@@ -406,17 +432,26 @@ MotionResult Run::go() {
   settle();
   stopped = write_until(0.0);
   while (!stopped) {
-    const numerics::IdaAdvance advance = ida_->advance(options_.duration);
+    const numerics::IdaAdvance advance = ida_->advance(linkage_->limit());
     if (advance == numerics::IdaAdvance::failed) break;
     time_ = ida_->time();
     y_ = ida_->y();
     rate_ = ida_->rate();
     account(rates({time_, y_, rate_}), time_);
     stopped = write_until(time_);
-    if (advance == numerics::IdaAdvance::reached_limit) break;
-    if (advance != numerics::IdaAdvance::event) continue;
-    bool changed = false;
+    if (advance == numerics::IdaAdvance::reached_limit && linkage_->limit() >= options_.duration) break;
     const std::vector<int> found = ida_->events_found();
+    const auto arms = static_cast<std::size_t>(linkage_->event_count());  // the last of the events
+    bool changed = linkage_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
+    if (linkage_->stuck()) {
+      result_.report.termination = numerics::Termination::step_too_small;
+      result_.report.message = *linkage_->stuck();
+      break;
+    }
+    if (advance != numerics::IdaAdvance::event) {
+      if (changed) settle();
+      continue;
+    }
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       if (found[k] >= 0) continue;  // only a falling gap or force is an event
       changed = true;
