@@ -8,6 +8,9 @@
 #include <fmt/ranges.h>
 #include <omp.h>
 
+#include <string>
+#include <vector>
+
 namespace snare::app {
 
 namespace {
@@ -18,6 +21,7 @@ struct Kind {
 };
 
 constexpr Kind kinds[] = {{"contact", simulate_contact},
+                          {"arm_contact", simulate_arm_contact},
                           {"joint_step", simulate_arm},
                           {"tip_impulse", simulate_arm},
                           {"joint_motion", simulate_arm}};
@@ -25,7 +29,12 @@ constexpr Kind kinds[] = {{"contact", simulate_contact},
 }  // namespace
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  const std::string asked = coupling::scenario_kind(file, overrides_of(options));
+  // Keys of another file that the scenario names are that file's matter.
+  std::vector<numerics::Override> own;
+  for (const numerics::Override& one : overrides_of(options)) {
+    if (!one.key.starts_with("contact.")) own.push_back(one);
+  }
+  const std::string asked = coupling::scenario_kind(file, own);
   if (options.threads > 0) omp_set_num_threads(options.threads);
   std::string known;
   for (const Kind& kind : kinds) {

@@ -8,6 +8,8 @@ namespace snare::app {
 
 /// Kinds of scenario, one a file. Each reads its scenario, runs it and writes history.csv, summary.json, report.html.
 [[nodiscard]] ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options,
+                                              Console& console);
 [[nodiscard]] ExitStatus simulate_arm(const std::filesystem::path& file, const CommonOptions& options, Console& console);
 
 }  // namespace snare::app

@@ -2,6 +2,7 @@
 #include "app/report_page.hpp"
 #include "numerics/files.hpp"
 #include "validation/air_table_checks.hpp"
+#include "validation/arm_checks.hpp"
 #include "validation/distil_checks.hpp"
 #include "validation/contact_law_checks.hpp"
 #include "validation/friction_checks.hpp"
@@ -68,6 +69,7 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   for (validation::Check& check : validation::friction_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::contact_law_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::air_table_checks()) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::arm_checks(data_directory() / "arms")) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   for (validation::Check& check : validation::tracing_checks(

@@ -2,6 +2,7 @@
 
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_linkage.hpp"
 #include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
 #include "wire/loose_wire.hpp"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <deque>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace snare::coupling {
@@ -30,6 +32,7 @@ class Complaints {
   void require(bool fine, const std::string& key, double value, const std::string& requirement) {
     if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
   }
+  std::vector<numerics::InputProblem>& problems() { return problems_; }
   void raise() {
     if (!problems_.empty()) throw numerics::InputError(problems_);
   }
@@ -123,6 +126,7 @@ void validate(const Motion& motion, const MotionOptions& options) {
               "must be a unit vector");
     c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
   }
+  Linkage::check(motion, c.problems());
   c.raise();
 }
 
@@ -168,6 +172,7 @@ class Run {
   std::deque<ContactPart> contacts_;
   std::deque<SpringPart> springs_;
   std::deque<FrictionEvent> friction_events_;  // behind all other events
+  std::optional<Linkage> linkage_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   VectorXd y_, rate_;
@@ -192,12 +197,14 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   }
   for (const MotionSpring& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
   for (const ContactPart& c : contacts_) friction_events_.emplace_back(c);
+  linkage_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
   for (std::size_t i = 0; i < rods_.size(); ++i)
     rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
   for (const BodyPart& b : bodies_) b.place(y_);
+  linkage_->place(y_);
   for (ContactPart& c : contacts_) {
     y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
     static_cast<void>(c.open(y_));
@@ -223,6 +230,7 @@ std::vector<numerics::DaePart*> Run::parts() {
   for (auto& c : contacts_) list.push_back(&c);
   for (auto& s : springs_) list.push_back(&s);
   for (auto& f : friction_events_) list.push_back(&f);
+  linkage_->append(list);
   return list;
 }
 
@@ -244,6 +252,7 @@ void Run::make_rates() {
     y_[c.force_unknown()] = 0.0;
     if (c.closed() && !c.has_law()) constraints.push_back(&c);
   }
+  linkage_->loosen(y_);
   VectorXd rows(system_->size());
   system_->residual({time_, y_, rate_}, rows);
   for (const ContactPart& c : contacts_) {
@@ -266,14 +275,18 @@ void Run::make_rates() {
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
+  linkage_->solve_rates(y_, rows, rate_);
   const auto n = static_cast<Eigen::Index>(constraints.size());
+  VectorXd held_rate = rate_;
+  static_cast<void>(linkage_->hold_rates(y_, held_rate));
   Eigen::MatrixXd flexibility(n, n);
   VectorXd missing(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    missing[i] = -(c.gap_rate_of(y_, rate_) + c.gap_acceleration_at_rest(y_));
+    missing[i] = -(c.gap_rate_of(y_, held_rate) + c.gap_acceleration_at_rest(y_));
     VectorXd unit = VectorXd::Zero(y_.size());
     c.respond_with_friction(y_, 1.0, unit);
+    linkage_->hold(y_, unit);
     for (Eigen::Index j = 0; j < n; ++j)
       flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
@@ -283,6 +296,7 @@ void Run::make_rates() {
     y_[c.force_unknown()] = force[i];
     c.respond_with_friction(y_, force[i], rate_);
   }
+  linkage_->set_multipliers(linkage_->hold_rates(y_, rate_), y_);
   for (const ContactPart& c : contacts_) c.set_bristle_rate(y_, rate_);
 }
 
@@ -307,19 +321,23 @@ void Run::close(int contact) {
     missing[i] = -constraints[static_cast<std::size_t>(i)]->gap_rate(y_);
     VectorXd unit = VectorXd::Zero(y_.size());
     constraints[static_cast<std::size_t>(i)]->respond(y_, 1.0, unit);
+    linkage_->hold(y_, unit);
     for (Eigen::Index j = 0; j < n; ++j)
       flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
   }
   const VectorXd impulse = flexibility.partialPivLu().solve(missing);
   const double before = stored({time_, y_, rate_}, nullptr).kinetic;
   const double worked = integrals_[integral::work];
+  VectorXd change = VectorXd::Zero(y_.size());
   for (std::size_t i = 0; i < index.size(); ++i) {
     const double p = impulse[static_cast<Eigen::Index>(i)];
     const Vector3d along = p * constraints[i]->normal(y_);
     integrals_.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(index[i])) += along;
     add_reactions(index[i], along, {time_, y_, rate_}, integrals_);
-    constraints[i]->respond(y_, p, y_);
+    constraints[i]->respond(y_, p, change);
   }
+  linkage_->hold(y_, change);
+  y_ += change;
   sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
 }
 
@@ -341,7 +359,8 @@ bool Run::switch_friction(int contact) {
 // Stick and slip that have ended: found as events, or left behind by a start that no mode fitted.
 bool Run::leave_broken_modes(bool at_event) {
   bool changed = false;
-  const std::size_t first = static_cast<std::size_t>(system_->event_count()) - contacts_.size();
+  // Behind the events of contacts and springs, before those of the arms.
+  const std::size_t first = contacts_.size() + springs_.size();
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const bool ended = at_event && ida_->events_found()[first + k] < 0;
     if (ended || contacts_[k].friction_margin(y_) < 0.0) changed = switch_friction(static_cast<int>(k)) || changed;
@@ -395,6 +414,8 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
     into->momentum += b.body().properties.mass * s.velocity;
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
+  linkage_->add_energy(at.y, e, into);
+  if (into != nullptr) linkage_->fill(at.y, *into);
   return e;
 }
 
@@ -454,6 +475,10 @@ void Run::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
+  const Linkage::Outer linked = linkage_->outer(at);
+  rates.segment<3>(integral::outer) += linked.force;
+  rates.segment<3>(integral::outer_moment) += linked.moment;
+  rates[integral::work] += linked.power;
 }
 
 // Extremes over the accepted steps.
@@ -471,6 +496,7 @@ void Run::watch() {
     double& peak = sums_.peak_force[contacts_.size() + k];
     peak = std::max(peak, springs_[k].sample(at).normal_force);
   }
+  sums_.largest_drift = std::max(sums_.largest_drift, linkage_->largest_gap(y_));
   for (const BodyPart& b : bodies_) {
     sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
   }
@@ -481,9 +507,9 @@ MotionSample Run::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  e.dissipated = integrals[integral::dissipated];
+  e.dissipated += integrals[integral::dissipated];
   e.impacts = sums_.impacts;
-  e.work = integrals[integral::work];
+  e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - sums_.start_energy;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
@@ -549,7 +575,7 @@ MotionResult Run::go(double limit) {
   numerics::IdaReport report;
   bool stopped = write_until(time_);
   while (!stopped && time_ < limit) {
-    const numerics::IdaAdvance advance = ida_->advance(limit);
+    const numerics::IdaAdvance advance = ida_->advance(std::min(limit, linkage_->limit()));
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
     time_ = ida_->time();
@@ -559,11 +585,18 @@ MotionResult Run::go(double limit) {
     watch();
     stopped = write_until(time_) || (options_.stop && options_.stop());
     bool changed = leave_broken_modes(advance == numerics::IdaAdvance::event);
+    const std::vector<int> found = ida_->events_found();
+    const auto arms = static_cast<std::size_t>(linkage_->event_count());  // the last of the events
+    changed = linkage_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_) || changed;
+    if (linkage_->stuck()) {
+      report.termination = numerics::Termination::step_too_small;
+      report.message = *linkage_->stuck();
+      break;
+    }
     if (advance != numerics::IdaAdvance::event) {
       if (changed) settle();
       continue;
     }
-    const std::vector<int> found = ida_->events_found();
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       if (found[k] >= 0) continue;  // only a falling gap or force is an event
       changed = true;
@@ -692,6 +725,11 @@ std::string to_string(MotionEvent::Kind kind) {
 MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,
                       const MotionState* from, const MotionKeeper& keeper) {
   validate(motion, options);
+  // What the joints of an arm remember is not part of a state.
+  if (!motion.arms.empty() && (from != nullptr || keeper)) {
+    throw numerics::InputError(
+        {"", 0, "arms", fmt::format("{}", motion.arms.size()), "must be none in a motion that goes on from a state"});
+  }
   std::optional<MotionState> state;
   if (from != nullptr) state = *from;
   // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are those of one

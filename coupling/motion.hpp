@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/contact_law.hpp"
+#include "coupling/motion_arm.hpp"
 #include "coupling/motion_friction.hpp"
 #include "coupling/motion_shape.hpp"
 #include "multibody/rigid_body.hpp"
@@ -72,6 +73,9 @@ struct Motion {
   std::vector<MotionBody> bodies;
   std::vector<MotionContact> contacts;
   std::vector<MotionSpring> springs;
+  std::vector<MotionArm> arms;
+  std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
+  std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies; the others stand still
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
@@ -110,14 +114,14 @@ struct ContactSample {
   bool sticking = false;                            ///< closed, with a bristle that does not slide
 };
 
-/// Energies [J] of all wires and free bodies.
+/// Energies [J] of all wires, free bodies and arms.
 struct EnergyBalance {
   double kinetic = 0.0;
   double strain = 0.0;  ///< of the wires, and of bristles
   double potential = 0.0;
-  double dissipated = 0.0;  ///< by damping, drag, friction and contact laws, integrated along the run
+  double dissipated = 0.0;  ///< by damping, drag, friction, contact laws and joints, integrated along the run
   double impacts = 0.0;     ///< lost when local masses of the wire take on a body's velocity at once
-  double work = 0.0;        ///< done by driven bodies and constant forces
+  double work = 0.0;        ///< done by driven bodies, constant forces, drives and loads of arms
   /// kinetic + strain + potential + dissipated + impacts - work - the same at the start: what the integrator gained
   /// (negative: lost).
   double integrator = 0.0;
@@ -130,8 +134,16 @@ struct MotionSample {
   std::vector<ContactSample> contacts;       ///< then the springs
   std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
+  struct Arm {
+    multibody::ArmState state;
+    multibody::ArmWork work;
+    Eigen::VectorXd joint_torque;  ///< of the springs with their dampers, on the motors [N m]
+  };
+  std::vector<Arm> arms;
+  std::vector<multibody::Wrench> welds;  ///< on the held bodies, about their centres of mass, axes of the world
   EnergyBalance energy;
-  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+  /// Of wires, free bodies and floating arms [kg m/s].
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
 };
 
@@ -208,7 +220,7 @@ using MotionKeeper = std::function<void(const MotionState&)>;
 /// Throws InputError when no equilibrium is found.
 [[nodiscard]] Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod);
 
-/// Integrates a motion.                                                     theory.md (M.1)-(M.12)
+/// Integrates a motion.                                                     theory.md (M.1)-(M.17)
 /// Wrong numbers throw InputError with all of them. A failure of the integration is in `report`; the rest is
 /// what was reached.
 /// from: go on from there instead of from the start; of the same motion (other forces and courses of its bodies are

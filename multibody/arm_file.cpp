@@ -82,18 +82,23 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   const auto rate =
       table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
   if (!law || !rate) {
-    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "stiffness_Nm_rad",
-                 "damping_Nms_rad", "half_gap_deg"});
+    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg",
+                 "stiffness_Nm_rad", "damping_Nms_rad", "half_gap_deg"});
     return std::nullopt;
   }
   std::vector<DeflectionPiece> pieces;
   auto reading = std::optional(StiffnessReading::continuous);
+  double width = 0.0;
   if (*law == Law::piecewise) {
     const auto from = table.numbers("from_deg", 2, 20, Range::from(0.0, 180.0), degree);
     const auto stiffness = table.numbers("stiffness_Nm_deg", 2, 20, Range::from(0.0), 1.0 / degree);
     const auto damping = table.numbers("damping_Nms_deg", 2, 20, Range::from(0.0), 1.0 / degree);
     if (table.has("reading")) reading = table.choice("reading", readings);
-    if (from.empty() || stiffness.empty() || damping.empty() || !reading) return std::nullopt;
+    // A fiftieth of the narrowest range of Abiko et al., Table 2.
+    constexpr double usual_width = 4e-4 * degree;
+    width = table.number_or("jump_width_deg", reading == StiffnessReading::literal ? usual_width : 0.0,
+                            Range::from(0.0, 180.0), degree);
+    if (from.empty() || stiffness.empty() || damping.empty() || !reading || !(width >= 0.0)) return std::nullopt;
     if (stiffness.size() != from.size())
       table.fail("stiffness_Nm_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
     if (damping.size() != from.size())
@@ -104,7 +109,12 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
         table.fail_element("from_deg", i, i == 0 ? "must be 0" : "must be larger than the number before");
         return std::nullopt;
       }
-      pieces.push_back({from[i], stiffness[i], damping[i]});
+      if (i > 0 && width >= from[i] - from[i - 1]) {
+        table.fail("jump_width_deg", fmt::format("must be less than the narrowest piece, {:.4g} deg here",
+                                                 (from[i] - from[i - 1]) / degree));
+        return std::nullopt;
+      }
+      pieces.push_back({from[i], stiffness[i], damping[i], 0.0});
     }
   } else {
     const double stiffness = table.number("stiffness_Nm_rad", Range::above(0.0));
@@ -112,10 +122,10 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
     const double gap =
         *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
     if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
-    if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0});
-    pieces.push_back({gap, stiffness, damping});
+    if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0, 0.0});
+    pieces.push_back({gap, stiffness, damping, 0.0});
   }
-  return DeflectionLaw(std::move(pieces), *reading, *rate);
+  return DeflectionLaw(std::move(pieces), *reading, *rate, width);
 }
 
 double motor_inertia_of(const TomlTable& table) {
@@ -188,14 +198,17 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
   if (whole) {
     for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;
-    description.tip = frame_of(root, "tip", tree);
-  } else {
-    static_cast<void>(root.text("tip"));
   }
   for (const TomlTable& load : root.tables("payload")) {
     const auto carried = robot_of(document, load, folder);
     const int frame = whole ? frame_of(load, "on", tree) : (static_cast<void>(load.text("on")), -1);
     if (carried && frame >= 0) static_cast<void>(put(load, tree, frame, RootJoint::fixed, *carried));
+  }
+  // The tip may be a link of what the arm carries.
+  if (whole) {
+    description.tip = frame_of(root, "tip", tree);
+  } else {
+    static_cast<void>(root.text("tip"));
   }
 
   // Motors, in the order of the arm's moving joints.

@@ -15,7 +15,7 @@ std::size_t at(int i) {
 }
 
 // Unknowns with which the equations of a joint are coupled: its own row of motion, of the motor, and the works.
-constexpr int slots_per_joint = 17;
+constexpr int slots_per_joint = 19;
 
 }  // namespace
 
@@ -33,12 +33,15 @@ double TimedLoad::share(double time) const {
 /// Torques at a joint and their derivatives, in its present mode.
 struct ElasticArmPart::Terms {
   double deflection, deflection_rate, motor_rate;
-  double stiffness, damping;  // of the present branch
+  double damping;  // of the present branch
   double torque;              // of spring and damper on the motor
   double motor_loss,
       motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
   double drive, drive_by_angle, drive_by_rate;
-  double gear_damping;  // damping on the deflection rate, 0 where it acts on the motor
+  double gear_damping;          // damping on the deflection rate, 0 where it acts on the motor
+  double torque_by_deflection;  // at fixed rates
+  double loss_by_deflection;    // of the torque against the motor
+  double gear_damping_slope;    // by the deflection
 };
 
 ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
@@ -145,6 +148,8 @@ void ElasticArmPart::bind(const numerics::SparseMatrix& pattern) {
     keep(joint_slots_, work_ + 2, v);
     keep(joint_slots_, work_ + 2, rate);
     for (int i = 0; i < 3; ++i) keep(joint_slots_, work_ + i, work_ + i);
+    keep(joint_slots_, work_ + 2, q);
+    keep(joint_slots_, work_ + 2, motor);
     assert(static_cast<int>(joint_slots_.size()) == slots_per_joint * (k + 1));
   }
   if (arm_.motors() == 0) {
@@ -189,15 +194,19 @@ ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y,
   t.motor_rate = y[rate_ + joint];
   t.deflection = y[q_ + body.q_index] - y[motor_ + joint];
   t.deflection_rate = y[v_ + body.v_index] - t.motor_rate;
-  t.stiffness = j.spring.stiffness(mode.branch);
-  t.damping = j.spring.damping(mode.branch);
-  t.gear_damping = j.spring.damping_rate() == DampingRate::deflection ? t.damping : 0.0;
+  t.damping = j.spring.damping(mode.branch, t.deflection);
+  const double slope = j.spring.damping_slope(mode.branch, t.deflection);
+  const bool in_gear = j.spring.damping_rate() == DampingRate::deflection;
+  t.gear_damping = in_gear ? t.damping : 0.0;
+  t.gear_damping_slope = in_gear ? slope : 0.0;
   t.torque = j.spring.torque(mode.branch, t.deflection) + t.gear_damping * t.deflection_rate;
+  t.torque_by_deflection = j.spring.stiffness(mode.branch) + t.gear_damping_slope * t.deflection_rate;
   if (!fixed(joint)) {
     const FrictionLaw law = friction(joint);
     const double motor_damping = t.damping - t.gear_damping;
     t.motor_loss = law.torque(mode.turning, t.motor_rate) + motor_damping * t.motor_rate;
     t.motor_loss_slope = law.slope(mode.turning, t.motor_rate) + motor_damping;
+    t.loss_by_deflection = in_gear ? 0.0 : slope * t.motor_rate;
   }
   if (drive.mode == DriveMode::servo) {
     if (mode.saturated != 0) {
@@ -313,16 +322,16 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     const int* s = &joint_slots_[at(slots_per_joint * k)];
     const auto add = [&](int index, double value) { values[at(s[index])] += value; };
     // Row of the link: q, v, qm, qm'.
-    add(0, t.stiffness);
+    add(0, t.torque_by_deflection);
     add(1, t.gear_damping);
-    add(2, -t.stiffness);
+    add(2, -t.torque_by_deflection);
     add(3, -t.gear_damping);
     // Row of the motor.
     add(7, c * arm_.joints[at(k)].motor_inertia);
     if (!fixed(k)) {
-      add(4, -t.stiffness);
+      add(4, t.loss_by_deflection - t.torque_by_deflection);
       add(5, -t.gear_damping);
-      add(6, t.stiffness - t.drive_by_angle);
+      add(6, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
       add(7, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
     }
     add(8, c);
@@ -332,6 +341,10 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     add(11, -t.drive_by_rate * t.motor_rate - t.drive);
     add(12, -2.0 * t.gear_damping * t.deflection_rate);
     add(13, 2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
+    const double loss_by_deflection = t.gear_damping_slope * t.deflection_rate * t.deflection_rate +
+                                      t.loss_by_deflection * t.motor_rate;
+    add(17, -loss_by_deflection);
+    add(18, loss_by_deflection);
   }
   const std::size_t works = arm_.motors() > 0 ? 14 : 0;
   for (std::size_t i = 0; i < 3; ++i) values[at(joint_slots_[works + i])] += c;

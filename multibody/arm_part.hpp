@@ -89,6 +89,8 @@ class ElasticArmPart : public numerics::DaePart {
   [[nodiscard]] ArmWork work(numerics::VectorView y) const;
   /// y' that belongs to y in the present modes, by forward dynamics.
   void write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate);
+  /// The rates that annul the rows of a residual at vanishing y' (of this part and of all that add to its rows).
+  void solve_rates(numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate);
   /// Torque of a joint's spring with its damper on the motor [N m].
   [[nodiscard]] double joint_torque(numerics::VectorView y, int joint) const;
   /// Torque of a drive [N m].
@@ -103,6 +105,7 @@ class ElasticArmPart : public numerics::DaePart {
   /// Times that the integration must stop at: ends of courses and of loads.
   [[nodiscard]] std::vector<double> breaks() const;
 
+  [[nodiscard]] const ElasticArm& arm() const { return arm_; }
   [[nodiscard]] int coordinates() const { return q_; }  ///< first of the coordinates
   [[nodiscard]] int velocities() const { return v_; }   ///< first of the velocities
   [[nodiscard]] int body_row(int velocity) const { return v_ + velocity; }

@@ -1,5 +1,8 @@
 #include "multibody/arm_part.hpp"
 
+#include <Eigen/Cholesky>
+
+#include <cassert>
 #include <cmath>
 
 namespace snare::multibody {
@@ -21,7 +24,7 @@ double ElasticArmPart::joint_torque(numerics::VectorView y, int joint) const {
   const int branch = modes_[at(joint)].branch;
   const double d = y[q_ + body.q_index] - y[motor_ + joint];
   const double rate = y[v_ + body.v_index] - y[rate_ + joint];
-  const double damping = j.spring.damping_rate() == DampingRate::deflection ? j.spring.damping(branch) : 0.0;
+  const double damping = j.spring.damping_rate() == DampingRate::deflection ? j.spring.damping(branch, d) : 0.0;
   return j.spring.torque(branch, d) + damping * rate;
 }
 
@@ -187,6 +190,19 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
     torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
   rate.segment(v_, nv) = forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque,
                                           wrenches_, workspace_);
+}
+
+void ElasticArmPart::solve_rates(numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate) {
+  assert(base_ == BaseEquations::newton_euler && "with the momentum as an unknown nothing else acts on the arm");
+  const Tree& tree = arm_.tree;
+  const auto annul = [&](int first, int count) { rate.segment(first, count) = -rows.segment(first, count); };
+  annul(q_, tree.coordinates());
+  annul(work_, 3);
+  annul(motor_, arm_.motors());
+  for (int k = 0; k < arm_.motors(); ++k)
+    rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  const Eigen::MatrixXd& H = mass_matrix(tree, y.segment(q_, tree.coordinates()), workspace_);
+  rate.segment(v_, tree.velocities()) = -H.ldlt().solve(rows.segment(v_, tree.velocities()));
 }
 
 std::vector<double> ElasticArmPart::breaks() const {

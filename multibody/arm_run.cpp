@@ -1,5 +1,7 @@
 #include "multibody/arm_run.hpp"
 
+#include "multibody/event_crowding.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -36,7 +38,7 @@ class Run {
         ida_(system_, scenario.ida),
         y_(Eigen::VectorXd::Zero(system_.size())),
         rate_(Eigen::VectorXd::Zero(system_.size())),
-        event_times_(scenario.arm.joints.size()) {}
+        crowding_(scenario.arm.motors()) {}
 
   ArmHistory run() {
     part_.write_state(scenario_.initial, y_);
@@ -83,12 +85,13 @@ class Run {
         torque_reached_ = true;
         return true;
       }
-      if (thrashing(fallen.front() / ElasticArmPart::events_per_joint, ida_.time())) {
+      if (crowding_.crowded(fallen.front() / ElasticArmPart::events_per_joint, ida_.time())) {
         history_.report.termination = numerics::Termination::step_too_small;
         history_.report.time = ida_.time();
         history_.report.message =
             "joint " + scenario_.arm.joints[at(fallen.front() / ElasticArmPart::events_per_joint)].name +
-            " stays at a jump of its law: a load between the torques on its two sides holds it there";
+            " stays at a jump of its law: a load between the torques on its two sides holds it there; "
+            "give the jump a width (jump_width_deg)";
         return false;
       }
       y_ = ida_.y();
@@ -99,17 +102,6 @@ class Run {
       part_.leave_modes(ida_.time(), y_, fallen);
       begin(ida_.time());
     }
-  }
-
-  /// Between torques that point at a jump from both sides the motion ends there, which no sequence of modes
-  /// describes: the
-  /// events of that joint then crowd. A swing passes a jump some tens of times a second at most.
-  bool thrashing(int joint, double time) {
-    constexpr double window = 0.1;  // [s]
-    constexpr std::size_t too_many = 100;
-    std::vector<double>& times = event_times_[at(joint)];
-    times.push_back(time);
-    return times.size() > too_many && time - times[times.size() - 1 - too_many] < window;
   }
 
   /// Modes that are over: those that IDA found, and those that were left from their very edge, where no sign changes.
@@ -208,7 +200,7 @@ class Run {
   std::size_t switch_ = 0;
   double next_sample_ = 0.0;
   std::vector<double> event_values_;
-  std::vector<std::vector<double>> event_times_;  // of each joint [s]
+  EventCrowding crowding_;
   bool torque_reached_ = false;
 };
 

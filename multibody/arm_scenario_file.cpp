@@ -22,7 +22,20 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 enum class Kind { joint_step, tip_impulse, joint_motion };
 
-/// Angles of a pose of the arm, by name or one by one; zeros after a problem.
+int read_joint(const TomlTable& root, const ArmDescription& arm) {
+  const std::string name = root.text("joint");
+  std::string known;
+  for (int j = 0; j < arm.arm.motors(); ++j) {
+    const std::string& one = arm.arm.joints[static_cast<std::size_t>(j)].name;
+    if (one == name) return j;
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", one);
+  }
+  root.fail("joint", "must be an elastic joint of the arm: " + known);
+  return 0;
+}
+
+}  // namespace
+
 Eigen::VectorXd read_pose(const TomlTable& root, std::string_view name_key, std::string_view angles_key,
                           const ArmDescription& arm) {
   const Eigen::Index n = arm.arm.motors();
@@ -44,20 +57,6 @@ Eigen::VectorXd read_pose(const TomlTable& root, std::string_view name_key, std:
   root.fail(name_key, "must be a pose of the arm: " + known);
   return angles;
 }
-
-int read_joint(const TomlTable& root, const ArmDescription& arm) {
-  const std::string name = root.text("joint");
-  std::string known;
-  for (int j = 0; j < arm.arm.motors(); ++j) {
-    const std::string& one = arm.arm.joints[static_cast<std::size_t>(j)].name;
-    if (one == name) return j;
-    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", one);
-  }
-  root.fail("joint", "must be an elastic joint of the arm: " + known);
-  return 0;
-}
-
-}  // namespace
 
 ArmScenarioFile read_arm_scenario(const std::filesystem::path& file,
                                   const std::vector<numerics::Override>& overrides) {

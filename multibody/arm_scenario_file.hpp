@@ -2,9 +2,11 @@
 
 #include "multibody/arm_file.hpp"
 #include "multibody/arm_scenarios.hpp"
+#include "numerics/toml_reader.hpp"
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace snare::multibody {
@@ -16,6 +18,10 @@ struct ArmScenarioFile {
   ArmScenario scenario;
   int joint = -1;  ///< of a joint step
 };
+
+/// Angles of a pose of the arm, by name or one by one, from one of two keys; zeros after a problem.
+[[nodiscard]] Eigen::VectorXd read_pose(const numerics::TomlTable& root, std::string_view name_key,
+                                        std::string_view angles_key, const ArmDescription& arm);
 
 /// Reads a scenario and the arm file that it names; throws InputError with everything that is wrong in it.
 [[nodiscard]] ArmScenarioFile read_arm_scenario(const std::filesystem::path& file,

@@ -74,13 +74,16 @@ FrameMotion frame_motion(const Tree& tree, const Kinematics& kinematics, int fra
   return {R * V.angular, R * (V.linear + V.angular.cross(f.X_BF.p))};
 }
 
-Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame) {
+Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W) {
   Matrix6X J = Matrix6X::Zero(6, tree.velocities());
-  const Eigen::Vector3d p = frame_pose(tree, kinematics, frame).p;
-  for_axes(tree, kinematics, tree.frame(frame).body, [&](int column, int, const Twist& S) {
-    J.col(column) << S.angular, S.linear + S.angular.cross(p);
+  for_axes(tree, kinematics, body, [&](int column, int, const Twist& S) {
+    J.col(column) << S.angular, S.linear + S.angular.cross(p_W);
   });
   return J;
+}
+
+Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame) {
+  return point_jacobian(tree, kinematics, tree.frame(frame).body, frame_pose(tree, kinematics, frame).p);
 }
 
 Matrix6X frame_jacobian_rate(const Tree& tree, const Kinematics& kinematics, int frame) {

@@ -64,6 +64,15 @@ int Tree::add_fixed(int frame, const std::string& name, const Pose& X_FB, const 
   return static_cast<int>(frames_.size()) - 1;
 }
 
+void Tree::move(const Pose& X_VW) {
+  for (TreeBody& body : bodies_) {
+    if (body.parent < 0) body.X_PJ = X_VW * body.X_PJ;
+  }
+  for (std::size_t i = 1; i < frames_.size(); ++i) {
+    if (frames_[i].body < 0) frames_[i].X_BF = X_VW * frames_[i].X_BF;
+  }
+}
+
 int Tree::find_frame(std::string_view name) const {
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (frames_[i].name == name) return static_cast<int>(i);

@@ -56,6 +56,10 @@ class Tree {
   /// nothing.
   int add_fixed(int frame, const std::string& name, const Pose& X_FB, const SpatialInertia& inertia = {});
 
+  /// Moves the whole to another place: all that stands in the world frame W stands in a frame of the pose X_VW in the new
+  /// world V. Gravity stays as it is.
+  void move(const Pose& X_VW);
+
   [[nodiscard]] const std::vector<TreeBody>& bodies() const { return bodies_; }
   [[nodiscard]] const TreeBody& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const std::vector<TreeFrame>& frames() const { return frames_; }

@@ -88,6 +88,8 @@ struct RodPart::ViscousCell {
   double length = 0.0;                  // of the cell [m]
   std::array<double, 2> coefficient{};  // tau k_j [N m s]
   LocalVector rate = LocalVector::Zero();
+  Vector3d spin = Vector3d::Zero();  // of a mount that moves
+  Vector3d edge = Vector3d::Zero();  // beside it
 
   ViscousCell(const RodPart& part, const DaePoint& at, int i) {
     const SpatialRodProperties& p = part.rod_.properties();
@@ -113,12 +115,43 @@ struct RodPart::ViscousCell {
     for (int k = -1; k <= 1; ++k) {
       if (i + k >= 0 && i + k <= n) rate.segment<3>(4 * (k + 1)) = at.y.segment<3>(part.velocity_of(i + k));
     }
+    // A mount that spins carries the frame in which the edge beside it bends: rates are relative to it.
+    if (end != nullptr && part.carried_[i == 0 ? 0 : 1]) {
+      spin = part.carried_[i == 0 ? 0 : 1](at.y).angular;
+      const int e = i == 0 ? 0 : n - 1;
+      edge = vertex(part.trial_, e + 1) - vertex(part.trial_, e);
+      if (i == 0) {
+        rate.segment<3>(8) -= spin.cross(edge);
+        rate[7] -= spin.dot(tangents[1]);
+      } else {
+        rate.segment<3>(0) += spin.cross(edge);
+        rate[3] -= spin.dot(tangents[0]);
+      }
+    }
     turn = make_turn(tangents[0], tangents[1]);
     const double rest_before = i > 0 ? part.rod_.mesh().rest_length(i - 1, part.controls_) : 0.0;
     const double rest_after = i < n ? part.rod_.mesh().rest_length(i, part.controls_) : 0.0;
     length = 0.5 * (rest_before + rest_after);
     coefficient = {part.constants_.damping.bending_time * p.bending_stiffness / length,
                    part.constants_.damping.bending_time * p.second_bending_stiffness / length};
+  }
+  /// Change of the relative rates with the places of the local unknowns.
+  [[nodiscard]] LocalMatrix rate_by_place(bool right) const {
+    LocalMatrix m = LocalMatrix::Zero();
+    if (spin.isZero(0.0)) return m;
+    const double length = edge.norm();
+    const Vector3d t = edge / length;
+    Matrix3d spinning;
+    spinning << 0.0, -spin.z(), spin.y(), spin.z(), 0.0, -spin.x(), -spin.y(), spin.x(), 0.0;
+    const Vector3d along = (spin - spin.dot(t) * t) / length;
+    // At the left end rate(8..10) -= spin x (x_1 - x_0); at the right one rate(0..2) += spin x (x_n - x_{n-1}).
+    const int row = right ? 0 : 8, angle = right ? 3 : 7, first = right ? 0 : 4;
+    const double sign = right ? 1.0 : -1.0;
+    m.block<3, 3>(row, first) = -sign * spinning;
+    m.block<3, 3>(row, first + 4) = sign * spinning;
+    m.block<1, 3>(angle, first) = along.transpose();
+    m.block<1, 3>(angle, first + 4) = -along.transpose();
+    return m;
   }
   [[nodiscard]] WeightedCurvature curvature(int j) const {
     return {turn, before, after, j == 0 ? Eigen::Vector2d(1.0, 0.0) : Eigen::Vector2d(0.0, 1.0)};
@@ -295,6 +328,7 @@ void RodPart::take_unknowns(const numerics::VectorView& y) {
 void RodPart::evaluate(const DaePoint& at) {
   take_unknowns(at.y);
   trial_ = base_;
+  set_mounts(at.y, trial_);
   wire::accept(trial_, band_);
   rod_.assemble_forces(trial_, assembly_);
   viscous_power_ = strand_energy_ = 0.0;
@@ -463,6 +497,7 @@ void RodPart::add_viscous_jacobian(const DaePoint& at, double c, std::vector<dou
       by_local += factor * (slope.dot(cell.rate) * hessian + slope * (hessian * cell.rate).transpose());
       by_rate += factor * slope * slope.transpose();
     }
+    if (i == 0 || i == n) by_local += by_rate * cell.rate_by_place(i == n);
     for (int a = 0; a < local; ++a) {
       const int row = block * (i - 1) + a;
       if (row < 0 || row >= bands) continue;
@@ -541,8 +576,134 @@ void RodPart::add_strands_jacobian(const ViscousCell& cell, int vertex, const Da
   }
 }
 
+void RodPart::carry(bool right, std::function<MountMotion(const numerics::VectorView& y)> motion) {
+  const SpatialEnd& end = right ? rod_.properties().right : rod_.properties().left;
+  assert(end.kind != SpatialEnd::Kind::free && std::isinf(end.translational_stiffness));
+  static_cast<void>(end);
+  carried_[right ? 1 : 0] = std::move(motion);
+  const int i = right ? vertices() - 1 : 0;
+  for (int k = 0; k < 3; ++k) held_[static_cast<std::size_t>(3 * i + k)] = false;
+}
+
+void RodPart::set_mounts(const numerics::VectorView& y, SpatialState& state) const {
+  if (carried_[0] && state.left_mount) state.left_mount = carried_[0](y).frame;
+  if (carried_[1] && state.right_mount) state.right_mount = carried_[1](y).frame;
+}
+
+/// What acts between a mount and the edge beside it: generalised force on edge and angle (4), its derivatives by these
+/// at fixed rates relative to the mount, and by the relative rates.
+struct RodPart::EndForces {
+  Eigen::Vector4d force;
+  Eigen::Matrix4d by_place, by_rate;
+  Vector3d edge, tangent, edge_rate, spin;
+  double length = 0.0;
+};
+
+RodPart::EndForces RodPart::end_forces(const DaePoint& at, bool right) const {
+  const int n = rod_.mesh().edges();
+  const int e = right ? n - 1 : 0;
+  EndForces f;
+  f.edge = vertex(trial_, e + 1) - vertex(trial_, e);
+  f.length = f.edge.norm();
+  f.tangent = f.edge / f.length;
+  f.spin = carried_[right ? 1 : 0](at.y).angular;
+  f.edge_rate = Vector3d(at.y.segment<3>(velocity_of(e + 1)) - at.y.segment<3>(velocity_of(e))) - f.spin.cross(f.edge);
+  const SpatialRod::EndCell elastic = rod_.end_cell(trial_, right);
+  f.force = elastic.gradient;
+  f.by_place = elastic.hessian;
+  f.by_rate.setZero();
+  if (constants_.damping.bending_time == 0.0) return f;
+  const ViscousCell cell(*this, at, right ? n : 0);
+  if (!cell.exists) return f;
+  Eigen::Vector4d rate;
+  rate << f.edge_rate, at.rate[angle_of(e)] - f.spin.dot(f.tangent);
+  for (int j = 0; j < 2; ++j) {
+    PairGradient g;
+    PairHessian h;
+    const WeightedCurvature curvature = cell.curvature(j);
+    curvature.add_gradient(cell.inverse, g);
+    curvature.add_hessian(cell.inverse, h);
+    const Vector3d coupling = right ? h.a_theta_a : h.b_theta_b;
+    Eigen::Vector4d slope;
+    Eigen::Matrix4d hessian;
+    slope << (right ? g.a : g.b), (right ? g.theta_a : g.theta_b);
+    hessian << (right ? h.aa : h.bb), coupling, coupling.transpose(), (right ? h.theta_aa : h.theta_bb);
+    const double factor = cell.coefficient[static_cast<std::size_t>(j)];
+    f.force += factor * slope.dot(rate) * slope;
+    f.by_place += factor * (slope.dot(rate) * hessian + slope * (hessian * rate).transpose());
+    f.by_rate += factor * slope * slope.transpose();
+  }
+  return f;
+}
+
+namespace {
+
+Matrix3d skew_of(const Vector3d& a) {
+  Matrix3d m;
+  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return m;
+}
+
+}  // namespace
+
+Vector3d RodPart::mount_moment(const DaePoint& at, bool right) {
+  const EndForces f = end_forces(at, right);
+  return f.edge.cross(f.force.head<3>()) + f.force[3] * f.tangent;
+}
+
+// Turned together, edge and mount keep their energy: dE/d(turn of the mount) = -(e x g + t gamma) with the edge's force g and
+// the angle's gamma; and g turns with both, so that a turn of the mount alone does what a turn of the edge the other way does.
+RodPart::MountCell RodPart::mount_cell(const DaePoint& at, bool right) {
+  evaluate(at);
+  const EndForces f = end_forces(at, right);
+  const Vector3d g = f.force.head<3>();
+  const double gamma = f.force[3];
+  const Matrix3d across = (Matrix3d::Identity() - f.tangent * f.tangent.transpose()) / f.length;
+  // By the edge, its angle, and their rates, the mount being fixed or spinning as it is.
+  Eigen::Matrix4d rate_by_place = Eigen::Matrix4d::Zero();
+  rate_by_place.topLeftCorner<3, 3>() = -skew_of(f.spin);
+  rate_by_place.bottomLeftCorner<1, 3>() = -f.spin.transpose() * across;
+  const Eigen::Matrix4d by_place = f.by_place + f.by_rate * rate_by_place;
+  Eigen::Matrix<double, 4, 3> turned, turned_rate, spun;  // what a turn and a spin of both would do
+  turned << -skew_of(f.edge), f.tangent.transpose();
+  turned_rate << -skew_of(f.edge_rate), Eigen::RowVector3d::Zero();
+  spun << skew_of(f.edge), -f.tangent.transpose();
+  Eigen::Matrix<double, 4, 3> by_turn = -f.by_place * turned - f.by_rate * turned_rate;
+  // Relative rates at fixed spin: e' - w x e has nothing that turns with the mount but is seen from it.
+  by_turn.topRows<3>() -= skew_of(g);
+  const Eigen::Matrix<double, 4, 3> by_spin = f.by_rate * spun;
+  // M = e x g + t gamma.
+  const auto moment = [&](const auto& change) {
+    return (skew_of(f.edge) * change.template topRows<3>() + f.tangent * change.template bottomRows<1>()).eval();
+  };
+  Eigen::Matrix<double, 3, 4> by_edge = moment(by_place);
+  by_edge.leftCols<3>() += -skew_of(g) + gamma * across;
+  const Eigen::Matrix<double, 3, 4> by_edge_rate = moment(f.by_rate);
+  MountCell cell;
+  cell.moment = f.edge.cross(g) + gamma * f.tangent;
+  cell.moment_by_turn = moment(by_turn);
+  cell.moment_by_spin = moment(by_spin);
+  const double sign = right ? -1.0 : 1.0;  // e = sign (next - mount)
+  const auto spread = [&](const Eigen::Matrix<double, 3, 4>& m) {
+    Eigen::Matrix<double, 3, 7> wide;
+    wide << -sign * m.leftCols<3>(), sign * m.leftCols<3>(), m.col(3);
+    return wide;
+  };
+  cell.moment_by = spread(by_edge);
+  cell.moment_by_rate = spread(by_edge_rate);
+  const auto rows = [&](const Eigen::Matrix<double, 4, 3>& m) {
+    Eigen::Matrix<double, 7, 3> tall;
+    tall << -sign * m.topRows<3>(), sign * m.topRows<3>(), m.row(3);
+    return tall;
+  };
+  cell.rows_by_turn = rows(by_turn);
+  cell.rows_by_spin = rows(by_spin);
+  return cell;
+}
+
 bool RodPart::accept(const DaePoint& at) {
   take_unknowns(at.y);
+  set_mounts(at.y, base_);
   wire::accept(base_, band_);
   return false;
 }
@@ -602,7 +763,7 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
   const std::array<Vector3d, 2> moments = rod_.end_moments(trial_);
   for (std::size_t side = 0; side < 2; ++side) {
     const SpatialEnd& end = side == 0 ? rod_.properties().left : rod_.properties().right;
-    if (end.kind == SpatialEnd::Kind::free) continue;
+    if (end.kind == SpatialEnd::Kind::free || carried_[side]) continue;
     const int i = side == 0 ? 0 : vertices() - 1;
     result.mount_forces[side] = assembly_.gradient.segment<3>(block * i);
     if (!is_held(i, 0)) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,12 @@ struct RodTolerances {
   double angle = 1e-6;     ///< of twist [rad]
 };
 
+/// Where a mount that moves points, and how it turns, at given unknowns of the DAE.
+struct MountMotion {
+  Frame frame;  ///< direction of increasing arc length and director, in the world
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< [rad/s], in the world
+};
+
 /// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without inertia.
 ///                                                                                  theory.md (M.3), (M.4)
 ///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
@@ -74,6 +81,25 @@ class RodPart final : public numerics::DaePart {
 
   /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
+
+  /// Before `declare`: the mount of one end moves. The vertex there is no longer held by this part: a constraint has to.
+  void carry(bool right, std::function<MountMotion(const numerics::VectorView& y)> motion);
+  [[nodiscard]] bool is_carried(bool right) const { return static_cast<bool>(carried_[right ? 1 : 0]); }
+
+  /// What the rod does to a mount that moves, and how a turn and a spin of the mount act on the rod. Local unknowns: the
+  /// vertex at the mount (3), the next one (3), the angle of the edge between them; rows likewise.  theory.md (M.17)
+  struct MountCell {
+    Eigen::Vector3d moment;                     ///< of the rod on the mount [N m]
+    Eigen::Matrix<double, 3, 7> moment_by;      ///< by the local unknowns' places
+    Eigen::Matrix<double, 3, 7> moment_by_rate; ///< by their rates
+    Eigen::Matrix3d moment_by_turn, moment_by_spin;  ///< by turn and angular velocity of the mount
+    Eigen::Matrix<double, 7, 3> rows_by_turn, rows_by_spin;  ///< of the rod's rows
+  };
+  [[nodiscard]] MountCell mount_cell(const numerics::DaePoint& at, bool right);
+  /// Its moment alone, as of the last `residual` at that point.
+  [[nodiscard]] Eigen::Vector3d mount_moment(const numerics::DaePoint& at, bool right);
+  /// The angle of the edge beside an end.
+  [[nodiscard]] int end_angle(bool right) const { return angle_of(right ? vertices() - 2 : 0); }
 
   [[nodiscard]] int vertices() const { return rod_.mesh().vertices(); }
   [[nodiscard]] int position_of(int vertex) const { return x_ + 3 * vertex; }  ///< first of three unknowns
@@ -118,6 +144,9 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] bool bends_with_loss() const {
     return constants_.damping.bending_time > 0.0 || constants_.strands.act();
   }
+  struct EndForces;
+  [[nodiscard]] EndForces end_forces(const numerics::DaePoint& at, bool right) const;
+  void set_mounts(const numerics::VectorView& y, SpatialState& state) const;
   void evaluate(const numerics::DaePoint& at);
   void add_viscous(const numerics::DaePoint& at, Eigen::VectorXd& gradient);
   void add_viscous_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
@@ -145,6 +174,7 @@ class RodPart final : public numerics::DaePart {
   double strand_energy_ = 0.0;
   std::vector<Eigen::Vector2d> strand_rates_;  // z' by the last evaluation [1/(m s)]
   const numerics::SparseMatrix* pattern_ = nullptr;
+  std::array<std::function<MountMotion(const numerics::VectorView& y)>, 2> carried_;
   std::vector<int> band_slots_;  // of the lower band in the rows of v and theta, both triangles
   std::vector<int> rate_slots_;  // the same in the columns of v
   std::vector<int> diagonal_;    // of x, v: (x,x) (x,v) (v,v)

@@ -605,6 +605,22 @@ void SpatialRod::hold_mounts(RodAssembly& assembly) const {
   hold(block * mesh_.edges() + 3);
 }
 
+SpatialRod::EndCell SpatialRod::end_cell(const SpatialState& state, bool right) const {
+  const int n = mesh_.edges();
+  const Law law(properties_);
+  const Edge before = right ? edge_at(n - 1, mesh_, state, law) : mount_edge(properties_.left, state.left_mount, law);
+  const Edge after = right ? mount_edge(properties_.right, state.right_mount, law) : edge_at(0, mesh_, state, law);
+  const Cell cell = cell_at(right ? n : 0, n, before, after, state, law);
+  EndCell result;
+  if (!cell.bends && !cell.twists) return result;
+  const PairGradient g = gradient_of(cell, before, after);
+  const PairHessian h = hessian_of(cell, before, after);
+  const Vector3d coupling = right ? h.a_theta_a : h.b_theta_b;
+  result.gradient << (right ? g.a : g.b), (right ? g.theta_a : g.theta_b);
+  result.hessian << (right ? h.aa : h.bb), coupling, coupling.transpose(), (right ? h.theta_aa : h.theta_bb);
+  return result;
+}
+
 Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
   Eigen::Matrix3Xd result(3, mesh_.vertices());
   visit_cells(mesh_, state, Law(properties_),

@@ -124,6 +124,14 @@ class SpatialRod {
   /// rod about itself stays free: the caller must hold it.
   void hold_mounts(RodAssembly& assembly) const;
 
+  /// Gradient and Hessian of the cell at one end (bending and twisting against the mount) by the edge beside it and its
+  /// angle: at the left end those of the edge after, at the right end those of the edge before.
+  struct EndCell {
+    Eigen::Matrix<double, 4, 1> gradient = Eigen::Matrix<double, 4, 1>::Zero();  ///< edge vector [N], angle [N m]
+    Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
+  };
+  [[nodiscard]] EndCell end_cell(const SpatialState& state, bool right) const;
+
   /// Moment vector of every vertex, (3, vertices) [N m]: dE by a rigid rotation of all that follows the
   /// vertex, which is the moment that the part after it exerts on the part before; positive about z for
   /// turning left in the plane, with the torque as component along the wire. The end columns belong to the

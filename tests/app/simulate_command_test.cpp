@@ -69,6 +69,23 @@ TEST_F(SimulateCommand, AirTable) {
   EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
 }
 
+TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
+  for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
+    ASSERT_EQ(run(name, "--set duration_s=0.04 --set contact.solver.elements=24 --set contact.body.distance_mm=0.02"), 0)
+        << contents("log.txt");
+    const json s = summary();
+    EXPECT_EQ(s["kind"], "arm_contact");
+    const json& wire = s["models"][0];
+    EXPECT_TRUE(wire["finished"].get<bool>());
+    EXPECT_GT(wire["peak_force_N"].get<double>(), 0.1);
+    EXPECT_EQ(wire["largest_deflection_deg"].size(), 6u);
+    // The payload brings 0.025 J.
+    EXPECT_LT(std::abs(wire["energy_J"]["integrator"].get<double>()), 2e-3 * 0.025);
+    EXPECT_NE(contents("out/history.csv").find("joint_6_deflection_deg"), std::string::npos);
+    EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
+  }
+}
+
 TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   ASSERT_EQ(run("jemrms_step.toml", ""), 0) << contents("log.txt");
   const json s = summary();

@@ -29,6 +29,53 @@ TEST(ArmFile, ShippedArmsHaveTheirPublishedSums) {
   EXPECT_NEAR(loaded.arm.tree.mass(), 1280.0, 1e-9);
 }
 
+TEST(ArmFile, TheHeavySsrmsHasTheMassAndLengthOfHonda) {
+  const auto arm = shipped("ssrms_like_1800kg.toml");
+  // The base end effector, 243.66 kg, stands on the world.
+  EXPECT_NEAR(arm.arm.tree.mass() + 243.66, 1800.0, 1.0);
+  multibody::Kinematics kinematics(arm.arm.tree);
+  multibody::place(arm.arm.tree, arm.coordinates(arm.poses[0].angles), kinematics);
+  EXPECT_NEAR(multibody::frame_pose(arm.arm.tree, kinematics, arm.tip).p.x(), 17.6, 1e-3);
+}
+
+TEST(ArmFile, BodiesAreThoseOfTheirSources) {
+  struct Case {
+    const char* file;
+    double mass;
+    Eigen::Vector3d moments;
+  };
+  // HTV: a uniform cylinder of 16 t, 9.8 m, 4.4 m. Visitor: a uniform sphere of 1.3 m radius, rounded.
+  const double htv_axial = 0.5 * 16000.0 * 2.2 * 2.2, htv_across = 16000.0 * (3.0 * 2.2 * 2.2 + 9.8 * 9.8) / 12.0;
+  for (const Case& c : {Case{"htv_like.urdf", 16000.0, {htv_axial, htv_across, htv_across}},
+                        Case{"visitor_small.urdf", 1300.0, Eigen::Vector3d::Constant(0.4 * 1300.0 * 1.69)},
+                        Case{"air_table_body.urdf", 8.9, Eigen::Vector3d::Constant(0.16)},
+                        Case{"payload_abiko.urdf", 500.0, {415.0, 83.0, 415.0}}}) {
+    const auto robot = multibody::read_urdf(std::filesystem::path(SNARE_SOURCE_DIR) / "data" / "arms" / c.file);
+    double mass = 0.0;
+    Eigen::Vector3d moments = Eigen::Vector3d::Zero();
+    for (const auto& link : robot.links) {
+      mass += link.inertia.mass;
+      moments += link.inertia.about_own_centre().diagonal();
+    }
+    EXPECT_NEAR(mass, c.mass, 1e-9) << c.file;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(moments[k] / c.moments[k], 1.0, 0.03) << c.file;
+  }
+}
+
+TEST(ArmFile, VisitorsAtTheTipLowerTheFirstFrequency) {
+  // With a point mass far heavier than the arm the first frequency falls as 1/sqrt(mass): 16 t against 1.3 t.
+  const std::vector<multibody::Drive> locked(7, multibody::Drive::locked());
+  const auto first = [&](const std::string& name) {
+    const auto arm = shipped(name);
+    return multibody::natural_modes(arm.arm, arm.coordinates(arm.poses[0].angles), locked)[0].frequency;
+  };
+  const double bare = first("ssrms_like.toml"), visitor = first("ssrms_with_visitor.toml"), htv = first("ssrms_with_htv.toml");
+  EXPECT_LT(visitor, bare);
+  EXPECT_LT(htv, visitor);
+  EXPECT_LT(visitor / htv, std::sqrt(16000.0 / 1300.0) * 1.2);
+  EXPECT_GT(visitor / htv, 0.6 * std::sqrt(16000.0 / 1300.0));
+}
+
 TEST(ArmFile, JointsOfTheJemrmsAreThoseOfTable2) {
   const auto arm = shipped("jemrms_like.toml");
   const auto& pieces = arm.arm.joints[0].spring.pieces();

@@ -38,6 +38,12 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
     arm.joints[1].spring = multibody::DeflectionLaw(
         {{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous, multibody::DampingRate::motor);
     arm.joints[2].friction = {1.0, 2.0, 0.5, 0.3};
+    // Within the ramp of a wide jump, on both rates.
+    const auto reading = multibody::StiffnessReading::literal;
+    arm.joints[2].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {2.0, 30.0, 6.0}}, reading,
+                                                    multibody::DampingRate::deflection, 1.999);
+    arm.joints[1].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {2.0, 30.0, 6.0}}, reading,
+                                                    multibody::DampingRate::motor, 1.999);
     const int tip = arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip",
                                        {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
     std::vector<Drive> drives{Drive::holding(0.2, 8.0, 3.0), Drive::limp(), Drive::limp(), Drive::locked()};
@@ -49,6 +55,12 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
     Eigen::VectorXd y = test::random_values(random, system.size(), 1.0),
                     rate = test::random_values(random, system.size(), 1.0);
     if (base == Base::floating) y.segment<4>(3) *= 1.3;
+    const multibody::TreeBody& second = arm.tree.body(arm.joints[1].body);
+    const multibody::TreeBody& third = arm.tree.body(arm.joints[2].body);
+    multibody::ArmState state = part.state(y);
+    state.motor[1] = state.q[second.q_index] - 1.7;
+    state.motor[2] = state.q[third.q_index] + 1.6;
+    part.write_state(state, y);
     part.settle(2.0, y);
     const double c = 3.7;
     const Eigen::MatrixXd analytic = dense(system.jacobian({2.0, y, rate}, c));

@@ -69,6 +69,71 @@ TEST(DeflectionLaw, ReadsTable2BothWays) {
   }
 }
 
+TEST(DeflectionLaw, RampsReplaceTheJumpsOfTorqueAndDamping) {
+  const double degree = pi / 180.0, width = 1e-3 * degree;
+  for (const auto reading : {multibody::StiffnessReading::continuous, multibody::StiffnessReading::literal}) {
+    const auto plain = test::table2(1.0, reading);
+    const multibody::DeflectionLaw ramped(plain.pieces(), reading, multibody::DampingRate::deflection, width);
+    double torque = 0.0, energy = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      const double d = (i + 0.5) * 5e-6 * degree;
+      const int branch = ramped.branch_of(d), jumping = plain.branch_of(d);
+      const double now = ramped.torque(branch, d);
+      // No step of the torque beyond that of the ramp's slope, and its energy is the integral.
+      EXPECT_LT(now - torque, 5e-6 * degree * ramped.stiffness(branch) + 0.1);
+      torque = now;
+      energy += now * 5e-6 * degree;
+      if (std::abs(d - 0.04 * degree) > 0.5 * width && std::abs(d - 0.06 * degree) > 0.5 * width) {
+        EXPECT_NEAR(now, plain.torque(jumping, d), 1e-12);
+        EXPECT_EQ(ramped.damping(branch, d), plain.damping(jumping, d));
+        EXPECT_EQ(ramped.damping_slope(branch, d), 0.0);
+      }
+    }
+    const double end = 0.1 * degree;
+    EXPECT_NEAR(ramped.energy(ramped.branch_of(end), end), energy, 1e-6 * energy);  // midpoint rule, corners
+    // Half-way through a ramp both are half-way, on either side of zero.
+    for (const double sign : {1.0, -1.0}) {
+      const double d = sign * 0.04 * degree;
+      const int branch = ramped.branch_of(d);
+      EXPECT_NEAR(ramped.damping(branch, d) * degree, 0.5 * (48.9 + 87.3), 1e-9);
+      EXPECT_GT(sign * ramped.damping_slope(branch, d), 0.0);
+      if (reading == multibody::StiffnessReading::literal) {
+        EXPECT_NEAR(sign * ramped.torque(branch, d), 0.5 * (0.5 + 19.0), 0.25 * (475.0 - 12.5) * 1e-3 + 1e-9);
+      }
+    }
+  }
+  EXPECT_THROW(multibody::DeflectionLaw(test::table2(1.0).pieces(), multibody::StiffnessReading::literal,
+                                        multibody::DampingRate::deflection, 0.02 * degree),
+               std::invalid_argument);
+}
+
+TEST(ElasticJoint, LoadBetweenTheTorquesOfAJumpRestsOnIt) {
+  // 10 N m on a literal jump from 0.5 to 19 N m. With a width it comes to rest within it, with few events; as a true jump
+  // it ends in events without end, which is said.
+  const double degree = pi / 180.0;
+  for (const double width : {0.0, 4e-5, 4e-4, 4e-3}) {
+    const multibody::DeflectionLaw law(test::table2(1.0).pieces(), multibody::StiffnessReading::literal,
+                                       multibody::DampingRate::deflection, width * degree);
+    auto run = test::scenario(test::one_joint(200.0, 1.0, law), Drive::locked(), 20.0, 1e-7);
+    run.tolerances.motion = 1e-12;
+    run.loads.push_back(
+        {1, {{0.0, 0.0, 10.0}, Eigen::Vector3d::Zero()}, 0.0, 100.0, multibody::TimedLoad::Shape::constant});
+    const auto history = multibody::simulate(run);
+    if (width == 0.0) {
+      EXPECT_EQ(history.report.termination, numerics::Termination::step_too_small);
+      EXPECT_NE(history.report.message.find("stays at a jump"), std::string::npos) << history.report.message;
+      continue;
+    }
+    ASSERT_TRUE(history.report.usable()) << history.report.message;
+    EXPECT_NEAR(history.samples.back().deflection[0] / degree, 0.04, 0.5 * width);
+    EXPECT_NEAR(history.samples.back().joint_torque[0], 10.0, 1e-3);
+    EXPECT_LT(history.events.size(), 200U);
+    EXPECT_LT(history.statistics.steps, 10000);
+    EXPECT_LT(history.energy_error, 1e-4);
+    RecordProperty("events at a width of " + std::to_string(width), static_cast<int>(history.events.size()));
+  }
+}
+
 TEST(ElasticJoint, FrequenciesAreThoseOfTwoMasses) {
   const double H = 3.0, B = 5.0, K = 200.0;
   const auto arm = test::one_joint(H, B, multibody::DeflectionLaw::linear(K, 0.0));

@@ -1,0 +1,255 @@
+#include "app/commands.hpp"
+#include "app/experiment_input.hpp"
+#include "app/paraview.hpp"
+#include "app/report_page.hpp"
+#include "app/simulate_kinds.hpp"
+#include "coupling/arm_contact_scenario.hpp"
+#include "numerics/csv.hpp"
+#include "numerics/files.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <numbers>
+
+namespace snare::app {
+
+namespace {
+
+using coupling::ArmContactScenario;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+struct ModelRun {
+  std::string name;
+  coupling::Motion motion;
+  std::vector<MotionSample> samples;
+  MotionResult result;
+};
+
+/// Force of the arm on what it carries, world axes [N].
+Vector3d carried_force(const ModelRun& run, const MotionSample& s) {
+  if (!s.welds.empty()) return s.welds.front().force;
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = 0; k < run.motion.mounts.size(); ++k) sum += s.mount_forces[k];
+  return sum;
+}
+
+double deflection(const ModelRun& run, const MotionSample& s, int joint) {
+  return multibody::deflection(run.motion.arms.front().arm, s.arms.front().state, joint);
+}
+
+ModelRun run_model(const ArmContactScenario& scenario, const coupling::WireModel& model, Console& console) {
+  ModelRun run{model.name, coupling::motion_of(scenario, model), {}, {}};
+  const coupling::MotionOptions& options = scenario.contact.options;
+  run.result = coupling::simulate(run.motion, options, [&](const MotionSample& s) {
+    run.samples.push_back(s);
+    console.progress(fmt::format("{}: {:.3f} of {:.3f} s", model.name, s.time, options.duration));
+    return interrupted();
+  });
+  console.end_progress();
+  return run;
+}
+
+void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
+  std::vector<std::string> columns{"model", "time_s", "force_N", "penetration_mm", "contact_arc_mm"};
+  for (const char* what : {"body_x_mm", "body_y_mm", "body_z_mm", "body_vx_m_s", "body_vy_m_s", "body_vz_m_s",
+                           "body_spin_x_rad_s", "body_spin_y_rad_s", "body_spin_z_rad_s", "carried_x_N", "carried_y_N",
+                           "carried_z_N"})
+    columns.emplace_back(what);
+  const multibody::ElasticArm& arm = runs.front().motion.arms.front().arm;
+  for (const multibody::ElasticJoint& j : arm.joints) {
+    for (const char* what : {"motor_deg", "deflection_deg", "torque_Nm"}) columns.push_back(j.name + "_" + what);
+  }
+  for (const char* what : {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"})
+    columns.emplace_back(what);
+  numerics::CsvWriter csv(file, columns);
+  for (const ModelRun& run : runs) {
+    for (const MotionSample& s : run.samples) {
+      const coupling::ContactSample& c = s.contacts.front();
+      const multibody::RigidBodyState& b = s.bodies.front();
+      const Vector3d carried = carried_force(run, s);
+      std::vector<numerics::CsvCell> row{std::string_view(run.name), s.time, c.normal_force, -1e3 * c.gap, 1e3 * c.arc};
+      for (const double x : {b.position.x(), b.position.y(), b.position.z()}) row.emplace_back(1e3 * x);
+      for (const Vector3d* v : {&b.velocity, &b.spin, &carried}) {
+        for (int k = 0; k < 3; ++k) row.emplace_back((*v)[k]);
+      }
+      const MotionSample::Arm& a = s.arms.front();
+      for (int j = 0; j < arm.motors(); ++j) {
+        for (const double x : {a.state.motor[j] / degree, deflection(run, s, j) / degree, a.joint_torque[j]})
+          row.emplace_back(x);
+      }
+      const coupling::EnergyBalance& e = s.energy;
+      for (const double x : {e.kinetic, e.strain, e.potential, e.dissipated, e.impacts, e.work, e.integrator})
+        row.emplace_back(x);
+      csv.row(row);
+    }
+  }
+  csv.commit();
+}
+
+json vector_json(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json summary_of(const ModelRun& run) {
+  const MotionResult& r = run.result;
+  const MotionSample& first = run.samples.front();
+  const MotionSample& last = run.samples.back();
+  json events = json::array();
+  int touches = 0;
+  for (const coupling::MotionEvent& e : r.events) {
+    const bool touch = e.kind == coupling::MotionEvent::Kind::touch;
+    touches += touch ? 1 : 0;
+    events.push_back({{"time_s", e.time}, {"what", touch ? "touch" : "lift_off"}});
+  }
+  json deflections = json::object();
+  for (int j = 0; j < run.motion.arms.front().arm.motors(); ++j) {
+    double largest = 0.0;
+    for (const MotionSample& s : run.samples) largest = std::max(largest, std::abs(deflection(run, s, j)));
+    deflections[run.motion.arms.front().arm.joints[static_cast<std::size_t>(j)].name] = largest / degree;
+  }
+  const numerics::IdaStatistics& n = r.statistics;
+  return {{"model", run.name},
+          {"finished", r.report.usable()},
+          {"message", r.report.usable() ? json() : json(r.report.message)},
+          {"time_s", r.report.time},
+          {"peak_force_N", r.peak_force.front()},
+          {"impulse_Ns", vector_json(r.impulse.front())},
+          {"touches", touches},
+          {"in_contact_at_the_end", last.contacts.front().closed},
+          {"velocity_before_m_s", vector_json(first.bodies.front().velocity)},
+          {"velocity_after_m_s", vector_json(last.bodies.front().velocity)},
+          {"spin_before_rad_s", vector_json(first.bodies.front().spin)},
+          {"spin_after_rad_s", vector_json(last.bodies.front().spin)},
+          {"largest_deflection_deg", deflections},
+          {"energy_J",
+           {{"kinetic", r.energy.kinetic},
+            {"strain", r.energy.strain},
+            {"potential", r.energy.potential},
+            {"dissipated", r.energy.dissipated},
+            {"impacts", r.energy.impacts},
+            {"work", r.energy.work},
+            {"integrator", r.energy.integrator}}},
+          {"momentum_error_Ns", vector_json(r.momentum_error)},
+          {"largest_penetration_m", r.largest_penetration},
+          {"largest_drift", r.largest_drift},
+          {"steps", n.steps},
+          {"jacobians", n.jacobians},
+          {"restarts", n.restarts},
+          {"wall_s", r.wall_seconds},
+          {"real_time_factor", r.wall_seconds > 0.0 ? r.report.time / r.wall_seconds : 0.0},
+          {"events", events}};
+}
+
+Curve curve_of(const std::string& name, const ModelRun& run, int colour, const std::function<double(const MotionSample&)>& value) {
+  Curve curve{name, {}, {}, CurveStyle::line, colour};
+  for (const MotionSample& s : run.samples) {
+    curve.x.push_back(s.time);
+    curve.y.push_back(value(s));
+  }
+  return curve;
+}
+
+std::string report_of(const ArmContactScenario& scenario, const std::vector<ModelRun>& runs, const json& summary) {
+  ReportPage page(scenario.title, scenario.source);
+  page.heading("Summary");
+  Table table{"",
+              {{"Model", ColumnKind::code},
+               {"Peak force [N]", ColumnKind::number},
+               {"Impulse along y [N s]", ColumnKind::number},
+               {"Velocity after, y [m/s]", ColumnKind::number},
+               {"Touches", ColumnKind::number},
+               {"Integrator's energy [J]", ColumnKind::number},
+               {"Steps", ColumnKind::number},
+               {"Real-time factor", ColumnKind::number}},
+              {}};
+  for (const json& m : summary["models"]) {
+    table.rows.push_back(
+        {m["model"].get<std::string>(), format_significant(m["peak_force_N"].get<double>()),
+         format_significant(m["impulse_Ns"][1].get<double>()), format_significant(m["velocity_after_m_s"][1].get<double>()),
+         std::to_string(m["touches"].get<int>()), format_significant(m["energy_J"]["integrator"].get<double>(), 2),
+         std::to_string(m["steps"].get<long>()), format_significant(m["real_time_factor"].get<double>())});
+    if (!m["finished"].get<bool>())
+      page.callout(m["model"].get<std::string>() + ": " + m["message"].get<std::string>(), Tone::bad);
+  }
+  page.table(table);
+  page.heading("Time histories");
+  PlotSpecification force{"Contact force", {"time", "s"}, {"force", "N"}};
+  PlotSpecification velocity{"Body's velocity along the push", {"time", "s"}, {"velocity y", "m/s"}};
+  int colour = 0;
+  for (const ModelRun& run : runs) {
+    force.curves.push_back(curve_of(run.name, run, colour, [](const MotionSample& s) { return s.contacts.front().normal_force; }));
+    velocity.curves.push_back(curve_of(run.name, run, colour++, [](const MotionSample& s) { return s.bodies.front().velocity.y(); }));
+  }
+  page.line_plot(force);
+  page.line_plot(velocity);
+  for (const ModelRun& run : runs) {
+    PlotSpecification joints{"Deflection of the joints: " + run.name, {"time", "s"}, {"deflection", "deg"}};
+    PlotSpecification motors{"Motors: " + run.name, {"time", "s"}, {"angle from the start", "deg"}};
+    const multibody::ElasticArm& arm = run.motion.arms.front().arm;
+    for (int j = 0; j < arm.motors(); ++j) {
+      const std::string& name = arm.joints[static_cast<std::size_t>(j)].name;
+      joints.curves.push_back(curve_of(name, run, j, [&run, j](const MotionSample& s) { return deflection(run, s, j) / degree; }));
+      const double start = run.samples.front().arms.front().state.motor[j];
+      motors.curves.push_back(
+          curve_of(name, run, j, [j, start](const MotionSample& s) { return (s.arms.front().state.motor[j] - start) / degree; }));
+    }
+    page.line_plot(joints);
+    page.line_plot(motors);
+  }
+  page.footer(fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
+  return page.html();
+}
+
+}  // namespace
+
+ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  const ArmContactScenario scenario = coupling::read_arm_contact_scenario(file, overrides_of(options));
+  std::vector<ModelRun> runs;
+  ExitStatus status = ExitStatus::done;
+  for (const coupling::WireModel& model : scenario.contact.models) {
+    runs.push_back(run_model(scenario, model, console));
+    const numerics::IdaReport& report = runs.back().result.report;
+    if (report.usable()) continue;
+    console.complain(fmt::format("{}: {} (what was reached is kept)", model.name, report.message));
+    status = ExitStatus::solver_stopped;
+    if (interrupted()) break;
+  }
+  json summary{{"schema", "snare-summary/1"}, {"kind", "arm_contact"},
+               {"title", scenario.title},     {"source", scenario.source},
+               {"version", version()},        {"duration_s", scenario.contact.options.duration},
+               {"models", json::array()}};
+  for (const ModelRun& run : runs) summary["models"].push_back(summary_of(run));
+  write_history(options.out / "history.csv", runs);
+  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
+  if (scenario.contact.paraview) {
+    for (const ModelRun& run : runs) {
+      std::vector<ParaviewFrame> frames;
+      for (const MotionSample& s : run.samples) frames.push_back({s.time, s.wires});
+      write_paraview(options.out, run.name, frames);
+    }
+  }
+  if (options.json) {
+    std::cout << summary.dump(1) << '\n';
+    return status;
+  }
+  for (const json& m : summary["models"]) {
+    console.say(fmt::format("{}: peak {:.4g} N, impulse {:.4g} N s, velocity {:.4g} m/s after; {} steps, {:.3g} times real time",
+                            m["model"].get<std::string>(), m["peak_force_N"].get<double>(), m["impulse_Ns"][1].get<double>(),
+                            m["velocity_after_m_s"][1].get<double>(), m["steps"].get<long>(),
+                            m["real_time_factor"].get<double>()));
+  }
+  console.say(fmt::format("wrote {0}/history.csv, summary.json, report.html", options.out.string()));
+  return status;
+}
+
+}  // namespace snare::app
