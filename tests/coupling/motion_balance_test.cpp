@@ -266,6 +266,31 @@ TEST(MotionState, AnEndedMotionGoesOn) {
   EXPECT_LT((on.last.unknowns.head(3 * 17) - through.last.unknowns.head(3 * 17)).lpNorm<Eigen::Infinity>(), 1e-6);
 }
 
+TEST(MotionState, AFailureKeepsWhatWasReached) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  motion.contacts[0].friction = {};
+  // A law that breaks down at some depth.
+  motion.contacts[0].law = [](double depth, double) -> Vector3d {
+    if (depth > 2e-5) return Vector3d::Constant(std::nan(""));
+    return {std::max(0.0, 1e3 * depth), depth > 0.0 ? 1e3 : 0.0, 0.0};
+  };
+  MotionOptions options;
+  options.duration = 0.05;
+  options.output_interval = 1e-4;
+  double written = 0.0;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    written = s.time;
+    return false;
+  });
+  EXPECT_FALSE(result.report.usable());
+  EXPECT_GT(result.report.time, 1e-3);
+  EXPECT_LT(result.report.time, 0.02);
+  EXPECT_NEAR(written, result.report.time, options.output_interval);
+  EXPECT_EQ(result.last.time, result.report.time);
+  EXPECT_TRUE(result.last.unknowns.allFinite());
+  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact normal force")));
+}
+
 TEST(MotionState, OfAnotherMotionIsRefused) {
   const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
   MotionOptions options;
