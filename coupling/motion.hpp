@@ -93,7 +93,7 @@ struct MotionOptions {
   double spin_tolerance = 1e-5;           ///< of bodies [rad/s]
   double force_tolerance = 1e-2;     ///< [N], of multipliers: for the Newton iteration only
   int max_order = 2;                 ///< of IDA: see theory.md (M.2)
-  double newton_share = 0.01;        ///< of these tolerances that Newton's method may leave at a step, in (0, 1)
+  double newton_share = 0.003;       ///< of these tolerances that Newton's method may leave at a step, in (0, 1)
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   int max_events = 100000;                                    ///< more are a failure
   /// At every multiple of this the integration begins anew at first order from what a MotionState holds, so that going on

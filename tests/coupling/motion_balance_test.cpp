@@ -152,6 +152,38 @@ TEST(MotionBalance, EnergyOfAConservativeImpactStays) {
   EXPECT_LT(std::abs(result.energy.integrator), 1e-3 * 0.5 * 0.05 * motion.bodies[0].start.velocity.squaredNorm());
 }
 
+// A hook hangs on the wire by a bar of 4 mm, swings and slides to and fro for a minute.
+TEST(SlowMotionBalance, NothingDriftsInAMinute) {
+  wire::RodInMotion rod = soft_rod(End::clamp, End::clamp);
+  rod.elements = 12;
+  Motion motion = oblique_impact(rod);
+  motion.gravity = {0.0, -9.81, 0.0};
+  motion.bodies[0].start.position = {0.08, 0.003 - 0.05, 0.0};
+  motion.bodies[0].start.velocity = {0.1, 0.0, 0.0};
+  motion.contacts[0].shape = std::make_shared<EndlessCylinder>(0.002);
+  motion.contacts[0].shape_position = {0.0, 0.05, 0.0};
+  motion.contacts[0].friction = {};
+  MotionOptions options;
+  options.duration = 60.0;
+  options.output_interval = 0.01;
+  double swing = 0.0;
+  double closed = 0.0;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    if (s.time > 50.0) swing = std::max(swing, std::abs(s.bodies[0].spin.z()));
+    closed += s.contacts[0].closed ? 0.01 : 0.0;
+    return false;
+  });
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  EXPECT_GT(closed, 55.0);  // [s]: it is a test of the constraint,
+  EXPECT_GT(swing, 0.1);    // and of one that moves [rad/s]
+  EXPECT_LT(result.largest_gap, 1e-9);
+  EXPECT_LT(result.largest_drift, 1e-9);
+  EXPECT_LT(result.largest_penetration, 1e-6);
+  const double weight = 0.052 * 9.81;
+  EXPECT_LT(result.momentum_error.norm(), 1e-6 * weight * options.duration);
+  EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * weight * options.duration * length);
+}
+
 /// Everything that a sample has, to compare bits.
 std::vector<double> numbers(const MotionSample& s) {
   std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated, s.energy.integrator};
@@ -232,6 +264,31 @@ TEST(MotionState, AnEndedMotionGoesOn) {
   // The start at first order in between costs some errors of a step.
   EXPECT_LT((on.impulse[0] - through.impulse[0]).norm(), 1e-4 * through.impulse[0].norm());
   EXPECT_LT((on.last.unknowns.head(3 * 17) - through.last.unknowns.head(3 * 17)).lpNorm<Eigen::Infinity>(), 1e-6);
+}
+
+TEST(MotionState, AFailureKeepsWhatWasReached) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  motion.contacts[0].friction = {};
+  // A law that breaks down at some depth.
+  motion.contacts[0].law = [](double depth, double) -> Vector3d {
+    if (depth > 2e-5) return Vector3d::Constant(std::nan(""));
+    return {std::max(0.0, 1e3 * depth), depth > 0.0 ? 1e3 : 0.0, 0.0};
+  };
+  MotionOptions options;
+  options.duration = 0.05;
+  options.output_interval = 1e-4;
+  double written = 0.0;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    written = s.time;
+    return false;
+  });
+  EXPECT_FALSE(result.report.usable());
+  EXPECT_GT(result.report.time, 1e-3);
+  EXPECT_LT(result.report.time, 0.02);
+  EXPECT_NEAR(written, result.report.time, options.output_interval);
+  EXPECT_EQ(result.last.time, result.report.time);
+  EXPECT_TRUE(result.last.unknowns.allFinite());
+  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact normal force")));
 }
 
 TEST(MotionState, OfAnotherMotionIsRefused) {

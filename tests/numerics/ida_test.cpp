@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 namespace snare::numerics {
 namespace {
@@ -175,6 +178,66 @@ TEST(Ida, AnalysesThePatternAgainOnlyWhenAPartAsks) {
   ASSERT_TRUE(integrate(ida, 0.5).usable());
   EXPECT_GT(ida.statistics().analyses, 1);
   EXPECT_NEAR(ida.y()[0], std::cos(1.0), 1e-8);
+}
+
+// The integral of v by the formula that makes x' = v: it is x - x(0), however large the error of both.
+TEST(Ida, IntegralsAgreeWithWhatIsLinear) {
+  Oscillator part(2.0);
+  DaeSystem system({&part});
+  IdaOptions loose;
+  loose.relative_tolerance = 1e-3;
+  loose.newton_share = 1e-6;
+  Ida ida(system, loose,
+          {2, [](const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) { rates << at.y[1], at.y[0] * at.y[0]; }});
+  ida.start(0.0, displaced(), displaced_rate);
+  double worst = 0.0;
+  double within = 0.0;
+  const IdaReport report = integrate(ida, 3.0, [&](const Ida& at) {
+    worst = std::max(worst, std::abs(at.integrals()[0] - (at.y()[0] - 1.0)));
+    const double t = at.time() - 0.4 * at.last_step();
+    within = std::max(within, std::abs(at.interpolate_integrals(t)[0] - (at.interpolate(t)[0] - 1.0)));
+    return false;
+  });
+  ASSERT_TRUE(report.usable()) << report.message;
+  EXPECT_GT(std::abs(ida.y()[0] - std::cos(6.0)), 1e-6);  // loose
+  EXPECT_LT(worst, 1e-8);                                 // Newton's method leaves 1e-9 at a step
+  EXPECT_LT(within, 1e-8);
+  EXPECT_NEAR(ida.integrals()[1], 1.5 + std::sin(12.0) / 8.0, 1e-2);
+  // A start goes on from where they are.
+  const Eigen::VectorXd so_far = ida.integrals();
+  ida.start(ida.time(), ida.y(), ida.rate());
+  EXPECT_EQ(ida.integrals(), so_far);
+  ASSERT_TRUE(integrate(ida, 4.0).usable());
+  EXPECT_NEAR(ida.integrals()[0], ida.y()[0] - 1.0, 1e-8);
+}
+
+// A single unknown among many keeps its own tolerance: blocks count alike in the error, every unknown in Newton's method.
+TEST(Ida, ASmallBlockIsNotLostAmongLargeOnes) {
+  std::vector<std::unique_ptr<Oscillator>> quiet;
+  std::vector<DaePart*> parts;
+  Oscillator part(2.0);
+  parts.push_back(&part);
+  DaeSystem alone(parts);
+  for (int k = 0; k < 100; ++k) {
+    quiet.push_back(std::make_unique<Oscillator>(1e-3));
+    parts.push_back(quiet.back().get());
+  }
+  DaeSystem many(parts);
+  const auto error = [](DaeSystem& system) {
+    IdaOptions options;
+    options.relative_tolerance = 1e-6;
+    Ida ida(system, options);
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(system.size());
+    Eigen::VectorXd rate = y;
+    y.head<3>() = displaced();
+    rate.head<3>() = displaced_rate;
+    ida.start(0.0, y, rate);
+    EXPECT_TRUE(integrate(ida, 3.0).usable());
+    return std::abs(ida.y()[0] - std::cos(6.0));
+  };
+  // One of 101 blocks: a tenth of the weight it has alone, and so a few times its error.
+  EXPECT_LT(error(many), 30.0 * error(alone));
+  EXPECT_LT(error(many), 1e-3);
 }
 
 TEST(Dae, JacobianOfAPartMatchesDifferences) {
