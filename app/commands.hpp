@@ -34,6 +34,9 @@ namespace snare::app {
 /// A dynamic scenario: history.csv, summary.json, report.html, ParaView files on request.
 [[nodiscard]] ExitStatus run_simulate(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
 
+/// Frequency and damping from free vibrations: ringdown.json, ringdown.csv, report.html.
+[[nodiscard]] ExitStatus run_ringdown(const std::filesystem::path& ringdown, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

@@ -58,6 +58,8 @@ const Verb verbs[] = {
      snare::app::run_compare},
     {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml", "scenario file",
      true, "snare simulate data/scenarios/air_table.toml --out out/air_table", snare::app::run_simulate},
+    {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,
+     "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
