@@ -4,6 +4,7 @@
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
 #include "validation/distil_checks.hpp"
+#include "validation/linked_motion_checks.hpp"
 #include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
 #include "validation/trace_checks.hpp"
@@ -64,6 +65,7 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   for (validation::Check& check : validation::motion_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::air_table_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::arm_checks(data_directory() / "arms")) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::linked_motion_checks(data_directory())) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   for (validation::Check& check : validation::tracing_checks(
