@@ -6,6 +6,7 @@
 #include "validation/distil_checks.hpp"
 #include "validation/contact_law_checks.hpp"
 #include "validation/friction_checks.hpp"
+#include "validation/linked_motion_checks.hpp"
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
@@ -70,6 +71,7 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   for (validation::Check& check : validation::contact_law_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::air_table_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::arm_checks(data_directory() / "arms")) checks.push_back(std::move(check));
+  for (validation::Check& check : validation::linked_motion_checks(data_directory())) checks.push_back(std::move(check));
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   for (validation::Check& check : validation::tracing_checks(

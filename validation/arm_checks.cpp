@@ -229,9 +229,10 @@ std::vector<Row> amplitude_rows() {
       const double x = A * std::sin(s);
       return A * std::cos(s) / std::sqrt(2.0 * (energy(A) - energy(x)) / H);
     };
+    // The integrand is smooth but for the law's corner.
     const double corner = A > a ? std::asin(a / A) : 0.5 * pi;
-    // The last stretch against s = pi/2 is cut where the difference of the energies has lost half its digits.
-    const double period = 4.0 * (integral(integrand, 0.0, corner, 400) + integral(integrand, corner, 0.5 * pi, 400));
+    double period = 4.0 * integral(integrand, 0.0, corner, 400);
+    if (A > a) period += 4.0 * integral(integrand, corner, 0.5 * pi, 400);
     const ElasticArm arm = one_joint_arm(H, 1.0, table2_law(0.0, StiffnessReading::continuous));
     auto run = at_rest(arm, Drive::locked(), 40.0, 1e-10);
     run.initial.q[0] = A;
@@ -313,7 +314,7 @@ std::vector<Row> jump_rows() {
   }
   // A load of 10 N m between the torques of the literal jump (0.5 and 19 N m): Filippov's solution rests at the jump.
   for (const double w : {width, 0.1 * width}) {
-    auto run = at_rest(one_joint_arm(inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)), Drive::locked(), 120.0, 1e-7);
+    auto run = at_rest(one_joint_arm(0.01 * inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)), Drive::locked(), 20.0, 1e-7);
     run.tolerances.motion = 1e-12;
     run.loads.push_back({1, {{0.0, 0.0, 10.0}, Vector3d::Zero()}, 0.0, 1e3, multibody::TimedLoad::Shape::constant});
     const ArmHistory history = multibody::simulate(run);
@@ -323,8 +324,8 @@ std::vector<Row> jump_rows() {
                        history.samples.back().deflection[0] / degree + usable, ErrorKind::absolute, 0.5 * w / degree));
     rows.push_back(row(name + "torque at rest", "N m", "the load", 10.0, history.samples.back().joint_torque[0] + usable,
                        ErrorKind::relative, 1e-3));
-    rows.push_back(row(name + "integrator's steps in 120 s", "", "no thrashing", 0.0,
-                       static_cast<double>(history.statistics.steps) + usable, ErrorKind::absolute, 20000.0));
+    rows.push_back(row(name + "integrator's steps in 20 s", "", "no thrashing", 0.0,
+                       static_cast<double>(history.statistics.steps) + usable, ErrorKind::absolute, 10000.0));
   }
   return rows;
 }
@@ -408,7 +409,7 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     joint.back_drive = 0.0;
   }
   const Vector3d impulse(0.0, 0.5, 0.3);
-  auto run = multibody::tip_impulse(arm, pose, multibody::Hold::limp, impulse, 1e-3, 30.0);
+  auto run = multibody::tip_impulse(arm, pose, multibody::Hold::limp, impulse, 1e-5, 30.0);
   run.ida.relative_tolerance = 1e-9;
   run.tolerances = {1e-13, 1e-13};
   const ArmHistory history = multibody::simulate(run);
@@ -424,7 +425,7 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     mass(i, i) += joint.motor_inertia;
   }
   const double usable = history.report.usable() ? 0.0 : nan;
-  rows.push_back(row("SSRMS limp without friction, 0.58 N s in 1 ms at the tip: work of the push", "J", "p H^-1 p/2", links,
+  rows.push_back(row("SSRMS limp without friction, 0.58 N s in 10 us at the tip: work of the push", "J", "p H^-1 p/2", links,
                      history.samples.back().work.loads + usable, ErrorKind::relative, 1e-3));
   rows.push_back(row("the same 30 s later: energy left", "J", "p (H + B)^-1 p/2", 0.5 * p.dot(mass.ldlt().solve(p)),
                      history.samples.back().energy + usable, ErrorKind::relative, 1e-2));

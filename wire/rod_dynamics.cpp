@@ -139,11 +139,11 @@ struct RodPart::ViscousCell {
   [[nodiscard]] LocalMatrix rate_by_place(bool right) const {
     LocalMatrix m = LocalMatrix::Zero();
     if (spin.isZero(0.0)) return m;
-    const double length = edge.norm();
-    const Vector3d t = edge / length;
+    const double size = edge.norm();
+    const Vector3d t = edge / size;
     Matrix3d spinning;
     spinning << 0.0, -spin.z(), spin.y(), spin.z(), 0.0, -spin.x(), -spin.y(), spin.x(), 0.0;
-    const Vector3d along = (spin - spin.dot(t) * t) / length;
+    const Vector3d along = (spin - spin.dot(t) * t) / size;
     // At the left end rate(8..10) -= spin x (x_1 - x_0); at the right one rate(0..2) += spin x (x_n - x_{n-1}).
     const int row = right ? 0 : 8, angle = right ? 3 : 7, first = right ? 0 : 4;
     const double sign = right ? 1.0 : -1.0;

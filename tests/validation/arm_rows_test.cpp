@@ -1,6 +1,7 @@
 // The rows of the arms that take seconds under the sanitizers; `snare validate` has all.
 
 #include "validation/arm_checks.hpp"
+#include "validation/linked_motion_checks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,11 @@ TEST(ArmRows, FrequenciesAreThoseOfTwoMasses) { expect_within(arm_frequency_rows
 TEST(ArmRows, StiffGearsGiveTheRigidArm) { expect_within(rigid_limit_rows()); }
 TEST(ArmRows, PeriodFollowsTheAmplitude) { expect_within(amplitude_rows()); }
 TEST(ArmRows, FloatingBaseAnswersItsLink) { expect_within(floating_base_rows()); }
+TEST(LinkedMotionRows, WeldedBodiesAreASymmetricTop) { expect_within(welded_top_rows()); }
+TEST(LinkedMotionRows, SpinningWirePressesOnItsMounts) { expect_within(moving_mount_rows()); }
+TEST(SlowLinkedMotionRows, CapturesKeepTheirBalances) {
+  expect_within(capture_rows(std::string(SNARE_SOURCE_DIR) + "/data"));
+}
 TEST(SlowArmRows, EnergyAndMomentumStay) { expect_within(arm_conservation_rows()); }
 TEST(SlowArmRows, JumpsAreOneEventEach) { expect_within(jump_rows()); }
 TEST(SlowArmRows, JointStepVibratesAsTable2Says) { expect_within(joint_step_rows(arms)); }

@@ -1,0 +1,158 @@
+#include "validation/linked_motion_checks.hpp"
+
+#include "coupling/arm_contact_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace snare::validation {
+
+namespace {
+
+using coupling::Motion;
+using coupling::MotionBody;
+using coupling::MotionCarrier;
+using coupling::MotionOptions;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using Eigen::Vector3d;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Row row(const std::string& name, const std::string& unit, const std::string& source, double reference, double value,
+        ErrorKind kind, double limit) {
+  return {"linked motion", name, unit, source, reference, value, kind, limit};
+}
+
+MotionOptions fine(double duration) {
+  MotionOptions o;
+  o.duration = o.output_interval = duration;
+  o.relative_tolerance = 1e-8;
+  o.position_tolerance = o.angle_tolerance = 1e-11;
+  o.velocity_tolerance = o.spin_tolerance = 1e-8;
+  o.max_order = 5;
+  return o;
+}
+
+MotionBody block(double mass, const Vector3d& moments, const Vector3d& position) {
+  MotionBody body;
+  body.properties.mass = mass;
+  body.properties.inertia = moments.asDiagonal();
+  body.start.position = position;
+  return body;
+}
+
+}  // namespace
+
+// Two welded bodies of one symmetry axis are a free symmetric top: seen from it w turns about the axis with
+// (I3 - I1)/I1 w3, and the axis goes round the momentum L with L/I1, so that the weld's force is m r L w1/I1.
+std::vector<Row> welded_top_rows() {
+  constexpr double duration = 10.0, w1 = 0.5, w3 = 2.0, m = 3.0, r = 1.0 / 3.0;
+  constexpr double I1 = 0.3 + 0.4 + 2.0 * 0.25 + m * r * r, I3 = 0.2 + 0.25;
+  Motion motion;
+  motion.bodies = {block(2.0, {0.3, 0.3, 0.2}, {0.0, 0.0, 0.5}), block(m, {0.4, 0.4, 0.25}, {0.0, 0.0, -r})};
+  const Vector3d spin(w1, 0.0, w3);
+  motion.bodies[0].start.spin = spin;
+  motion.bodies[0].start.velocity = spin.cross(motion.bodies[0].start.position);
+  coupling::MotionWeld weld;
+  weld.carrier = {MotionCarrier::Kind::body, 0, 0};
+  weld.body = 1;
+  motion.welds = {weld};
+  MotionSample last;
+  const MotionResult result = coupling::simulate(motion, fine(duration), [&](const MotionSample& s) {
+    last = s;
+    return false;
+  });
+  const double usable = result.report.usable() ? 0.0 : nan;
+  const double angle = (I3 - I1) / I1 * w3 * duration;
+  const double L = std::hypot(I1 * w1, I3 * w3);
+  return {row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", w1 * std::cos(angle),
+              last.bodies[1].spin.x() + usable, ErrorKind::absolute, 1e-6),
+          row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", w1 * std::sin(angle),
+              last.bodies[1].spin.y() + usable, ErrorKind::absolute, 1e-6),
+          row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1", m * r * L * w1 / I1,
+              last.welds[0].force.norm() + usable, ErrorKind::relative, 1e-5),
+          row("two welded bodies, largest gap of the weld", "m", "welded", 0.0, result.largest_drift + usable,
+              ErrorKind::absolute, 1e-8),
+          row("two welded bodies, integrator's energy over the energy", "", "conservation", 0.0,
+              result.energy.integrator / result.energy.kinetic + usable, ErrorKind::absolute, 1e-6)};
+}
+
+// A straight wire on a heavy body that spins about its middle: EA u'' = -m w^2 x between fixed ends, N = m w^2 (l^2/24 -
+// x^2/2), so that either mount presses with m w^2 l^2/12.
+std::vector<Row> moving_mount_rows() {
+  constexpr double length = 0.2, spin = 6.0;
+  wire::RodInMotion rod;
+  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-3;
+  rod.properties.torsional_stiffness = 8e-4;
+  rod.properties.axial_stiffness = 1e3;
+  rod.properties.right.position = {length, 0.0, 0.0};
+  rod.mass_per_length = 0.01;
+  rod.length = length;
+  rod.elements = 60;
+  rod.damping.axial_time = 2e-3;
+  rod.damping.bending_time = 1e-2;
+  Motion motion;
+  const Vector3d middle(0.5 * length, 0.0, 0.0);
+  motion.wires = {{"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}), Eigen::Matrix3Xd::Zero(3, 61)}};
+  for (int i = 0; i <= 60; ++i)
+    motion.wires[0].velocities.col(i) = spin * Vector3d::UnitZ().cross(motion.wires[0].positions.col(i) - middle);
+  motion.bodies = {block(1e4, Vector3d::Constant(1e4), middle)};
+  motion.bodies[0].start.spin = {0.0, 0.0, spin};
+  for (const bool right : {false, true}) {
+    coupling::MotionMount mount;
+    mount.right = right;
+    mount.carrier = {MotionCarrier::Kind::body, 0, 0};
+    motion.mounts.push_back(mount);
+  }
+  MotionOptions options = fine(0.5);
+  MotionSample last;
+  const MotionResult result = coupling::simulate(motion, options, [&](const MotionSample& s) {
+    last = s;
+    return false;
+  });
+  const double usable = result.report.usable() ? 0.0 : nan;
+  const Vector3d along = last.bodies[0].orientation * Vector3d::UnitX();
+  const double reference = -0.01 * spin * spin * length * length / 12.0;
+  double off = 0.0;
+  for (int i = 0; i <= 60; ++i) {
+    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    off = std::max(off, x.tail<2>().norm());
+  }
+  return {row("wire on a spinning body, force of a mount along the wire", "N", "-m w^2 l^2/12", reference,
+              last.mount_forces[1].dot(along) + usable, ErrorKind::relative, 2e-3),
+          row("wire on a spinning body, off its chord", "m", "straight", 0.0, off + usable, ErrorKind::absolute, 1e-7),
+          row("wire on a spinning body, largest gap of its mounts", "m", "held", 0.0, result.largest_drift + usable,
+              ErrorKind::absolute, 1e-8)};
+}
+
+// The shipped captures, at their own tolerances: what the payload brings is 0.025 J.
+std::vector<Row> capture_rows(const std::filesystem::path& data) {
+  std::vector<Row> rows;
+  constexpr double energy = 0.5 * 500.0 * 0.01 * 0.01;
+  for (const char* name : {"jemrms_capture", "jemrms_payload_on_wire"}) {
+    const coupling::ArmContactScenario s =
+        coupling::read_arm_contact_scenario(data / "scenarios" / (std::string(name) + ".toml"));
+    MotionOptions options = s.contact.options;
+    options.duration = 1.0;
+    const MotionResult result = coupling::simulate(coupling::motion_of(s, s.contact.models.front()), options);
+    const double usable = result.report.usable() ? 0.0 : nan;
+    rows.push_back(row(fmt::format("{}: integrator's energy over that of the impact", name), "", "conservation", 0.0,
+                       result.energy.integrator / energy + usable, ErrorKind::absolute, 1e-2));
+    rows.push_back(row(fmt::format("{}: momentum not accounted for, over the impulse", name), "", "conservation", 0.0,
+                       result.momentum_error.norm() / result.impulse[0].norm() + usable, ErrorKind::absolute, 1e-2));
+    rows.push_back(row(fmt::format("{}: largest gap of welds and mounts", name), "m", "held", 0.0,
+                       result.largest_drift + usable, ErrorKind::absolute, 1e-6));
+  }
+  return rows;
+}
+
+std::vector<Check> linked_motion_checks(const std::filesystem::path& data) {
+  return {{"welded bodies", welded_top_rows},
+          {"mounts that move", moving_mount_rows},
+          {"capture by an arm", [data] { return capture_rows(data); }}};
+}
+
+}  // namespace snare::validation
