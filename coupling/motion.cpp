@@ -1,7 +1,8 @@
 #include "coupling/motion.hpp"
 
 #include "coupling/motion_body.hpp"
-#include "coupling/motion_contact.hpp"
+#include "coupling/motion_impulse.hpp"
+#include "coupling/motion_points.hpp"
 #include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
 #include "wire/loose_wire.hpp"
@@ -13,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 namespace snare::coupling {
 
@@ -74,6 +76,10 @@ void validate(const Motion& motion, const MotionOptions& options) {
     c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
+    c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
+    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius, "must be >= 0");
+    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius", k.wire_radius,
+              "must be > 0 for a shape with edges");
     c.require(k.friction.static_speed > 0.0 && k.friction.dynamic_speed > k.friction.static_speed,
               k.name + ".friction.static_speed", k.friction.static_speed, "must be > 0 and < dynamic_speed");
   }
@@ -95,6 +101,12 @@ struct Rates {
   std::vector<Vector3d> contact;      // on the wires [N]
 };
 
+/// A point of a contact.
+struct Closed {
+  std::size_t contact = 0, point = 0;
+  ContactPart* part = nullptr;
+};
+
 class Run {
  public:
   Run(const Motion& motion, const MotionOptions& options, const MotionObserver& observer);
@@ -102,8 +114,13 @@ class Run {
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
+  void require_apart();
   void make_rates();
-  void close(int contact);
+  [[nodiscard]] std::vector<Closed> constraints();
+  [[nodiscard]] Eigen::MatrixXd flexibility(const std::vector<Closed>& constraints) const;
+  [[nodiscard]] std::optional<double> first_touch(double from, const numerics::Ida& ida);
+  [[nodiscard]] bool close_touching();
+  void open(const Closed& point);
   void settle();
   [[nodiscard]] MotionSample sample(const DaePoint& at);
   [[nodiscard]] EnergyBalance stored(const DaePoint& at, MotionSample* into);
@@ -116,7 +133,7 @@ class Run {
   const MotionObserver& observer_;
   std::deque<wire::RodPart> rods_;
   std::deque<BodyPart> bodies_;
-  std::deque<ContactPart> contacts_;
+  std::deque<ContactPoints> contacts_;
   std::deque<SpringPart> springs_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
@@ -152,15 +169,13 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   for (std::size_t i = 0; i < rods_.size(); ++i)
     rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
   for (const BodyPart& b : bodies_) b.place(y_);
-  for (ContactPart& c : contacts_) {
-    y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
-    c.open(y_);
-  }
+  require_apart();
   numerics::IdaOptions ida;
   ida.relative_tolerance = options.relative_tolerance;
   ida.max_order = options.max_order;
   ida.max_step = options.max_step;
   ida_ = std::make_unique<numerics::Ida>(*system_, ida);
+  ida_->watch([this](double from, const numerics::Ida& now) { return first_touch(from, now); });
   result_.peak_force.assign(contacts_.size() + springs_.size(), 0.0);
   result_.impulse.assign(contacts_.size() + springs_.size(), Vector3d::Zero());
 }
@@ -169,9 +184,54 @@ std::vector<numerics::DaePart*> Run::parts() {
   std::vector<numerics::DaePart*> list;
   for (auto& r : rods_) list.push_back(&r);
   for (auto& b : bodies_) list.push_back(&b);
-  for (auto& c : contacts_) list.push_back(&c);
+  for (auto& c : contacts_) {
+    for (auto& p : c.points()) list.push_back(&p);
+  }
   for (auto& s : springs_) list.push_back(&s);
   return list;
+}
+
+// A wire that is inside a shape has no side to which it belongs.
+void Run::require_apart() {
+  std::vector<numerics::InputProblem> problems;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const MotionContact& c = motion_.contacts[k];
+    const GapMinimum n = contacts_[k].nearest(y_);
+    for (const ContactPart& p : contacts_[k].points()) y_[p.coordinate_unknown()] = n.coordinate;
+    // The start may touch, up to a small part of the wire's radius.
+    if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
+      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate), "must be >= 0 m at the start"});
+  }
+  if (!problems.empty()) throw numerics::InputError(problems);
+}
+
+std::vector<Closed> Run::constraints() {
+  std::vector<Closed> list;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    for (std::size_t p = 0; p < contacts_[k].points().size(); ++p) {
+      ContactPart& part = contacts_[k].points()[p];
+      if (part.closed() && !part.has_law()) list.push_back({k, p, &part});
+    }
+  }
+  return list;
+}
+
+// Normal speeds of all closed points by a unit impulse at each.
+Eigen::MatrixXd Run::flexibility(const std::vector<Closed>& constraints) const {
+  const auto n = static_cast<Eigen::Index>(constraints.size());
+  Eigen::MatrixXd a(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    VectorXd unit = VectorXd::Zero(y_.size());
+    constraints[static_cast<std::size_t>(i)].part->respond(y_, 1.0, unit);
+    for (Eigen::Index j = 0; j < n; ++j) a(j, i) = constraints[static_cast<std::size_t>(j)].part->gap_rate_of(y_, unit);
+  }
+  return a;
+}
+
+void Run::open(const Closed& point) {
+  contacts_[point.contact].open(point.point, y_);
+  result_.events.push_back({time_, static_cast<int>(point.contact), static_cast<int>(point.point), y_[point.part->coordinate_unknown()],
+                            MotionEvent::Kind::lift_off, 0.0});
 }
 
 // With all accelerations and constraint forces zero the rows are minus the forces; what the constraints then miss in
@@ -187,15 +247,15 @@ void Run::make_rates() {
     rate_.segment<4>(b.quaternion()) =
         multibody::quaternion_rates(y_.segment<4>(b.quaternion())) * y_.segment<3>(b.spin());
   }
-  std::vector<const ContactPart*> constraints;
-  for (const ContactPart& c : contacts_) {
-    y_[c.force_unknown()] = 0.0;
-    if (c.closed() && !c.has_law()) constraints.push_back(&c);
+  for (ContactPoints& c : contacts_) {
+    for (ContactPart& p : c.points()) y_[p.force_unknown()] = 0.0;
   }
   VectorXd rows(system_->size());
   system_->residual({time_, y_, rate_}, rows);
-  for (const ContactPart& c : contacts_) {
-    if (c.closed() && c.has_law()) y_[c.force_unknown()] = -rows[c.force_unknown()];
+  for (ContactPoints& c : contacts_) {
+    for (ContactPart& p : c.points()) {
+      if (p.closed() && p.has_law()) y_[p.force_unknown()] = -rows[p.force_unknown()];
+    }
   }
   system_->residual({time_, y_, rate_}, rows);
   for (const wire::RodPart& r : rods_) {
@@ -210,66 +270,107 @@ void Run::make_rates() {
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
-  const auto n = static_cast<Eigen::Index>(constraints.size());
-  if (n == 0) return;
-  Eigen::MatrixXd flexibility(n, n);
-  VectorXd missing(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    missing[i] = -(c.gap_rate_of(y_, rate_) + c.gap_acceleration_at_rest(y_));
-    VectorXd unit = VectorXd::Zero(y_.size());
-    c.respond(y_, 1.0, unit);
-    for (Eigen::Index j = 0; j < n; ++j)
-      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+  // Points that would pull let go.
+  const std::vector<Closed> all = constraints();
+  if (all.empty()) return;
+  VectorXd apart(static_cast<Eigen::Index>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    apart[static_cast<Eigen::Index>(i)] = all[i].part->gap_rate_of(y_, rate_) + all[i].part->gap_acceleration_at_rest(y_);
   }
-  const VectorXd force = flexibility.partialPivLu().solve(missing);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    y_[c.force_unknown()] = force[i];
-    c.respond(y_, force[i], rate_);
+  const VectorXd force = complementary_impulses(flexibility(all), apart, options_.force_tolerance);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double f = force[static_cast<Eigen::Index>(i)];
+    y_[all[i].part->force_unknown()] = f;
+    all[i].part->respond(y_, f, rate_);
+  }
+  const VectorXd left = flexibility(all) * force + apart;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (force[k] == 0.0 && left[k] > 0.0) open(all[i]);
   }
 }
 
-// The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0
-// at all closed contacts. What is lost vanishes with the element's mass.                            theory.md (M.10)
-void Run::close(int contact) {
-  ContactPart& touched = contacts_[static_cast<std::size_t>(contact)];
-  if (touched.close(y_)) system_->invalidate_pattern();
-  result_.events.push_back({time_, contact, MotionEvent::Kind::touch, -touched.gap_rate(y_)});
-  if (touched.has_law()) return;
-  std::vector<const ContactPart*> constraints;
-  for (const ContactPart& c : contacts_) {
-    if (c.closed() && !c.has_law()) constraints.push_back(&c);
+// The first touch of any contact within the integrator's last step.
+std::optional<double> Run::first_touch(double from, const numerics::Ida& ida) {
+  if (contacts_.empty()) return std::nullopt;
+  ContactSearch::Step step{ida, from, ida.time(), {}};
+  for (int k = 1; k <= ida.last_order(); ++k) step.derivatives.push_back(ida.interpolate(ida.time(), k));
+  std::optional<double> first;
+  for (ContactPoints& c : contacts_) {
+    if (const auto touch = c.first_touch(step, first.value_or(step.to))) first = touch;
   }
-  const auto n = static_cast<Eigen::Index>(constraints.size());
-  Eigen::MatrixXd flexibility(n, n);
-  VectorXd missing(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    missing[i] = -constraints[static_cast<std::size_t>(i)]->gap_rate(y_);
-    VectorXd unit = VectorXd::Zero(y_.size());
-    constraints[static_cast<std::size_t>(i)]->respond(y_, 1.0, unit);
-    for (Eigen::Index j = 0; j < n; ++j)
-      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+  if (first) {
+    for (ContactPoints& c : contacts_) c.forget();
   }
-  const VectorXd impulse = flexibility.partialPivLu().solve(missing);
-  const double before = stored({time_, y_, rate_}, nullptr).kinetic;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    constraints[static_cast<std::size_t>(i)]->respond(y_, impulse[i], y_);
-  }
-  result_.energy.impacts += before - stored({time_, y_, rate_}, nullptr).kinetic;
+  return first;
 }
 
-// Contacts that would pull let go at once.
+// The wire's local masses take on the body's normal velocity at once (no restitution): the impulses that leave dg/dt >= 0 at all
+// closed points and pull nowhere. What is lost vanishes with the element's mass.                    theory.md (M.10)
+// False: a touch that cannot be taken, which the report names.
+bool Run::close_touching() {
+  const auto refuse = [this](const std::string& what) {
+    result_.report.termination = numerics::Termination::iteration_limit;
+    result_.report.message = fmt::format("{} at {:.9g} s", what, time_);
+    return false;
+  };
+  struct Touch {
+    Closed point;
+    double approach = 0.0;
+  };
+  std::vector<Touch> touches;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    for (const GapMinimum& m : contacts_[k].touching(y_)) {
+      const std::optional<std::size_t> free = contacts_[k].free_point();
+      if (!free) {
+        return refuse(fmt::format("{}: the wire touches at more than {} points (at {:.6g} m along it too)", motion_.contacts[k].name,
+                                  contacts_[k].points().size(), m.coordinate));
+      }
+      ContactPart& part = contacts_[k].points()[*free];
+      if (part.close(m.coordinate, y_)) system_->invalidate_pattern();
+      touches.push_back({{k, *free, &part}, -part.gap_rate(y_)});
+    }
+  }
+  const std::vector<Closed> all = constraints();
+  if (!all.empty() && !touches.empty()) {
+    const Eigen::MatrixXd a = flexibility(all);
+    VectorXd apart(a.rows());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      apart[k] = all[i].part->gap_rate(y_);
+      if (a(k, k) > 0.0) continue;
+      return refuse(fmt::format("{} touches the wire where its mount holds it, and neither gives way", motion_.contacts[all[i].contact].name));
+    }
+    const VectorXd impulse = complementary_impulses(a, apart, 0.0);
+    const VectorXd left = a * impulse + apart;
+    const double before = stored({time_, y_, rate_}, nullptr).kinetic;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].part->respond(y_, impulse[static_cast<Eigen::Index>(i)], y_);
+    result_.energy.impacts += before - stored({time_, y_, rate_}, nullptr).kinetic;
+    // What the impulses drive apart is open again; round-off of the speeds does not.
+    constexpr double parting = 1e-9;  // [m/s]
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (impulse[k] > 0.0 || left[k] <= parting) continue;
+      const auto own = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.point.part == all[i].part; });
+      if (own == touches.end()) {
+        open(all[i]);
+      } else {
+        contacts_[all[i].contact].open(all[i].point, y_);
+        touches.erase(own);
+      }
+    }
+  }
+  for (const Touch& t : touches) {
+    result_.events.push_back({time_, static_cast<int>(t.point.contact), static_cast<int>(t.point.point),
+                              y_[t.point.part->coordinate_unknown()], MotionEvent::Kind::touch, t.approach});
+  }
+  return true;
+}
+
 void Run::settle() {
   make_rates();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (!contacts_[k].closed() || y_[contacts_[k].force_unknown()] >= -options_.force_tolerance) continue;
-    if (contacts_[k].has_law()) continue;
-    contacts_[k].open(y_);
-    result_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
-    make_rates();
-  }
   ida_->start(time_, y_, rate_);
+  for (ContactPoints& c : contacts_) c.forget();
   last_ = rates({time_, y_, rate_});
   last_time_ = time_;
 }
@@ -316,20 +417,21 @@ Rates Run::rates(const DaePoint& at) {
                b.body().linear_drag * at.y.segment<3>(b.velocity());
   }
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const ContactSample s = contacts_[k].sample(at);
+    const ContactSample s = contacts_[k].closed_sample(at);
     const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[k].body)];
     r.contact.push_back(s.force);
-    r.dissipated += contacts_[k].lost_power(at.y);
-    const std::array<Vector3d, 2> held = contacts_[k].force_on_mounts(at.y);
-    r.outer -= held[0] + held[1];
+    for (const ContactPart& p : contacts_[k].points()) {
+      r.dissipated += p.lost_power(at.y);
+      const std::array<Vector3d, 2> held = p.force_on_mounts(at.y);
+      r.outer -= held[0] + held[1];
+    }
     if (!body.moves_freely()) {
       r.work += s.force.dot(at.y.segment<3>(body.velocity()));
       r.outer += s.force;
     }
-    if (s.closed) {
-      result_.peak_force[k] = std::max(result_.peak_force[k], s.normal_force);
-      if (!contacts_[k].has_law())
-        result_.largest_penetration = std::max(result_.largest_penetration, -s.gap);
+    result_.peak_force[k] = std::max(result_.peak_force[k], s.normal_force);
+    for (const ContactSample& p : s.points) {
+      if (!motion_.contacts[k].law) result_.largest_penetration = std::max(result_.largest_penetration, -p.gap);
     }
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
@@ -370,10 +472,12 @@ MotionSample Run::sample(const DaePoint& at) {
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     s.contacts.push_back(contacts_[k].sample(at));
-    const std::array<Vector3d, 2> held = contacts_[k].force_on_mounts(at.y);
     const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
-    s.mount_forces[2 * w] -= held[0];
-    s.mount_forces[2 * w + 1] -= held[1];
+    for (const ContactPart& p : contacts_[k].points()) {
+      const std::array<Vector3d, 2> held = p.force_on_mounts(at.y);
+      s.mount_forces[2 * w] -= held[0];
+      s.mount_forces[2 * w + 1] -= held[1];
+    }
   }
   for (const SpringPart& spring : springs_) s.contacts.push_back(spring.sample(at.y));
   for (const wire::RodPart& r : rods_) {
@@ -402,9 +506,9 @@ MotionResult Run::go() {
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
   start_energy_ = energy.kinetic + energy.strain + energy.potential;
   start_momentum_ = start.momentum;
-  bool stopped = false;
+  bool stopped = !close_touching();
   settle();
-  stopped = write_until(0.0);
+  stopped = write_until(0.0) || stopped;
   while (!stopped) {
     const numerics::IdaAdvance advance = ida_->advance(options_.duration);
     if (advance == numerics::IdaAdvance::failed) break;
@@ -415,25 +519,24 @@ MotionResult Run::go() {
     stopped = write_until(time_);
     if (advance == numerics::IdaAdvance::reached_limit) break;
     if (advance != numerics::IdaAdvance::event) continue;
-    bool changed = false;
     const std::vector<int> found = ida_->events_found();
+    // The watch stops a step at a touch, without an event of the integrator.
+    bool changed = std::none_of(found.begin(), found.end(), [](int f) { return f != 0; });
+    if (changed && !close_touching()) break;
+    std::size_t event = 0;
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      if (found[k] >= 0) continue;  // only a falling gap or force is an event
-      changed = true;
-      if (contacts_[k].closed()) {
-        contacts_[k].open(y_);
-        result_.events.push_back({time_, static_cast<int>(k), MotionEvent::Kind::lift_off, 0.0});
-      } else {
-        close(static_cast<int>(k));
+      for (std::size_t p = 0; p < contacts_[k].points().size(); ++p, ++event) {
+        if (found[event] >= 0) continue;  // only a falling force is an event
+        changed = true;
+        open({k, p, &contacts_[k].points()[p]});
       }
     }
-    for (std::size_t k = 0; k < springs_.size(); ++k) {
-      const std::size_t event = contacts_.size() + k;
+    for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
       if (found[event] == 0) continue;
       changed = true;
       const bool touch = found[event] > 0;
-      result_.events.push_back({time_, static_cast<int>(event), touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off,
-                                0.0});
+      result_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
+                                touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
     if (changed) settle();
     if (static_cast<int>(result_.events.size()) > options_.max_events) {

@@ -178,6 +178,7 @@ struct Ida::Memory {
   std::vector<int> events;
   IdaReport report;
   IdaStatistics counted;  // of earlier starts: IDA counts from each start
+  IdaWatch watch;
   double previous_time = 0.0;
 
   Memory(DaeSystem& system, const IdaOptions& chosen);
@@ -325,6 +326,10 @@ IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const E
   return m.report;
 }
 
+void Ida::watch(IdaWatch watch) {
+  memory_->watch = std::move(watch);
+}
+
 IdaAdvance Ida::advance(double limit) {
   Memory& m = *memory_;
   check(IDASetStopTime(m.ida.get(), limit), "IDASetStopTime");
@@ -344,6 +349,16 @@ IdaAdvance Ida::advance(double limit) {
   ++s.steps;
   s.smallest_step = std::min(s.smallest_step, m.report.step);
   s.largest_step = std::max(s.largest_step, m.report.step);
+  if (m.watch) {
+    if (const std::optional<double> stop = m.watch(m.previous_time, *this)) {
+      check(IDAGetDky(m.ida.get(), *stop, 0, m.y_view.get()), "IDAGetDky");
+      check(IDAGetDky(m.ida.get(), *stop, 1, m.rate_view.get()), "IDAGetDky");
+      m.time = m.report.time = *stop;
+      std::fill(m.events.begin(), m.events.end(), 0);
+      m.callbacks.system.accept({m.time, m.y, m.rate});
+      return IdaAdvance::event;
+    }
+  }
   m.callbacks.system.accept({m.time, m.y, m.rate});
   if (code == IDA_ROOT_RETURN) {
     check(IDAGetRootInfo(m.ida.get(), m.events.data()), "IDAGetRootInfo");
