@@ -37,8 +37,8 @@ void fields(Archive& a, IdaReport& r) {
 namespace snare::coupling {
 template <class Archive>
 void fields(Archive& a, ContactSample& s) {
-  static_assert(sizeof(ContactSample) == 11 * sizeof(double));
-  a(s.closed)(s.gap)(s.force)(s.normal_force)(s.point)(s.arc)(s.slip_speed);
+  static_assert(sizeof(ContactSample) == 15 * sizeof(double));
+  a(s.closed)(s.gap)(s.force)(s.normal_force)(s.point)(s.arc)(s.slip_speed)(s.sticking)(s.points);
 }
 template <class Archive>
 void fields(Archive& a, EnergyBalance& e) {
@@ -51,8 +51,8 @@ void fields(Archive& a, MotionSample& s) {
 }
 template <class Archive>
 void fields(Archive& a, MotionEvent& e) {
-  static_assert(sizeof(MotionEvent) == 3 * sizeof(double));
-  a(e.time)(e.contact)(e.kind)(e.approach_speed);
+  static_assert(sizeof(MotionEvent) == 5 * sizeof(double));
+  a(e.time)(e.contact)(e.point)(e.arc)(e.kind)(e.approach_speed);
 }
 template <class Archive>
 void fields(Archive& a, MotionSums& s) {

@@ -209,13 +209,6 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   o.max_order = solver.integer_or("max_order", 2, 1, 5);
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
-  if (!solver.has("max_step_s")) {
-    // The probe must not pass through the wire between two steps: a fifth of their radii at most.
-    const MotionBody& body = scenario.body;
-    const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
-    const double reach = scenario.push.pusher.radius + 0.5 * scenario.push.wire.diameter;
-    if (speed > 0.0) o.max_step = 0.2 * reach / speed;
-  }
   const TomlTable output = root.table("output");
   scenario.paraview = output.boolean_or("paraview", false);
   o.checkpoint_interval = output.number_or("checkpoint_interval_s", std::min(1.0, o.duration / 10.0), Range::above(0.0, 1e6));

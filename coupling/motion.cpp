@@ -2,7 +2,9 @@
 
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_impulse.hpp"
 #include "coupling/motion_linkage.hpp"
+#include "coupling/motion_points.hpp"
 #include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
 #include "wire/loose_wire.hpp"
@@ -117,6 +119,10 @@ void validate(const Motion& motion, const MotionOptions& options) {
     c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
+    c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
+    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius, "must be >= 0");
+    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius", k.wire_radius,
+              "must be > 0 for a shape with edges");
     validate_friction(c, k.name + ".friction.", k.friction);
   }
   for (const MotionSpring& s : motion.springs) {
@@ -140,6 +146,12 @@ constexpr Eigen::Index outer_moment = 5;
 constexpr Eigen::Index contacts = 8;
 }  // namespace integral
 
+/// A point of a contact.
+struct Closed {
+  std::size_t contact = 0, point = 0;
+  ContactPart* part = nullptr;
+};
+
 class Run {
  public:
   Run(const Motion& motion, const MotionOptions& options, const MotionObserver& observer);
@@ -150,17 +162,23 @@ class Run {
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
+  void require_apart();
   void make_rates();
-  void close(int contact);
+  [[nodiscard]] std::vector<Closed> points();
+  [[nodiscard]] std::vector<Closed> constraints();
+  [[nodiscard]] Eigen::MatrixXd flexibility(const std::vector<Closed>& constraints, bool with_friction) const;
+  [[nodiscard]] std::optional<double> first_touch(double from, const numerics::Ida& ida);
+  [[nodiscard]] std::optional<std::string> close_touching();
+  void note(const Closed& point, MotionEvent::Kind kind, double speed);
+  void open(const Closed& point);
   void settle();
-  void let_go(int contact);
-  [[nodiscard]] bool switch_friction(int contact);
+  void switch_friction(const Closed& point);
   [[nodiscard]] bool leave_broken_modes(bool at_event);
   [[nodiscard]] MotionSample sample(const DaePoint& at, const VectorXd& integrals);
   [[nodiscard]] EnergyBalance stored(const DaePoint& at, MotionSample* into);
   void integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates);
   void watch();
-  void add_reactions(std::size_t contact, const Vector3d& force, const DaePoint& at, Eigen::Ref<VectorXd> rates) const;
+  void add_reactions(const Closed& point, const Vector3d& force, const DaePoint& at, Eigen::Ref<VectorXd> rates) const;
   [[nodiscard]] bool write_until(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
@@ -169,7 +187,7 @@ class Run {
   const MotionObserver& observer_;
   std::deque<wire::RodPart> rods_;
   std::deque<BodyPart> bodies_;
-  std::deque<ContactPart> contacts_;
+  std::deque<ContactPoints> contacts_;
   std::deque<SpringPart> springs_;
   std::deque<FrictionEvent> friction_events_;  // behind all other events
   std::optional<Linkage> linkage_;
@@ -179,6 +197,7 @@ class Run {
   VectorXd integrals_;
   double time_ = 0.0;
   MotionSums sums_;
+  std::optional<std::string> refused_;  // a touch that cannot be taken
 };
 
 Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserver& observer)
@@ -196,7 +215,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
                            bodies_[static_cast<std::size_t>(c.body)], options);
   }
   for (const MotionSpring& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
-  for (const ContactPart& c : contacts_) friction_events_.emplace_back(c);
+  for (const Closed& p : points()) friction_events_.emplace_back(*p.part);
   linkage_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -205,10 +224,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
     rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
   for (const BodyPart& b : bodies_) b.place(y_);
   linkage_->place(y_);
-  for (ContactPart& c : contacts_) {
-    y_[c.coordinate_unknown()] = c.nearest(y_).coordinate;
-    static_cast<void>(c.open(y_));
-  }
+  require_apart();
   numerics::IdaOptions ida;
   ida.relative_tolerance = options.relative_tolerance;
   ida.max_order = options.max_order;
@@ -220,6 +236,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
       *system_, ida,
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
+  ida_->watch([this](double from, const numerics::Ida& now) { return first_touch(from, now); });
   sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
 }
 
@@ -227,11 +244,67 @@ std::vector<numerics::DaePart*> Run::parts() {
   std::vector<numerics::DaePart*> list;
   for (auto& r : rods_) list.push_back(&r);
   for (auto& b : bodies_) list.push_back(&b);
-  for (auto& c : contacts_) list.push_back(&c);
+  for (const Closed& p : points()) list.push_back(p.part);
   for (auto& s : springs_) list.push_back(&s);
   for (auto& f : friction_events_) list.push_back(&f);
   linkage_->append(list);
   return list;
+}
+
+// A wire that is inside a shape has no side to which it belongs.
+void Run::require_apart() {
+  std::vector<numerics::InputProblem> problems;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const MotionContact& c = motion_.contacts[k];
+    const GapMinimum n = contacts_[k].nearest(y_);
+    for (const ContactPart& p : contacts_[k].points()) y_[p.coordinate_unknown()] = n.coordinate;
+    // The start may touch, up to a small part of the wire's radius.
+    if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
+      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate), "must be >= 0 m at the start"});
+  }
+  if (!problems.empty()) throw numerics::InputError(problems);
+}
+
+std::vector<Closed> Run::points() {
+  std::vector<Closed> list;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    for (std::size_t p = 0; p < contacts_[k].points().size(); ++p) list.push_back({k, p, &contacts_[k].points()[p]});
+  }
+  return list;
+}
+
+std::vector<Closed> Run::constraints() {
+  std::vector<Closed> list = points();
+  std::erase_if(list, [](const Closed& p) { return !p.part->closed() || p.part->has_law(); });
+  return list;
+}
+
+// Normal speeds of all closed points by a unit impulse at each, with the links held.
+Eigen::MatrixXd Run::flexibility(const std::vector<Closed>& constraints, bool with_friction) const {
+  const auto n = static_cast<Eigen::Index>(constraints.size());
+  Eigen::MatrixXd a(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ContactPart& part = *constraints[static_cast<std::size_t>(i)].part;
+    VectorXd unit = VectorXd::Zero(y_.size());
+    if (with_friction) {
+      part.respond_with_friction(y_, 1.0, unit);
+    } else {
+      part.respond(y_, 1.0, unit);
+    }
+    linkage_->hold(y_, unit);
+    for (Eigen::Index j = 0; j < n; ++j) a(j, i) = constraints[static_cast<std::size_t>(j)].part->gap_rate_of(y_, unit);
+  }
+  return a;
+}
+
+void Run::note(const Closed& point, MotionEvent::Kind kind, double speed) {
+  sums_.events.push_back({time_, static_cast<int>(point.contact), static_cast<int>(point.point),
+                          y_[point.part->coordinate_unknown()], kind, speed});
+}
+
+void Run::open(const Closed& point) {
+  integrals_[integral::dissipated] += contacts_[point.contact].open(point.point, y_);
+  note(point, MotionEvent::Kind::lift_off, 0.0);
 }
 
 // With all accelerations and constraint forces zero the rows are minus the forces; what the constraints then miss in
@@ -247,16 +320,12 @@ void Run::make_rates() {
     rate_.segment<4>(b.quaternion()) =
         multibody::quaternion_rates(y_.segment<4>(b.quaternion())) * y_.segment<3>(b.spin());
   }
-  std::vector<const ContactPart*> constraints;
-  for (const ContactPart& c : contacts_) {
-    y_[c.force_unknown()] = 0.0;
-    if (c.closed() && !c.has_law()) constraints.push_back(&c);
-  }
+  for (const Closed& p : points()) y_[p.part->force_unknown()] = 0.0;
   linkage_->loosen(y_);
   VectorXd rows(system_->size());
   system_->residual({time_, y_, rate_}, rows);
-  for (const ContactPart& c : contacts_) {
-    if (c.closed() && c.has_law()) y_[c.force_unknown()] = -rows[c.force_unknown()];
+  for (const Closed& p : points()) {
+    if (p.part->closed() && p.part->has_law()) y_[p.part->force_unknown()] = -rows[p.part->force_unknown()];
   }
   system_->residual({time_, y_, rate_}, rows);
   for (const wire::RodPart& r : rods_) {
@@ -276,119 +345,141 @@ void Run::make_rates() {
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
   linkage_->solve_rates(y_, rows, rate_);
-  const auto n = static_cast<Eigen::Index>(constraints.size());
   VectorXd held_rate = rate_;
   static_cast<void>(linkage_->hold_rates(y_, held_rate));
-  Eigen::MatrixXd flexibility(n, n);
-  VectorXd missing(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    missing[i] = -(c.gap_rate_of(y_, held_rate) + c.gap_acceleration_at_rest(y_));
-    VectorXd unit = VectorXd::Zero(y_.size());
-    c.respond_with_friction(y_, 1.0, unit);
-    linkage_->hold(y_, unit);
-    for (Eigen::Index j = 0; j < n; ++j)
-      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+  const std::vector<Closed> all = constraints();
+  VectorXd apart(static_cast<Eigen::Index>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    apart[static_cast<Eigen::Index>(i)] =
+        all[i].part->gap_rate_of(y_, held_rate) + all[i].part->gap_acceleration_at_rest(y_);
   }
-  const VectorXd force = n > 0 ? VectorXd(flexibility.partialPivLu().solve(missing)) : VectorXd();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const ContactPart& c = *constraints[static_cast<std::size_t>(i)];
-    y_[c.force_unknown()] = force[i];
-    c.respond_with_friction(y_, force[i], rate_);
+  const Eigen::MatrixXd a = flexibility(all, true);
+  const VectorXd force = all.empty() ? VectorXd() : complementary_impulses(a, apart, options_.force_tolerance);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double f = force[static_cast<Eigen::Index>(i)];
+    y_[all[i].part->force_unknown()] = f;
+    all[i].part->respond_with_friction(y_, f, rate_);
+  }
+  // Points that would pull let go.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (force[k] == 0.0 && a.row(k).dot(force) + apart[k] > 0.0) open(all[i]);
   }
   linkage_->set_multipliers(linkage_->hold_rates(y_, rate_), y_);
-  for (const ContactPart& c : contacts_) c.set_bristle_rate(y_, rate_);
+  for (const Closed& p : points()) p.part->set_bristle_rate(y_, rate_);
 }
 
-// The wire's local masses take on the body's normal velocity at once (no restitution): the impulse that makes dg/dt = 0
-// at all closed contacts. What is lost vanishes with the element's mass.                            theory.md (M.10)
-void Run::close(int contact) {
-  ContactPart& touched = contacts_[static_cast<std::size_t>(contact)];
-  if (touched.close(y_)) system_->invalidate_pattern();
-  sums_.events.push_back({time_, contact, MotionEvent::Kind::touch, -touched.gap_rate(y_)});
-  if (touched.has_law()) return;
-  std::vector<const ContactPart*> constraints;
-  std::vector<std::size_t> index;
+// The first touch of any contact within the integrator's last step.
+std::optional<double> Run::first_touch(double from, const numerics::Ida& ida) {
+  if (contacts_.empty()) return std::nullopt;
+  ContactSearch::Step step{ida, from, ida.time(), {}};
+  for (int k = 1; k <= ida.last_order(); ++k) step.derivatives.push_back(ida.interpolate(ida.time(), k));
+  std::optional<double> first;
+  for (ContactPoints& c : contacts_) {
+    if (const auto touch = c.first_touch(step, first.value_or(step.to))) first = touch;
+  }
+  if (first) {
+    for (ContactPoints& c : contacts_) c.forget();
+  }
+  return first;
+}
+
+// The wire's local masses take on the body's normal velocity at once (no restitution): the impulses that leave dg/dt >= 0 at all
+// closed points and pull nowhere. What is lost vanishes with the element's mass.                    theory.md (M.10)
+// A touch that cannot be taken is returned in words.
+std::optional<std::string> Run::close_touching() {
+  struct Touch {
+    Closed point;
+    double approach = 0.0;
+  };
+  std::vector<Touch> touches;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (!contacts_[k].closed() || contacts_[k].has_law()) continue;
-    constraints.push_back(&contacts_[k]);
-    index.push_back(k);
+    for (const GapMinimum& m : contacts_[k].touching(y_)) {
+      const std::optional<std::size_t> free = contacts_[k].free_point();
+      if (!free) {
+        return fmt::format("{}: the wire touches at more than {} points (at {:.6g} m along it too) at {:.9g} s",
+                           motion_.contacts[k].name, contacts_[k].points().size(), m.coordinate, time_);
+      }
+      ContactPart& part = contacts_[k].points()[*free];
+      if (part.close(m.coordinate, y_)) system_->invalidate_pattern();
+      touches.push_back({{k, *free, &part}, -part.gap_rate(y_)});
+    }
   }
-  const auto n = static_cast<Eigen::Index>(constraints.size());
-  Eigen::MatrixXd flexibility(n, n);
-  VectorXd missing(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    missing[i] = -constraints[static_cast<std::size_t>(i)]->gap_rate(y_);
-    VectorXd unit = VectorXd::Zero(y_.size());
-    constraints[static_cast<std::size_t>(i)]->respond(y_, 1.0, unit);
-    linkage_->hold(y_, unit);
-    for (Eigen::Index j = 0; j < n; ++j)
-      flexibility(j, i) = constraints[static_cast<std::size_t>(j)]->gap_rate_of(y_, unit);
+  const std::vector<Closed> all = constraints();
+  if (!all.empty() && !touches.empty()) {
+    const Eigen::MatrixXd a = flexibility(all, false);
+    VectorXd apart(a.rows());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      apart[k] = all[i].part->gap_rate(y_);
+      if (a(k, k) > 0.0) continue;
+      return fmt::format("{} touches the wire where its mount holds it, and neither gives way, at {:.9g} s",
+                         motion_.contacts[all[i].contact].name, time_);
+    }
+    const VectorXd impulse = complementary_impulses(a, apart, 0.0);
+    const VectorXd left = a * impulse + apart;
+    const double before = stored({time_, y_, rate_}, nullptr).kinetic;
+    const double worked = integrals_[integral::work];
+    VectorXd change = VectorXd::Zero(y_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double p = impulse[static_cast<Eigen::Index>(i)];
+      const Vector3d along = p * all[i].part->normal(y_);
+      integrals_.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(all[i].contact)) += along;
+      add_reactions(all[i], along, {time_, y_, rate_}, integrals_);
+      all[i].part->respond(y_, p, change);
+    }
+    linkage_->hold(y_, change);
+    y_ += change;
+    sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
+    // What the impulses drive apart is open again; round-off of the speeds does not.
+    constexpr double parting = 1e-9;  // [m/s]
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (impulse[k] > 0.0 || left[k] <= parting) continue;
+      const auto own = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.point.part == all[i].part; });
+      if (own == touches.end()) {
+        open(all[i]);
+      } else {
+        integrals_[integral::dissipated] += contacts_[all[i].contact].open(all[i].point, y_);
+        touches.erase(own);
+      }
+    }
   }
-  const VectorXd impulse = flexibility.partialPivLu().solve(missing);
-  const double before = stored({time_, y_, rate_}, nullptr).kinetic;
-  const double worked = integrals_[integral::work];
-  VectorXd change = VectorXd::Zero(y_.size());
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    const double p = impulse[static_cast<Eigen::Index>(i)];
-    const Vector3d along = p * constraints[i]->normal(y_);
-    integrals_.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(index[i])) += along;
-    add_reactions(index[i], along, {time_, y_, rate_}, integrals_);
-    constraints[i]->respond(y_, p, change);
-  }
-  linkage_->hold(y_, change);
-  y_ += change;
-  sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
+  for (const Touch& t : touches) note(t.point, MotionEvent::Kind::touch, t.approach);
+  return std::nullopt;
 }
 
-void Run::let_go(int contact) {
-  integrals_[integral::dissipated] += contacts_[static_cast<std::size_t>(contact)].open(y_);
-  sums_.events.push_back({time_, contact, MotionEvent::Kind::lift_off, 0.0});
-}
-
-// True: the contact has a bristle and was switched.
-bool Run::switch_friction(int contact) {
-  ContactPart& c = contacts_[static_cast<std::size_t>(contact)];
-  if (!c.closed() || !c.has_bristle()) return false;
+void Run::switch_friction(const Closed& point) {
+  ContactPart& c = *point.part;
   const bool slips = c.friction_mode() == FrictionMode::stick;
   c.set_friction_mode(slips ? FrictionMode::slip : FrictionMode::stick);
-  sums_.events.push_back({time_, contact, slips ? MotionEvent::Kind::slip : MotionEvent::Kind::stick, c.sliding_speed(y_)});
-  return true;
+  note(point, slips ? MotionEvent::Kind::slip : MotionEvent::Kind::stick, c.sliding_speed(y_));
 }
 
 // Stick and slip that have ended: found as events, or left behind by a start that no mode fitted.
 bool Run::leave_broken_modes(bool at_event) {
   bool changed = false;
-  // Behind the events of contacts and springs, before those of the arms.
-  const std::size_t first = contacts_.size() + springs_.size();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+  const std::vector<Closed> all = points();
+  // Behind the events of points and springs, before those of the arms.
+  const std::size_t first = all.size() + springs_.size();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!all[k].part->closed() || !all[k].part->has_bristle()) continue;
     const bool ended = at_event && ida_->events_found()[first + k] < 0;
-    if (ended || contacts_[k].friction_margin(y_) < 0.0) changed = switch_friction(static_cast<int>(k)) || changed;
+    if (!ended && all[k].part->friction_margin(y_) >= 0.0) continue;
+    switch_friction(all[k]);
+    changed = true;
   }
   return changed;
 }
 
-// Contacts that would pull let go at once.
 void Run::settle() {
   make_rates();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (!contacts_[k].closed() || y_[contacts_[k].force_unknown()] >= -options_.force_tolerance) continue;
-    if (contacts_[k].has_law()) continue;
-    let_go(static_cast<int>(k));
-    make_rates();
-  }
   // Friction that starts outside of its mode changes it; a change may move the normal forces, so that it is asked again.
   constexpr int most_changes = 4;
-  for (int change = 0; change < most_changes; ++change) {
-    bool changed = false;
-    for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      if (contacts_[k].friction_margin(y_) < 0.0) changed = switch_friction(static_cast<int>(k)) || changed;
-    }
-    if (!changed) break;
-    make_rates();
-  }
+  for (int change = 0; change < most_changes && leave_broken_modes(false); ++change) make_rates();
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
+  for (ContactPoints& c : contacts_) c.forget();
 }
 
 EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
@@ -404,7 +495,7 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[0]);
     into->mount_forces.push_back(w.mount_forces[1]);
   }
-  for (const ContactPart& c : contacts_) e.strain += c.bristle_energy(at.y);
+  for (const Closed& p : points()) e.strain += p.part->bristle_energy(at.y);
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
     const multibody::RigidBodyState s = b.state(at.y);
@@ -421,11 +512,11 @@ EnergyBalance Run::stored(const DaePoint& at, MotionSample* into) {
 
 // Of a contact's force (or impulse) on its wire: what a driven body gives, with its work, and what goes on to rigidly
 // held components, where it is no part of the rod's own reaction.
-void Run::add_reactions(std::size_t contact, const Vector3d& force, const DaePoint& at,
+void Run::add_reactions(const Closed& contact, const Vector3d& force, const DaePoint& at,
                         Eigen::Ref<VectorXd> rates) const {
-  const ContactPart& c = contacts_[contact];
-  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact].wire)];
-  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact].body)];
+  const ContactPart& c = *contact.part;
+  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact.contact].wire)];
+  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact.contact].body)];
   const auto outer = [&rates](const Vector3d& f, const Vector3d& point) {
     rates.segment<3>(integral::outer) += f;
     rates.segment<3>(integral::outer_moment) += point.cross(f);
@@ -460,12 +551,12 @@ void Run::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer_moment) +=
         state.position.cross(force) - b.body().angular_drag * (state.orientation * state.spin);
   }
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (!contacts_[k].closed()) continue;
-    const Vector3d force = contacts_[k].sample(at).force;
-    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(k)) = force;
-    rates[integral::dissipated] += contacts_[k].lost_power(at.y);
-    add_reactions(k, force, at, rates);
+  for (const Closed& p : points()) {
+    if (!p.part->closed()) continue;
+    const Vector3d force = p.part->sample(at).force;
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(p.contact)) += force;
+    rates[integral::dissipated] += p.part->lost_power(at.y);
+    add_reactions(p, force, at, rates);
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const ContactSample s = springs_[k].sample(at);
@@ -485,12 +576,13 @@ void Run::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
 void Run::watch() {
   const DaePoint at{time_, y_, rate_};
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (!contacts_[k].closed()) continue;
-    const ContactSample s = contacts_[k].sample(at);
-    sums_.peak_force[k] = std::max(sums_.peak_force[k], s.normal_force);
-    if (contacts_[k].has_law()) continue;
-    sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
-    sums_.largest_gap = std::max(sums_.largest_gap, std::abs(s.gap));
+    const ContactSample sum = contacts_[k].closed_sample(at);
+    sums_.peak_force[k] = std::max(sums_.peak_force[k], sum.normal_force);
+    if (motion_.contacts[k].law) continue;
+    for (const ContactSample& s : sum.points) {
+      sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+      sums_.largest_gap = std::max(sums_.largest_gap, std::abs(s.gap));
+    }
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     double& peak = sums_.peak_force[contacts_.size() + k];
@@ -515,10 +607,12 @@ MotionSample Run::sample(const DaePoint& at, const VectorXd& integrals) {
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     s.contacts.push_back(contacts_[k].sample(at));
-    const std::array<Vector3d, 2> held = contacts_[k].force_on_mounts(at.y);
     const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
-    s.mount_forces[2 * w] -= held[0];
-    s.mount_forces[2 * w + 1] -= held[1];
+    for (const ContactPart& p : contacts_[k].points()) {
+      const std::array<Vector3d, 2> held = p.force_on_mounts(at.y);
+      s.mount_forces[2 * w] -= held[0];
+      s.mount_forces[2 * w + 1] -= held[1];
+    }
   }
   for (const SpringPart& spring : springs_) s.contacts.push_back(spring.sample(at));
   for (const wire::RodPart& r : rods_) {
@@ -551,6 +645,7 @@ void Run::begin() {
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
+  refused_ = close_touching();
   settle();
 }
 
@@ -565,7 +660,9 @@ void Run::resume(const MotionState& from) {
   rate_ = from.rates;
   integrals_ = from.integrals;
   sums_ = from.sums;
-  system_->recall(y_, from.memory);
+  std::span<const double> memory = from.memory;
+  for (ContactPoints& c : contacts_) c.recall(memory);
+  system_->recall(y_, memory);
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
 }
@@ -574,7 +671,7 @@ MotionResult Run::go(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
   bool stopped = write_until(time_);
-  while (!stopped && time_ < limit) {
+  while (!stopped && !refused_ && time_ < limit) {
     const numerics::IdaAdvance advance = ida_->advance(std::min(limit, linkage_->limit()));
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
@@ -597,22 +694,24 @@ MotionResult Run::go(double limit) {
       if (changed) settle();
       continue;
     }
-    for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      if (found[k] >= 0) continue;  // only a falling gap or force is an event
+    // The watch stops a step at a touch, without an event of the integrator.
+    if (std::none_of(found.begin(), found.end(), [](int f) { return f != 0; })) {
+      refused_ = close_touching();
+      if (refused_) break;
       changed = true;
-      if (contacts_[k].closed()) {
-        let_go(static_cast<int>(k));
-      } else {
-        close(static_cast<int>(k));
-      }
     }
-    for (std::size_t k = 0; k < springs_.size(); ++k) {
-      const std::size_t event = contacts_.size() + k;
+    std::size_t event = 0;
+    for (const Closed& p : points()) {
+      if (found[event++] >= 0) continue;  // only a falling force is an event
+      changed = true;
+      open(p);
+    }
+    for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
       if (found[event] == 0) continue;
       changed = true;
       const bool touch = found[event] > 0;
-      sums_.events.push_back({time_, static_cast<int>(event), touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off,
-                              0.0});
+      sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
+                              touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
     if (changed) settle();
     if (static_cast<int>(sums_.events.size()) > options_.max_events) {
@@ -620,6 +719,10 @@ MotionResult Run::go(double limit) {
       report.message = fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
       break;
     }
+  }
+  if (refused_) {
+    report.termination = numerics::Termination::iteration_limit;
+    report.message = *refused_;
   }
   if (stopped && report.usable()) {
     report.termination = numerics::Termination::interrupted;
@@ -648,7 +751,11 @@ MotionResult Run::result(numerics::IdaReport report) {
   r.largest_drift = sums_.largest_drift;
   r.statistics = sums_.statistics;
   r.wall_seconds = sums_.wall_seconds;
-  r.last = {time_, y_, rate_, integrals_, system_->memory(), sums_};
+  std::vector<double> memory;
+  for (const ContactPoints& c : contacts_) c.remember(memory);
+  const std::vector<double> parts = system_->memory();
+  memory.insert(memory.end(), parts.begin(), parts.end());
+  r.last = {time_, y_, rate_, integrals_, std::move(memory), sums_};
   return r;
 }
 

@@ -42,7 +42,7 @@ struct MotionBody {
   std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
 };
 
-/// A shape that belongs to a body and may touch a wire at one point.
+/// A shape that belongs to a body and may touch a wire, at several points at a time.
 struct MotionContact {
   std::string name = "contact";
   int wire = 0;                                                  ///< index
@@ -50,7 +50,8 @@ struct MotionContact {
   std::shared_ptr<const ContactShape> shape;                     ///< in a frame S fixed to the body
   Eigen::Vector3d shape_position = Eigen::Vector3d::Zero();      ///< p_BS [m]
   Eigen::Matrix3d shape_rotation = Eigen::Matrix3d::Identity();  ///< R_BS
-  double wire_radius = 0.0;                                      ///< half the wire's diameter [m], >= 0
+  double wire_radius = 0.0;  ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
+  int points = 4;            ///< most that are closed at a time, >= 1; more are a failure of the run
   MotionFriction friction;
   /// The papers' contact laws in place of the constraint: normal force [N] of penetration [m] and its rate [m/s], with
   /// the derivatives by both; never negative. Empty: the wire does not penetrate.
@@ -94,7 +95,7 @@ struct MotionOptions {
   double force_tolerance = 1e-2;     ///< [N], of multipliers: for the Newton iteration only
   int max_order = 2;                 ///< of IDA: see theory.md (M.2)
   double newton_share = 0.003;       ///< of these tolerances that Newton's method may leave at a step, in (0, 1)
-  double max_step = std::numeric_limits<double>::infinity();  ///< [s]
+  double max_step = std::numeric_limits<double>::infinity();  ///< [s]; no touch is missed without one
   int max_events = 100000;                                    ///< more are a failure
   /// At every multiple of this the integration begins anew at first order from what a MotionState holds, so that going on
   /// from there gives the same bits as having gone through [s], > 0.
@@ -112,6 +113,9 @@ struct ContactSample {
   double arc = 0.0;                                 ///< material coordinate [m]
   double slip_speed = 0.0;                          ///< [m/s]
   bool sticking = false;                            ///< closed, with a bristle that does not slide
+  /// Of a shape on a wire: its closed points, the one that presses most first. Then the forces above are their sums, gap and place those
+  /// of the first, or of the wire's nearest point while all are open.
+  std::vector<ContactSample> points;
 };
 
 /// Energies [J] of all wires, free bodies and arms.
@@ -153,6 +157,8 @@ struct MotionEvent {
   enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
   int contact = 0;  ///< index; springs count on after the contacts
+  int point = 0;    ///< of the contact
+  double arc = 0.0;  ///< material coordinate [m]
   Kind kind = Kind::touch;
   double approach_speed = 0.0;  ///< before a touch; of the sliding at `stick` and `slip` [m/s]
 };

@@ -22,9 +22,9 @@ constexpr int window_size =
 // Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
 constexpr double no_tolerance = 1e6;
 
-// A touch is noticed this far inside [m]: a contact that has just let go stands at zero up to round-off, and must be
-// taken for open until it comes back.
-constexpr double touch_depth = 1e-11;
+// Below this curvature of the gap along the wire [1/m] its minimum is none: a radius of relative curvature of a metre, beyond
+// any shape that wires meet.
+constexpr double least_curvature = 1.0;
 
 /// Weights of the slope of the curve at vertex i on the vertices i-1, i, i+1 (at an end on the three nearest).
 struct SlopeWeights {
@@ -150,6 +150,7 @@ std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
 
 void ContactPart::couple(std::vector<std::pair<int, int>>& entries) const {
   for (int k = 0; k < own_unknowns(); ++k) entries.emplace_back(first_ + k, first_ + k);
+  if (!coupled_) return;
   const std::vector<int> all = local_unknowns(window_);
   const int end = std::min(rod_.vertices(), window_ + window_size);
   const auto whole_row = [&](int row) {
@@ -267,7 +268,7 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
     rows.segment<2>(bristle_unknown()) +=
         at.rate.segment<2>(bristle_unknown()) - bristle_rate(contact_.friction, mode_, g.state);
   }
-  rows[first_] += g.normal.dot(g.slope);
+  rows[first_] += fixed_ ? at.y[first_] - kept_coordinate_ : g.normal.dot(g.slope);
   if (has_law()) {
     rows[force_unknown()] += g.state.normal - contact_.law(-g.gap, -g.gap_rate)[0];
     rows[stabiliser_unknown()] += g.mu;
@@ -310,7 +311,7 @@ void ContactPart::jacobian(const DaePoint& at, double rate_factor, std::vector<d
                                     contact_.friction.bristle_time;
       add(bristle_unknown() + a, unknown, -rate);
     }
-    add(first_, unknown, c.tangency);
+    if (!fixed_) add(first_, unknown, c.tangency);
     if (has_law()) {
       add(force_unknown(), unknown, d.lambda + law[1] * c.gap + law[2] * c.gap_rate);
     } else {
@@ -366,74 +367,40 @@ void ContactPart::jacobian(const DaePoint& at, double rate_factor, std::vector<d
     add(bristle_unknown() + a, bristle_unknown() + a, rate_factor);
   }
   if (has_law()) add(stabiliser_unknown(), stabiliser_unknown(), 1.0);
-}
-
-ContactPart::Nearest ContactPart::nearest(const VectorView& y) const {
-  const int last = rod_.vertices() - 1;
-  const Vector4d q = y.segment<4>(body_.quaternion());
-  const Matrix3d r_wb = multibody::rotation(q);
-  const Matrix3d r_ws = r_wb * contact_.shape_rotation;
-  const Vector3d origin = y.segment<3>(body_.position()) + r_wb * contact_.shape_position;
-  const auto distance = [&](const Vector3d& x) {
-    return contact_.shape->at(r_ws.transpose() * (x - origin));
-  };
-  int best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= last; ++i) {
-    const double d = distance(y.segment<3>(rod_.position_of(i))).distance;
-    if (d < least) {
-      least = d;
-      best = i;
-    }
-  }
-  // The curve's minimum on the two elements beside the best vertex: bisection of the slope n.X' of the distance.
-  const auto at = [&](double s) {
-    const CurveWeights w = curve_weights(rod_, s);
-    Vector3d x = Vector3d::Zero();
-    Vector3d slope = Vector3d::Zero();
-    for (int k = 0; k < 4; ++k) {
-      x += w.value[k] * y.segment<3>(rod_.position_of(w.first + k));
-      slope += w.slope[k] * y.segment<3>(rod_.position_of(w.first + k));
-    }
-    const DistanceField f = distance(x);
-    return std::pair{f.distance, (r_ws * f.normal).dot(slope)};
-  };
-  double low = rod_.coordinate(std::max(0, best - 1));
-  double high = rod_.coordinate(std::min(last, best + 1));
-  double f_low = at(low).second;
-  double f_high = at(high).second;
-  double s = rod_.coordinate(best);
-  if (f_low < 0.0 && f_high > 0.0) {
-    // Illinois; a root of a smooth function is found to round-off in about ten evaluations.
-    for (int k = 0; k < 60 && high - low > 1e-15 * rod_.coordinate(last); ++k) {
-      s = (low * f_high - high * f_low) / (f_high - f_low);
-      const double f = at(s).second;
-      if (f == 0.0) break;
-      if (f < 0.0) {
-        low = s;
-        f_low = f;
-        f_high *= 0.5;
-      } else {
-        high = s;
-        f_high = f;
-        f_low *= 0.5;
-      }
-      if (std::abs(f) < 1e-14) break;
-    }
-  }
-  return {s, at(s).first - contact_.wire_radius};
+  if (fixed_) add(first_, first_, 1.0);
 }
 
 void ContactPart::events(const DaePoint& at, std::span<double> values) {
-  if (!closed_) {
-    values[0] = nearest(at.y).gap - touch_gap_;
-  } else {
+  if (!closed_)
+    values[0] = 1.0;
+  else
     values[0] = has_law() ? -geometry(at.y).gap : at.y[force_unknown()];
-  }
 }
 
+// A minimum that flattens out is followed no further: beyond it zeta would be a maximum, or jump. The wire still rests there, and
+// where it then dips beside it is found as another touch.                                          theory.md (G.9)
 bool ContactPart::accept(const DaePoint& at) {
-  return closed_ && follow(at.y);
+  if (!closed_) return false;
+  const Geometry g = geometry(at.y);
+  const double slope = g.normal.dot(g.slope);
+  if (!fixed_) {
+    fixed_ = is_at_an_end(at.y[first_]) || gap_curvature(g) < least_curvature;
+    kept_coordinate_ = std::clamp(at.y[first_], 0.0, rod_.coordinate(rod_.vertices() - 1));
+  } else if (slope * fixed_slope_ < 0.0 && gap_curvature(g) > 2.0 * least_curvature) {
+    fixed_ = false;
+  }
+  fixed_slope_ = slope;
+  return follow(at.y);
+}
+
+double ContactPart::gap_curvature(const Geometry& g) const {
+  Direction along;
+  along.zeta = 1.0;
+  return change(g, along).tangency;
+}
+
+bool ContactPart::is_at_an_end(double coordinate) const {
+  return coordinate <= 0.0 || coordinate >= rod_.coordinate(rod_.vertices() - 1);
 }
 
 bool ContactPart::follow(const VectorView& y) {
@@ -443,10 +410,10 @@ bool ContactPart::follow(const VectorView& y) {
   return true;
 }
 
-bool ContactPart::close(Eigen::VectorXd& y) {
+bool ContactPart::close(double coordinate, Eigen::VectorXd& y) {
   closed_ = true;
   mode_ = FrictionMode::stick;
-  y[first_] = nearest(y).coordinate;
+  y[first_] = kept_coordinate_ = coordinate;
   y[stabiliser_unknown()] = 0.0;
   // The wire is moved out by what a touch is noticed late, so that the constraint holds from the start.
   for (int iteration = 0; iteration < 2 && !has_law(); ++iteration) {
@@ -465,13 +432,17 @@ bool ContactPart::close(Eigen::VectorXd& y) {
       }
     }
   }
-  return follow(y);
+  const Geometry g = geometry(y);
+  fixed_ = is_at_an_end(coordinate) || gap_curvature(g) < least_curvature;
+  fixed_slope_ = g.normal.dot(g.slope);
+  const bool added = !coupled_;
+  coupled_ = true;
+  return follow(y) || added;
 }
 
 double ContactPart::open(Eigen::VectorXd& y) {
   const double held = closed_ ? bristle_energy(y) : 0.0;
   closed_ = false;
-  touch_gap_ = std::min(0.0, geometry(y).gap) - touch_depth;
   kept_coordinate_ = y[first_];
   y[force_unknown()] = 0.0;
   y[stabiliser_unknown()] = 0.0;
@@ -481,24 +452,20 @@ double ContactPart::open(Eigen::VectorXd& y) {
 
 ContactSample ContactPart::sample(const DaePoint& at) const {
   ContactSample s;
+  const Geometry g = geometry(at.y);
   s.closed = closed_;
-  if (closed_) {
-    const Geometry g = geometry(at.y);
-    s.gap = g.gap;
-    s.force = g.force;
-    s.normal_force = g.state.normal;
-    s.point = g.x;
-    s.arc = at.y[first_];
-    s.slip_speed = g.state.sliding.norm();
-    s.sticking = has_bristle() && mode_ == FrictionMode::stick;
-    return s;
-  }
-  const Nearest n = nearest(at.y);
-  s.gap = n.gap;
-  s.arc = n.coordinate;
-  const CurveWeights w = curve_weights(rod_, n.coordinate);
-  for (int k = 0; k < 4; ++k) s.point += w.value[k] * at.y.segment<3>(rod_.position_of(w.first + k));
+  s.gap = g.gap;
+  s.force = g.force;
+  s.normal_force = g.state.normal;
+  s.point = g.x;
+  s.arc = at.y[first_];
+  s.slip_speed = g.state.sliding.norm();
+  s.sticking = has_bristle() && mode_ == FrictionMode::stick;
   return s;
+}
+
+double ContactPart::gap(const VectorView& y) const {
+  return geometry(y).gap;
 }
 
 double ContactPart::gap_rate(const VectorView& y) const {
@@ -578,15 +545,17 @@ Vector3d ContactPart::normal(const VectorView& y) const {
 }
 
 void ContactPart::remember(std::vector<double>& memory) const {
-  memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, touch_gap_, static_cast<double>(window_),
-                                mode_ == FrictionMode::stick ? 1.0 : 0.0});
+  memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, static_cast<double>(window_), coupled_ ? 1.0 : 0.0,
+                                fixed_ ? 1.0 : 0.0, fixed_slope_, mode_ == FrictionMode::stick ? 1.0 : 0.0});
 }
 
 void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memory) {
   closed_ = numerics::take(memory) != 0.0;
   kept_coordinate_ = numerics::take(memory);
-  touch_gap_ = numerics::take(memory);
   window_ = static_cast<int>(numerics::take(memory));
+  coupled_ = numerics::take(memory) != 0.0;
+  fixed_ = numerics::take(memory) != 0.0;
+  fixed_slope_ = numerics::take(memory);
   mode_ = numerics::take(memory) != 0.0 ? FrictionMode::stick : FrictionMode::slip;
 }
 
@@ -607,9 +576,7 @@ double ContactPart::gap_acceleration_at_rest(const VectorView& y) const {
   d.p = g.body_velocity;
   d.turn = g.omega;
   // zeta keeps the tangency.
-  Direction along;
-  along.zeta = 1.0;
-  d.zeta = -change(g, d).tangency / change(g, along).tangency;
+  if (!fixed_) d.zeta = -change(g, d).tangency / gap_curvature(g);
   return change(g, d).gap_rate;
 }
 

@@ -15,11 +15,12 @@ struct CurveWeights {
 };
 [[nodiscard]] CurveWeights curve_weights(const wire::RodPart& rod, double coordinate);
 
-/// One contact between a wire and a body's shape: material coordinate zeta, normal force lambda, and the multiplier mu
+/// One point of contact between a wire and a body's shape: material coordinate zeta, normal force lambda, and the multiplier mu
 /// that stabilises the constraint (Gear, Gupta, Leimkuhler 1985).                          theory.md (M.7)-(M.9)
 ///
 ///   closed:  n.X'(zeta) = 0,  g = 0,  dg/dt = 0;   x_k' = v_k + N_k n mu/m_k
 ///   open:    zeta = where it was, lambda = 0, mu = 0
+/// Where the gap has no proper minimum (an end of the wire, a wire that follows the surface) zeta stays on its material point.  (G.9)
 /// A bristle adds its deflection z in the tangent plane's axes a = X'/|X'| and b = n x a, which go with wire and body:
 ///   closed:  dz/dt = (f/k - z)/tau, friction f of tangent_force;    open:  z = 0
 /// With a law instead of the constraint lambda = law(-g, -dg/dt) while closed.
@@ -34,24 +35,22 @@ class ContactPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   [[nodiscard]] int event_count() const override { return 1; }
-  /// Open: the gap. Closed: the normal force (constraint), the penetration (law).
+  /// Closed: the normal force (constraint), the penetration (law). Open: nothing happens, see ContactSearch.
   void events(const numerics::DaePoint& at, std::span<double> values) override;
   /// The window of vertices that the pattern covers follows the contact.
   bool accept(const numerics::DaePoint& at) override;
 
   [[nodiscard]] bool closed() const { return closed_; }
   [[nodiscard]] bool has_law() const { return static_cast<bool>(contact_.law); }
-  /// The closest point of the wire: material coordinate and gap [m].
-  struct Nearest {
-    double coordinate = 0.0;
-    double gap = 0.0;
-  };
-  [[nodiscard]] Nearest nearest(const numerics::VectorView& y) const;
-  /// Closes at the closest point and sets the contact's own unknowns. True: the pattern changes.
-  [[nodiscard]] bool close(Eigen::VectorXd& y);
+  /// Whether zeta stays on its material point.
+  [[nodiscard]] bool is_fixed_to_wire() const { return fixed_; }
+  /// Closes at a material coordinate and sets the contact's own unknowns. True: the pattern changes.
+  [[nodiscard]] bool close(double coordinate, Eigen::VectorXd& y);
   /// Returns the energy that the bristle still held and that is lost [J].
-  double open(Eigen::VectorXd& y);
+  [[nodiscard]] double open(Eigen::VectorXd& y);
+  /// Of a closed point.
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
+  [[nodiscard]] double gap(const numerics::VectorView& y) const;
   /// Relative normal speed dg/dt [m/s].
   [[nodiscard]] double gap_rate(const numerics::VectorView& y) const;
   /// Power lost to friction (and taken by a law) [W].
@@ -103,6 +102,9 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] Geometry geometry(const numerics::VectorView& y) const;
   [[nodiscard]] Change change(const Geometry& g, const Direction& d) const;
   [[nodiscard]] bool follow(const numerics::VectorView& y);
+  /// d2 gap/d zeta2 [1/m].
+  [[nodiscard]] double gap_curvature(const Geometry& g) const;
+  [[nodiscard]] bool is_at_an_end(double coordinate) const;
   [[nodiscard]] std::vector<int> local_unknowns(int first_vertex) const;
   [[nodiscard]] int own_unknowns() const { return has_bristle() ? 5 : 3; }
   void respond_along(const Geometry& g, const Eigen::Vector3d& impulse, Eigen::VectorXd& dv) const;
@@ -114,8 +116,10 @@ class ContactPart final : public numerics::DaePart {
   bool closed_ = false;
   FrictionMode mode_ = FrictionMode::stick;
   double kept_coordinate_ = 0.0;
-  double touch_gap_ = 0.0;  // of the next touch [m], <= 0
-  int window_ = 0;          // first vertex that the pattern covers
+  bool fixed_ = false;        // zeta to its material point
+  double fixed_slope_ = 0.0;  // n.X' there at the last accepted state
+  bool coupled_ = false;      // has been closed, and is in the pattern
+  int window_ = 0;            // first vertex that the pattern covers
   int first_ = 0;
   const numerics::SparseMatrix* pattern_ = nullptr;
 };

@@ -28,9 +28,9 @@ class ContactShape {
   [[nodiscard]] virtual DistanceField at(const Eigen::Vector3d& p) const = 0;
   /// The distance alone [m].
   [[nodiscard]] virtual double distance(const Eigen::Vector3d& p) const { return at(p).distance; }
-  /// Whether the surface itself has a normal everywhere. A shape with edges needs a wire of some radius: on an edge a
-  /// bare line would have no direction of contact.
-  [[nodiscard]] virtual bool has_smooth_surface() const = 0;
+  /// Smallest radius of curvature where the surface is convex [m]: the Hessian's largest eigenvalue at a distance d outside is at most
+  /// 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line would have no direction of contact.
+  [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
 };
 
 /// A ball about the origin; radius 0 is a point.
@@ -38,7 +38,7 @@ class Ball final : public ContactShape {
  public:
   explicit Ball(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
-  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
+  [[nodiscard]] double smallest_radius() const override { return radius_; }
 
  private:
   double radius_;
@@ -49,7 +49,7 @@ class EndlessCylinder final : public ContactShape {
  public:
   explicit EndlessCylinder(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
-  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
+  [[nodiscard]] double smallest_radius() const override { return radius_; }
 
  private:
   double radius_;
@@ -62,7 +62,7 @@ class Capsule final : public ContactShape {
   /// radius >= 0 [m]; length > 0 of the segment, without the round ends [m].
   Capsule(double radius, double length) : radius_(radius), half_length_(0.5 * length) {}
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
-  [[nodiscard]] bool has_smooth_surface() const override { return radius_ > 0.0; }
+  [[nodiscard]] double smallest_radius() const override { return radius_; }
 
  private:
   double radius_;

@@ -24,7 +24,6 @@ class MeshShape final : public ContactShape {
 
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const override;
-  [[nodiscard]] bool has_smooth_surface() const override { return false; }
 
   /// Whether a point is inside, by counting the crossings of a ray instead of the nearest feature.
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;

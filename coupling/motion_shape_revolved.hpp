@@ -25,23 +25,23 @@ class RevolvedShape final : public ContactShape {
 
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const override;
-  [[nodiscard]] bool has_smooth_surface() const override { return false; }
   /// Points along the profile, arcs in `divisions` chords: for drawing.
   [[nodiscard]] std::vector<Eigen::Vector2d> outline(int divisions) const;
 
  private:
   /// A piece with what is needed again and again.
   struct Piece {
-    Eigen::Vector2d from, to, centre;
-    Eigen::Vector2d direction;  // of the chord, unit
+    Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();     // of an arc
+    Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of the chord, unit
     double length = 0.0;        // of the chord
     double curvature = 0.0;
   };
   /// The nearest point of the profile.
   struct Near {
-    double distance = 0.0;         // signed
-    Eigen::Vector2d normal;        // gradient of the distance in the half plane
-    double bending = 0.0;          // its second derivative across the gradient
+    double distance = 0.0;                              // signed
+    Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  // gradient of the distance in the half plane
+    double bending = 0.0;                               // its second derivative across the gradient
   };
   [[nodiscard]] Near nearest(const Eigen::Vector2d& p) const;
   [[nodiscard]] Eigen::Vector2d normal_at(const Piece& piece, const Eigen::Vector2d& p) const;

@@ -240,6 +240,7 @@ struct Ida::Memory {
   std::vector<int> events;
   IdaReport report;
   IdaStatistics counted;  // of earlier starts: IDA counts from each start
+  IdaWatch watch;
   double previous_time = 0.0;
 
   Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted);
@@ -412,6 +413,10 @@ IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const E
   return m.report;
 }
 
+void Ida::watch(IdaWatch watch) {
+  memory_->watch = std::move(watch);
+}
+
 IdaAdvance Ida::advance(double limit) {
   Memory& m = *memory_;
   check(IDASetStopTime(m.ida.get(), limit), "IDASetStopTime");
@@ -431,6 +436,17 @@ IdaAdvance Ida::advance(double limit) {
   ++s.steps;
   s.smallest_step = std::min(s.smallest_step, m.report.step);
   s.largest_step = std::max(s.largest_step, m.report.step);
+  if (m.watch) {
+    if (const std::optional<double> stop = m.watch(m.previous_time, *this)) {
+      check(IDAGetDky(m.ida.get(), *stop, 0, m.y_view.get()), "IDAGetDky");
+      check(IDAGetDky(m.ida.get(), *stop, 1, m.rate_view.get()), "IDAGetDky");
+      if (m.integrals.size() > 0) check(IDAGetQuadDky(m.ida.get(), *stop, 0, m.integrals_view.get()), "IDAGetQuadDky");
+      m.time = m.report.time = *stop;
+      std::fill(m.events.begin(), m.events.end(), 0);
+      m.callbacks.system.accept({m.time, m.y, m.rate});
+      return IdaAdvance::event;
+    }
+  }
   if (m.integrals.size() > 0) {
     double at = reached;
     check(IDAGetQuad(m.ida.get(), &at, m.integrals_view.get()), "IDAGetQuad");

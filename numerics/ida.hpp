@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,9 +72,15 @@ struct [[nodiscard]] IdaReport : SolveReport {
 enum class IdaAdvance {
   stepped,        ///< one internal step, short of the limit
   reached_limit,  ///< the state is at the limit
-  event,          ///< an event function is zero here: `events_found`
+  event,          ///< an event function is zero here: `events_found` (none: the watch has stopped the step)
   failed          ///< see `report`; the state is that of the last accepted step
 };
+
+class Ida;
+
+/// Asked after every internal step from `from` to the integrator's time, before the parts are told of it: a time in between at which to
+/// stop instead [s], or nothing.
+using IdaWatch = std::function<std::optional<double>(double from, const Ida& ida)>;
 
 /// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse Jacobian; the pattern is analysed
 /// when it changes only.                                                                  theory.md (M.1), (M.2)
@@ -92,7 +99,11 @@ class Ida {
   [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y,
                                              const Eigen::VectorXd& rate, double towards);
 
-  /// One internal step, never beyond `limit` [s].
+  /// For what no sign of a function shows, such as bodies that have passed through each other within a step.
+  void watch(IdaWatch watch);
+
+  /// One internal step, never beyond `limit` [s]. When the watch stops it the state is that of the dense output there; begin anew from
+  /// it before the next one.
   [[nodiscard]] IdaAdvance advance(double limit);
 
   [[nodiscard]] double time() const;

@@ -2,6 +2,7 @@
 
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_search.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
 
@@ -103,7 +104,8 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
   EXPECT_FALSE(contact.has_law());
   const VectorXd placed = y;
-  (void)contact.close(y);
+  const ContactSearch search(motion.contacts[0], rod, body, 1e-7);
+  (void)contact.close(search.nearest(y).coordinate, y);
   // Closing moves the wire out of the ball; back, to the plane in which the rod's frames have no holonomy.
   y.head(27) = placed.head(27);
   system.invalidate_pattern();
