@@ -3,6 +3,7 @@
 #include "coupling/motion_contact.hpp"
 #include "coupling/motion_linkage.hpp"
 #include "coupling/motion_mount.hpp"
+#include "multibody/arm_run.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
 
@@ -397,6 +398,48 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   EXPECT_EQ(before, 0.0);
   EXPECT_GT(after, 1e-3);
   EXPECT_LT(std::abs(result.energy.integrator), 1e-5 * result.energy.dissipated);
+}
+
+TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
+  // Piecewise law, friction that sticks, a servo that reaches its limit, a switch set off by a torque: the run of the arm by
+  // itself passes the same modes.
+  multibody::ElasticArm arm = small_arm(false, 1.0, 0.0);
+  for (multibody::ElasticJoint& joint : arm.joints) {
+    joint.spring = DeflectionLaw({{0.0, 300.0, 5.0}, {0.005, 3000.0, 20.0}});
+    joint.friction = {0.5, 0.8, 1e-3, 0.2};
+  }
+  MotionArm part = standing(arm, Drive::holding(0.0, 400.0, 60.0, 12.0));
+  part.drives[0].course = {0.0, 0.4, 0.05, 0.8};
+  part.drives[1].course = {0.0, -0.3, 0.05, 0.8};
+  multibody::DriveSwitch limp;
+  limp.time = 1.0;
+  limp.drives = {Drive::limp(), Drive::locked()};
+  part.switches = {limp};
+  part.loads = {{tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
+  multibody::ArmScenario alone;
+  alone.arm = part.arm;
+  alone.initial = part.start;
+  alone.drives = part.drives;
+  alone.switches = part.switches;
+  alone.loads = part.loads;
+  alone.end = 2.0;
+  alone.ida.relative_tolerance = 1e-8;
+  alone.tolerances = {1e-11, 1e-8};
+  const multibody::ArmHistory history = multibody::simulate(alone);
+  ASSERT_TRUE(history.report.usable()) << history.report.message;
+  EXPECT_GT(history.events.size(), 5U);
+  Motion motion;
+  motion.arms = {part};
+  MotionOptions options = fine(2.0);
+  MotionSample last;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) { last = s; return false; });
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  const multibody::ArmSample& expected = history.samples.back();
+  EXPECT_LT((last.arms[0].state.q - expected.state.q).norm(), 1e-6);
+  EXPECT_LT((last.arms[0].state.motor - expected.state.motor).norm(), 1e-6);
+  EXPECT_NEAR(last.energy.kinetic + last.energy.strain, expected.energy, 1e-5);
+  EXPECT_NEAR(last.energy.dissipated, expected.work.lost, 1e-5);
+  EXPECT_GE(result.statistics.restarts, static_cast<long>(history.events.size()) / 2);
 }
 
 TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
