@@ -53,13 +53,13 @@ double rate_bound(std::size_t derivatives, double h, const Norm& norm) {
 
 }  // namespace
 
-WireCurve::WireCurve(const wire::RodPart& rod) : positions_(rod.position_of(0)), vertices_(rod.vertices()) {
+WireCurve::WireCurve(const wire::RodPart& rod) : rod_(rod) {
   for (int e = 0; e + 1 < rod.vertices(); ++e) {
     Piece piece;
     piece.begin = rod.coordinate(e);
     piece.length = rod.coordinate(e + 1) - piece.begin;
     const CurveWeights w = curve_weights(rod, piece.begin);
-    piece.first = rod.position_of(w.first);
+    piece.first = w.first;
     // X = a0 + a1 u + a2 u^2 + ... at its beginning, and the vertex at its end.
     const Vector4d a1 = piece.length * w.slope;
     const Vector4d a2 = 0.5 * piece.length * piece.length * w.bend;
@@ -71,11 +71,11 @@ WireCurve::WireCurve(const wire::RodPart& rod) : positions_(rod.position_of(0)),
 
 WireCurve::Control WireCurve::control(int element, const VectorView& y) const {
   const Piece& piece = pieces_[static_cast<std::size_t>(element)];
-  return Eigen::Map<const Control>(y.data() + piece.first) * piece.weights;
+  return Eigen::Map<const Control>(y.data() + rod_.position_of(piece.first)) * piece.weights;
 }
 
 double WireCurve::largest(const VectorXd& y, const Vector3d& offset) const {
-  return std::sqrt((Eigen::Map<const Eigen::Matrix3Xd>(y.data() + positions_, 3, vertices_).colwise() - offset)
+  return std::sqrt((Eigen::Map<const Eigen::Matrix3Xd>(y.data() + rod_.position_of(0), 3, rod_.vertices()).colwise() - offset)
                        .colwise()
                        .squaredNorm()
                        .maxCoeff());
