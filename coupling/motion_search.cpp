@@ -110,11 +110,12 @@ ContactSearch::ContactSearch(const MotionContact& contact, const wire::RodPart& 
       curve_(rod) {
   double shortest = curve_.length(0);
   for (int e = 1; e < curve_.elements(); ++e) shortest = std::min(shortest, curve_.length(e));
-  // The gap's curvature along a straight wire that touches is at most one over this radius; a quarter of that length shows every
-  // minimum. A fine wire is not cut into more than 64 pieces an element.
+  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii; a quarter of that length shows every
+  // minimum. A wire that bends round a large shape shows two within an element: a quarter of that. An element is not cut into more than 64.
   constexpr double share = 0.25;
   constexpr double most_pieces = 64.0;
-  resolution_ = std::clamp(share * (wire_radius_ + shape_->smallest_radius()), shortest / most_pieces, share * shortest);
+  const double radius = wire_radius_ + shape_->smallest_radius();
+  resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, shortest)), shortest / most_pieces);
   skip_depth_ = std::max(1e-3 * wire_radius_, 10.0 * position_tolerance);
 }
 
@@ -191,9 +192,17 @@ void ContactSearch::subdivide(const Pose& pose, int element, const WireCurve::Co
 std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& elements, const VectorView& y, double reach) const {
   const Pose where = pose(y);
   std::vector<Interval> intervals;
+  Place end;
+  int before = -1;
   for (const int e : elements) {
     const WireCurve::Control c = curve_.control(e, y);
-    subdivide(where, e, c, c, place(where, c, e, 0.0), place(where, c, e, 1.0), reach, intervals);
+    // The curve is C1: the end of one element is the beginning of the next.
+    Place begin = end;
+    begin.u = 0.0;
+    if (e != before + 1 || before < 0) begin = place(where, c, e, 0.0);
+    end = place(where, c, e, 1.0);
+    before = e;
+    subdivide(where, e, c, c, begin, end, reach, intervals);
   }
   std::vector<GapMinimum> found;
   const auto add = [&](double coordinate, double gap) {

@@ -73,8 +73,9 @@ class ContactSearch {
     double from = 0.0, to = 0.0;             ///< [s]
     std::vector<Eigen::VectorXd> derivatives;  ///< of the unknowns at its end, from the first on
   };
-  /// First time in [step.from, until] at which a local minimum other than those `held` falls to `touch` [m, <= 0]: conservative advancement, which no speed and no thin shape passes by. Minima that dip by less than
-  /// `skip_depth` between two positive gaps may be missed.
+  /// First time in [step.from, until] at which a local minimum other than those `held` falls to `touch` [m, <= 0]: conservative
+  /// advancement, which no speed and no thin shape passes by. Minima that dip by less than `skip_depth` between two positive gaps may be
+  /// missed.
   [[nodiscard]] std::optional<double> first_touch(const Step& step, double until, const std::vector<Held>& held, double touch);
   /// Those minima at a state whose gap is at most `touch`.
   [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held, double touch) const;

@@ -20,6 +20,11 @@ struct PushTables {
 /// Contact position and travel are left to the caller.
 [[nodiscard]] PushTest read_push_test(const PushTables& tables);
 
+/// Reads and checks a wire alone, of a table with the keys of [wire].
+[[nodiscard]] wire::WireSpecification read_wire(const numerics::TomlTable& table);
+/// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const numerics::TomlTable& table);
+
 /// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);
 
