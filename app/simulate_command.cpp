@@ -2,6 +2,7 @@
 #include "app/experiment_input.hpp"
 #include "app/simulate_kinds.hpp"
 #include "coupling/contact_scenario.hpp"
+#include "coupling/motion_scenario.hpp"
 #include "numerics/errors.hpp"
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& 
   const std::string asked = coupling::scenario_kind(file, own);
   if (options.threads > 0) omp_set_num_threads(options.threads);
   std::string known;
+  if (asked == "contact" && coupling::lists_bodies(file, overrides_of(options))) return simulate_bodies(file, options, console);
   for (const Kind& kind : kinds) {
     if (asked == kind.name) return kind.run(file, options, console);
     known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);

@@ -2,6 +2,7 @@
 // cost, time a step against the number of elements, ten runs at once on one and two threads.
 
 #include "coupling/motion.hpp"
+#include "coupling/motion_shape_mesh.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <benchmark/benchmark.h>
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 namespace snare::benchmarks {
 namespace {
@@ -38,6 +40,31 @@ coupling::Motion impact(int elements) {
   contact.friction = {0.3, 0.1, 0.01, 1.0};
   motion.contacts.push_back(contact);
   return motion;
+}
+
+/// A ball of triangles, from pole to pole in `around`/2 rings.
+std::shared_ptr<const coupling::ContactShape> tessellated_ball(double radius, int around) {
+  coupling::TriangleMesh m;
+  const int rings = around / 2 - 1;
+  m.points.emplace_back(0.0, 0.0, -radius);
+  for (int k = 1; k <= rings; ++k) {
+    const double tilt = std::numbers::pi * (k / (rings + 1.0) - 0.5);
+    for (int j = 0; j < around; ++j) {
+      const double a = 2.0 * std::numbers::pi * j / around;
+      m.points.emplace_back(radius * std::cos(tilt) * std::cos(a), radius * std::cos(tilt) * std::sin(a), radius * std::sin(tilt));
+    }
+  }
+  m.points.emplace_back(0.0, 0.0, radius);
+  const auto point = [around](int k, int j) { return 1 + (k - 1) * around + j % around; };
+  for (int j = 0; j < around; ++j) {
+    m.triangles.push_back({0, point(1, j + 1), point(1, j)});
+    m.triangles.push_back({1 + rings * around, point(rings, j), point(rings, j + 1)});
+    for (int k = 1; k < rings; ++k) {
+      m.triangles.push_back({point(k, j), point(k, j + 1), point(k + 1, j)});
+      m.triangles.push_back({point(k, j + 1), point(k + 1, j + 1), point(k + 1, j)});
+    }
+  }
+  return std::make_shared<coupling::MeshShape>(m);
 }
 
 void report(benchmark::State& state, const coupling::MotionResult& result) {
@@ -104,6 +131,40 @@ BENCHMARK(elements)
     ->Arg(10000)
     ->Unit(benchmark::kMillisecond)
     ->Complexity(benchmark::oN);
+
+// What finding touches costs a step beside the whole step, far from the wire and in contact: share of the run. The pin is a ball or its
+// tessellation in 2400 triangles.
+void search(benchmark::State& state) {
+  const int elements_of_wire = static_cast<int>(state.range(0));
+  const bool mesh = state.range(1) != 0;
+  const bool near = state.range(2) != 0;
+  coupling::Motion motion = impact(elements_of_wire);
+  if (mesh) motion.contacts[0].shape = tessellated_ball(6.0 * mm, 50);
+  if (!near) motion.bodies[0].start.position.y() -= 50.0 * mm;
+  coupling::MotionOptions options;
+  options.duration = near ? 1.2e-3 : 2e-4;
+  options.max_step = 1e-5;
+  coupling::MotionResult result;
+  for (auto _ : state) result = coupling::simulate(motion, options);
+  report(state, result);
+  state.counters["search_seconds_a_step"] = result.search_seconds / static_cast<double>(result.statistics.steps);
+  state.counters["search_share"] = result.search_seconds / result.wall_seconds;
+}
+BENCHMARK(search)->ArgNames({"elements", "mesh", "near"})->ArgsProduct({{1000}, {0, 1}, {0, 1}})->Unit(benchmark::kMillisecond);
+
+// For comparison: the distance of all 1001 vertices, which a search without bounds asks for at least once a step.
+void scan_all_vertices(benchmark::State& state) {
+  const bool mesh = state.range(0) != 0;
+  const coupling::Motion motion = impact(1000);
+  const auto shape = mesh ? tessellated_ball(6.0 * mm, 50) : motion.contacts[0].shape;
+  const Eigen::Vector3d place = motion.bodies[0].start.position + motion.contacts[0].shape_position;
+  for (auto _ : state) {
+    double least = 1.0;
+    for (const auto& x : motion.wires[0].positions.colwise()) least = std::min(least, shape->distance(x - place));
+    benchmark::DoNotOptimize(least);
+  }
+}
+BENCHMARK(scan_all_vertices)->ArgName("mesh")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 // Ten independent runs on one thread and on two in turn: the second's speed over the first's.
 void ten_runs(benchmark::State& state) {

@@ -372,6 +372,7 @@ void Run::make_rates() {
 // The first touch of any contact within the integrator's last step.
 std::optional<double> Run::first_touch(double from, const numerics::Ida& ida) {
   if (contacts_.empty()) return std::nullopt;
+  const auto clock = std::chrono::steady_clock::now();
   ContactSearch::Step step{ida, from, ida.time(), {}};
   for (int k = 1; k <= ida.last_order(); ++k) step.derivatives.push_back(ida.interpolate(ida.time(), k));
   std::optional<double> first;
@@ -381,6 +382,7 @@ std::optional<double> Run::first_touch(double from, const numerics::Ida& ida) {
   if (first) {
     for (ContactPoints& c : contacts_) c.forget();
   }
+  result_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return first;
 }
 

@@ -206,6 +206,7 @@ struct MotionResult {
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
+  double search_seconds = 0.0;  ///< of them, in finding touches
   MotionState last;  ///< to go on from; kept on failure too
 };
 

@@ -53,13 +53,13 @@ double rate_bound(std::size_t derivatives, double h, const Norm& norm) {
 
 }  // namespace
 
-WireCurve::WireCurve(const wire::RodPart& rod) : positions_(rod.position_of(0)), vertices_(rod.vertices()) {
+WireCurve::WireCurve(const wire::RodPart& rod) : rod_(rod) {
   for (int e = 0; e + 1 < rod.vertices(); ++e) {
     Piece piece;
     piece.begin = rod.coordinate(e);
     piece.length = rod.coordinate(e + 1) - piece.begin;
     const CurveWeights w = curve_weights(rod, piece.begin);
-    piece.first = rod.position_of(w.first);
+    piece.first = w.first;
     // X = a0 + a1 u + a2 u^2 + ... at its beginning, and the vertex at its end.
     const Vector4d a1 = piece.length * w.slope;
     const Vector4d a2 = 0.5 * piece.length * piece.length * w.bend;
@@ -71,11 +71,11 @@ WireCurve::WireCurve(const wire::RodPart& rod) : positions_(rod.position_of(0)),
 
 WireCurve::Control WireCurve::control(int element, const VectorView& y) const {
   const Piece& piece = pieces_[static_cast<std::size_t>(element)];
-  return Eigen::Map<const Control>(y.data() + piece.first) * piece.weights;
+  return Eigen::Map<const Control>(y.data() + rod_.position_of(piece.first)) * piece.weights;
 }
 
 double WireCurve::largest(const VectorXd& y, const Vector3d& offset) const {
-  return std::sqrt((Eigen::Map<const Eigen::Matrix3Xd>(y.data() + positions_, 3, vertices_).colwise() - offset)
+  return std::sqrt((Eigen::Map<const Eigen::Matrix3Xd>(y.data() + rod_.position_of(0), 3, rod_.vertices()).colwise() - offset)
                        .colwise()
                        .squaredNorm()
                        .maxCoeff());
@@ -110,11 +110,12 @@ ContactSearch::ContactSearch(const MotionContact& contact, const wire::RodPart& 
       curve_(rod) {
   double shortest = curve_.length(0);
   for (int e = 1; e < curve_.elements(); ++e) shortest = std::min(shortest, curve_.length(e));
-  // The gap's curvature along a straight wire that touches is at most one over this radius; a quarter of that length shows every
-  // minimum. A fine wire is not cut into more than 64 pieces an element.
+  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii; a quarter of that length shows every
+  // minimum. A wire that bends round a large shape shows two within an element: a quarter of that. An element is not cut into more than 64.
   constexpr double share = 0.25;
   constexpr double most_pieces = 64.0;
-  resolution_ = std::clamp(share * (wire_radius_ + shape_->smallest_radius()), shortest / most_pieces, share * shortest);
+  const double radius = wire_radius_ + shape_->smallest_radius();
+  resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, shortest)), shortest / most_pieces);
   skip_depth_ = std::max(1e-3 * wire_radius_, 10.0 * position_tolerance);
 }
 
@@ -191,9 +192,17 @@ void ContactSearch::subdivide(const Pose& pose, int element, const WireCurve::Co
 std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& elements, const VectorView& y, double reach) const {
   const Pose where = pose(y);
   std::vector<Interval> intervals;
+  Place end;
+  int before = -1;
   for (const int e : elements) {
     const WireCurve::Control c = curve_.control(e, y);
-    subdivide(where, e, c, c, place(where, c, e, 0.0), place(where, c, e, 1.0), reach, intervals);
+    // The curve is C1: the end of one element is the beginning of the next.
+    Place begin = end;
+    begin.u = 0.0;
+    if (e != before + 1 || before < 0) begin = place(where, c, e, 0.0);
+    end = place(where, c, e, 1.0);
+    before = e;
+    subdivide(where, e, c, c, begin, end, reach, intervals);
   }
   std::vector<GapMinimum> found;
   const auto add = [&](double coordinate, double gap) {

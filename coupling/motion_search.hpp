@@ -18,6 +18,7 @@ class WireCurve {
  public:
   using Control = Eigen::Matrix<double, 3, 4>;
 
+  /// The rod stays the caller's; where its unknowns are is asked when they are wanted.
   explicit WireCurve(const wire::RodPart& rod);
 
   [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
@@ -33,11 +34,11 @@ class WireCurve {
  private:
   struct Piece {
     double begin = 0.0, length = 0.0;
-    int first = 0;            // unknown of the first of four vertices
+    int first = 0;            // of four vertices
     Eigen::Matrix4d weights;  // of vertices (rows) in control points (columns)
   };
   std::vector<Piece> pieces_;
-  int positions_ = 0, vertices_ = 0;
+  const wire::RodPart& rod_;
   double largest_weight_sum_ = 1.0;
 };
 
@@ -72,8 +73,9 @@ class ContactSearch {
     double from = 0.0, to = 0.0;             ///< [s]
     std::vector<Eigen::VectorXd> derivatives;  ///< of the unknowns at its end, from the first on
   };
-  /// First time in [step.from, until] at which a local minimum other than those `held` falls to `touch` [m, <= 0]: conservative advancement, which no speed and no thin shape passes by. Minima that dip by less than
-  /// `skip_depth` between two positive gaps may be missed.
+  /// First time in [step.from, until] at which a local minimum other than those `held` falls to `touch` [m, <= 0]: conservative
+  /// advancement, which no speed and no thin shape passes by. Minima that dip by less than `skip_depth` between two positive gaps may be
+  /// missed.
   [[nodiscard]] std::optional<double> first_touch(const Step& step, double until, const std::vector<Held>& held, double touch);
   /// Those minima at a state whose gap is at most `touch`.
   [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held, double touch) const;

@@ -34,6 +34,8 @@ std::string in_mm(double metres) {
   return fmt::format("{:.6g}", metres / mm);
 }
 
+}  // namespace
+
 wire::WireSpecification read_wire(const TomlTable& table) {
   static constexpr Choice<wire::Construction> constructions[] = {{"solid", wire::Construction::solid},
                                                                  {"strand", wire::Construction::strand}};
@@ -72,6 +74,8 @@ wire::WireSpecification read_wire(const TomlTable& table) {
                                           wire.bending_stiffness(), smallest_bending_stiffness));
   return wire;
 }
+
+namespace {
 
 wire::MountSpecification read_mount(const TomlTable& table) {
   static constexpr Choice<wire::MountKind> kinds[] = {{"clamped", wire::MountKind::clamped},
@@ -133,21 +137,22 @@ std::array<double, 3> read_gravity(const TomlTable& table) {
   return {values[0], values[1], values[2]};
 }
 
-/// What no key can say alone. A number that was refused is NaN, and no comparison with it holds.
-void check_wire_between_mounts(const PushTest& test, const PushTables& tables) {
-  const double span = test.mount.span;
-  const bool rests = test.mount.kind == wire::MountKind::supports;
+// What no key can say alone. A number that was refused is NaN, and no comparison with it holds.
+void check_length_and_diameter(const wire::WireSpecification& wire, double span, bool rests, const TomlTable& table) {
   const double shortest = (rests ? 1.0 : shortest_length) * span;
-  if (test.wire.length < shortest)
-    tables.wire.fail("length_mm", rests ? fmt::format("must be >= {}, the span of the supports", in_mm(span))
-                                        : fmt::format("must be >= {}, {:g} % of the span of {} mm",
-                                                      in_mm(shortest), 100.0 * shortest_length, in_mm(span)));
-  if (test.wire.diameter >= thickest_wire * span)
-    tables.wire.fail("diameter_mm", fmt::format("must be < {}, a fifth of the span of {} mm",
-                                                in_mm(thickest_wire * span), in_mm(span)));
+  if (wire.length < shortest)
+    table.fail("length_mm", rests ? fmt::format("must be >= {}, the span of the supports", in_mm(span))
+                                  : fmt::format("must be >= {}, {:g} % of the span of {} mm", in_mm(shortest),
+                                                100.0 * shortest_length, in_mm(span)));
+  if (wire.diameter >= thickest_wire * span)
+    table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the span of {} mm", in_mm(thickest_wire * span), in_mm(span)));
 }
 
 }  // namespace
+
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const TomlTable& table) {
+  check_length_and_diameter(wire, span, false, table);
+}
 
 PushTest read_push_test(const PushTables& tables) {
   PushTest test;
@@ -156,7 +161,7 @@ PushTest read_push_test(const PushTables& tables) {
   test.pusher = read_pusher(tables.pusher);
   test.bulge = read_bulge(tables.bulge);
   test.gravity = read_gravity(tables.gravity);
-  check_wire_between_mounts(test, tables);
+  check_length_and_diameter(test.wire, test.mount.span, test.mount.kind == wire::MountKind::supports, tables.wire);
   return test;
 }
 

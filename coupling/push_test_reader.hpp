@@ -24,6 +24,11 @@ struct PushTables {
 /// curvature.
 void require_simple_motion(const PushTables& tables, const PushTest& test);
 
+/// Reads and checks a wire alone, of a table with the keys of [wire].
+[[nodiscard]] wire::WireSpecification read_wire(const numerics::TomlTable& table);
+/// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const numerics::TomlTable& table);
+
 /// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);
 

@@ -86,6 +86,28 @@ TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   }
 }
 
+// A shaft among three wires strikes the lower one; names stand in the files.
+TEST_F(SimulateCommand, GrappleShaftBetweenWires) {
+  ASSERT_EQ(run("grapple_shaft.toml", "--set duration_s=0.16 --set wires[lower].elements=24 --set wires[left].elements=16 --set wires[right].elements=16"), 0)
+      << contents("log.txt");
+  const json s = summary();
+  ASSERT_EQ(s["contacts"].size(), 6u);
+  EXPECT_EQ(s["contacts"][0]["contact"], "shaft on lower");
+  EXPECT_EQ(s["contacts"][0]["wire"], "lower");
+  EXPECT_EQ(s["bodies"][0]["body"], "target");
+  EXPECT_GE(s["contacts"][0]["touches"].get<int>(), 1);
+  EXPECT_EQ(s["contacts"][1]["touches"].get<int>(), 0);
+  ASSERT_FALSE(s["events"].empty());
+  EXPECT_EQ(s["events"][0]["contact"], "shaft on lower");
+  // 18.88 mm of bulge less shaft and wire radius at 0.1 m/s; the wire's bulge on 24 elements is within 0.1 mm of that.
+  EXPECT_NEAR(s["events"][0]["time_s"].get<double>(), (18.88 - 6.75) * 1e-3 / 0.1, 2e-3);
+  EXPECT_LT(s["largest_penetration_m"].get<double>(), 1e-6);
+  EXPECT_NE(contents("out/history.csv").find("target vy_m_s"), std::string::npos);
+  EXPECT_NE(contents("out/history.csv").find("shaft on lower normal_N"), std::string::npos);
+  EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
+  EXPECT_NE(contents("out/report.html").find("class=\"animation\""), std::string::npos);
+}
+
 TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   ASSERT_EQ(run("jemrms_step.toml", ""), 0) << contents("log.txt");
   const json s = summary();

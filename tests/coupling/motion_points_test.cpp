@@ -161,7 +161,7 @@ TEST(MotionPoints, TwoRimsBearHalfEach) {
   Motion motion = body_below(soft_wire(20), hourglass, {0.1, -0.012, 0.0}, 0.3, 0.05);
   motion.contacts[0].shape_rotation = along_the_wire();
   MotionOptions options;
-  options.duration = 0.02;
+  options.duration = 0.01;
   options.relative_tolerance = 1e-7;
   options.position_tolerance = 1e-10;
   options.velocity_tolerance = options.spin_tolerance = 1e-7;
@@ -205,6 +205,11 @@ TEST(MotionPoints, SeveralShapesOnSeveralBodiesTouchTogether) {
   motion.wires[1].name = "second";
   motion.wires[1].rod.properties.left.position.z() = motion.wires[1].rod.properties.right.position.z() = 0.05;
   motion.wires[1].positions.row(2).setConstant(0.05);
+  // A third one out of reach, so that nobody mistakes one wire for another.
+  motion.wires.push_back(motion.wires[0]);
+  motion.wires[2].name = "third";
+  motion.wires[2].rod.properties.left.position.y() = motion.wires[2].rod.properties.right.position.y() = 0.1;
+  motion.wires[2].positions.row(1).setConstant(0.1);
   motion.bodies.push_back(motion.bodies[0]);
   motion.bodies[1].name = "bar";
   motion.bodies[1].start.position = {0.14, -0.012, 0.025};
@@ -216,14 +221,24 @@ TEST(MotionPoints, SeveralShapesOnSeveralBodiesTouchTogether) {
   bar.wire = 1;
   bar.name = "bar on the second";
   motion.contacts.push_back(bar);
+  bar.wire = 2;
+  bar.name = "bar on the third";
+  motion.contacts.push_back(bar);
   MotionOptions options;
   options.duration = 0.02;
-  const MotionResult result = simulate(motion, options);
+  const MotionResult result = simulate(motion, options, [](const MotionSample& s) {
+    if (s.time == 0.0) {
+      EXPECT_NEAR(s.contacts[3].gap, 0.101, 1e-12);
+    }
+    EXPECT_GT(s.contacts[3].gap, 0.09);
+    return false;
+  });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   ASSERT_GE(result.events.size(), 3u);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(result.events[static_cast<std::size_t>(k)].time, 1e-3 / 0.3, 1e-9);
   EXPECT_EQ(result.events[0].contact + result.events[1].contact + result.events[2].contact, 3);
-  for (const double peak : result.peak_force) EXPECT_GT(peak, 0.05);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(result.peak_force[k], 0.05);
+  EXPECT_EQ(result.peak_force[3], 0.0);
   EXPECT_LT(result.momentum_error.norm(), 5e-3 * result.impulse[0].norm());
 }
 

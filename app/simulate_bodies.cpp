@@ -1,0 +1,256 @@
+#include "app/commands.hpp"
+#include "app/experiment_input.hpp"
+#include "app/paraview.hpp"
+#include "app/report_page.hpp"
+#include "app/simulate_kinds.hpp"
+#include "coupling/motion_scenario.hpp"
+#include "numerics/csv.hpp"
+#include "numerics/files.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+namespace snare::app {
+
+namespace {
+
+using coupling::ContactSample;
+using coupling::MotionEvent;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using coupling::MotionScenario;
+using Eigen::Vector3d;
+using nlohmann::json;
+
+json vector_json(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void write_history(const std::filesystem::path& file, const MotionScenario& scenario, const std::vector<MotionSample>& samples) {
+  std::vector<std::string> columns{"time_s"};
+  for (const auto& b : scenario.motion.bodies) {
+    for (const char* of : {"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s"})
+      columns.push_back(fmt::format("{} {}", b.name, of));
+  }
+  for (const auto& c : scenario.motion.contacts) {
+    for (const char* of : {"points", "gap_mm", "arc_mm", "normal_N", "fx_N", "fy_N", "fz_N"}) columns.push_back(fmt::format("{} {}", c.name, of));
+  }
+  for (const char* of : {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"}) columns.emplace_back(of);
+  numerics::CsvWriter csv(file, columns);
+  for (const MotionSample& s : samples) {
+    std::vector<numerics::CsvCell> row{s.time};
+    for (const multibody::RigidBodyState& b : s.bodies) {
+      for (const double x : b.position) row.emplace_back(1e3 * x);
+      for (const double x : {b.orientation.w(), b.orientation.x(), b.orientation.y(), b.orientation.z()}) row.emplace_back(x);
+      for (const double x : b.velocity) row.emplace_back(x);
+      for (const double x : b.spin) row.emplace_back(x);
+    }
+    for (const ContactSample& c : s.contacts) {
+      for (const double x : {static_cast<double>(c.points.size()), 1e3 * c.gap, 1e3 * c.arc, c.normal_force}) row.emplace_back(x);
+      for (const double x : c.force) row.emplace_back(x);
+    }
+    for (const double x : {s.energy.kinetic, s.energy.strain, s.energy.potential, s.energy.dissipated, s.energy.impacts, s.energy.work, s.energy.integrator})
+      row.emplace_back(x);
+    csv.row(row);
+  }
+  csv.commit();
+}
+
+json contact_json(const MotionScenario& scenario, const MotionResult& r, const std::vector<MotionSample>& samples, std::size_t k) {
+  json first;
+  json last;
+  int touches = 0;
+  for (const MotionEvent& e : r.events) {
+    if (static_cast<std::size_t>(e.contact) != k) continue;
+    if (e.kind == MotionEvent::Kind::touch) {
+      if (touches++ == 0) first = e.time;
+    } else {
+      last = e.time;
+    }
+  }
+  std::size_t most = 0;
+  for (const MotionSample& s : samples) most = std::max(most, s.contacts[k].points.size());
+  const coupling::MotionContact& c = scenario.motion.contacts[k];
+  return {{"contact", c.name},
+          {"body", scenario.motion.bodies[static_cast<std::size_t>(c.body)].name},
+          {"wire", scenario.motion.wires[static_cast<std::size_t>(c.wire)].name},
+          {"peak_force_N", r.peak_force[k]},
+          {"impulse_Ns", vector_json(r.impulse[k])},
+          {"first_touch_s", first},
+          {"last_lift_off_s", last},
+          {"touches", touches},
+          {"most_points", most},
+          {"in_contact_at_the_end", samples.back().contacts[k].closed}};
+}
+
+json summary_of(const MotionScenario& scenario, const MotionResult& r, const std::vector<MotionSample>& samples) {
+  json summary{{"schema", "snare-summary/1"},
+               {"kind", "contact"},
+               {"title", scenario.title},
+               {"source", scenario.source},
+               {"version", version()},
+               {"duration_s", scenario.options.duration},
+               {"finished", r.report.usable()},
+               {"message", r.report.usable() ? json() : json(r.report.message)},
+               {"time_s", r.report.time},
+               {"bodies", json::array()},
+               {"contacts", json::array()},
+               {"events", json::array()}};
+  for (std::size_t k = 0; k < scenario.motion.bodies.size(); ++k) {
+    const multibody::RigidBodyState& before = samples.front().bodies[k];
+    const multibody::RigidBodyState& after = samples.back().bodies[k];
+    summary["bodies"].push_back({{"body", scenario.motion.bodies[k].name},
+                                 {"position_after_mm", vector_json(1e3 * after.position)},
+                                 {"velocity_before_m_s", vector_json(before.velocity)},
+                                 {"velocity_after_m_s", vector_json(after.velocity)},
+                                 {"spin_before_rad_s", vector_json(before.spin)},
+                                 {"spin_after_rad_s", vector_json(after.spin)}});
+  }
+  for (std::size_t k = 0; k < scenario.motion.contacts.size(); ++k) summary["contacts"].push_back(contact_json(scenario, r, samples, k));
+  for (const MotionEvent& e : r.events) {
+    const bool touch = e.kind == MotionEvent::Kind::touch;
+    json event{{"time_s", e.time},
+               {"what", touch ? "touch" : "lift_off"},
+               {"contact", scenario.motion.contacts[static_cast<std::size_t>(e.contact)].name},
+               {"point", e.point + 1},
+               {"arc_mm", 1e3 * e.arc}};
+    if (touch) event["approach_m_s"] = e.approach_speed;
+    summary["events"].push_back(event);
+  }
+  const numerics::IdaStatistics& n = r.statistics;
+  summary["energy_J"] = {{"kinetic", r.energy.kinetic},       {"strain", r.energy.strain},   {"potential", r.energy.potential},
+                         {"dissipated", r.energy.dissipated}, {"impacts", r.energy.impacts}, {"work", r.energy.work},
+                         {"integrator", r.energy.integrator}};
+  summary["momentum_error_Ns"] = vector_json(r.momentum_error);
+  summary["largest_penetration_m"] = r.largest_penetration;
+  summary["largest_drift"] = r.largest_drift;
+  summary["steps"] = n.steps;
+  summary["residuals"] = n.residuals;
+  summary["jacobians"] = n.jacobians;
+  summary["factorizations"] = n.factorizations;
+  summary["analyses"] = n.analyses;
+  summary["restarts"] = n.restarts;
+  summary["wall_s"] = r.wall_seconds;
+  summary["real_time_factor"] = r.wall_seconds > 0.0 ? r.report.time / r.wall_seconds : 0.0;
+  return summary;
+}
+
+// Seen along z and along x; bodies as their centres of mass.
+AnimationSpecification animation_of(const MotionScenario& scenario, const std::vector<MotionSample>& samples, int across, const std::string& title) {
+  AnimationSpecification animation{title, {}, {}, "To scale; the bodies' centres of mass are the small crosses."};
+  constexpr std::size_t most_frames = 200;
+  constexpr double cross = 2.0;  // half its size [mm]
+  const std::size_t step = std::max<std::size_t>(1, samples.size() / most_frames);
+  for (std::size_t k = 0; k < samples.size(); k += step) {
+    const MotionSample& s = samples[k];
+    double force = 0.0;
+    for (const ContactSample& c : s.contacts) force += c.normal_force;
+    AnimationFrame frame{fmt::format("t = {:.4f} s, {:.3g} N", s.time, force), {}};
+    for (std::size_t w = 0; w < scenario.motion.wires.size(); ++w) {
+      frame.outlines.emplace_back();
+      for (Eigen::Index i = 0; i < s.wires[w].cols(); ++i)
+        frame.outlines.back().insert(frame.outlines.back().end(), {1e3 * s.wires[w](across, i), 1e3 * s.wires[w](1, i)});
+    }
+    for (const multibody::RigidBodyState& b : s.bodies) {
+      const double x = 1e3 * b.position[across];
+      const double y = 1e3 * b.position.y();
+      frame.outlines.push_back({x - cross, y, x + cross, y, x, y, x, y - cross, x, y + cross});
+    }
+    animation.frames.push_back(std::move(frame));
+  }
+  for (const auto& w : scenario.motion.wires) animation.names.push_back(w.name);
+  for (const auto& b : scenario.motion.bodies) animation.names.push_back(b.name);
+  return animation;
+}
+
+std::string report_of(const MotionScenario& scenario, const std::vector<MotionSample>& samples, const json& summary) {
+  ReportPage page(scenario.title, scenario.source);
+  page.heading("Summary");
+  if (!summary["finished"].get<bool>()) page.callout(summary["message"].get<std::string>(), Tone::bad);
+  Table table{"",
+              {{"Contact", ColumnKind::code},
+               {"Peak force [N]", ColumnKind::number},
+               {"First touch [s]", ColumnKind::number},
+               {"Touches", ColumnKind::number},
+               {"Points at a time", ColumnKind::number}},
+              {}};
+  for (const json& c : summary["contacts"]) {
+    table.rows.push_back({c["contact"].get<std::string>(), format_significant(c["peak_force_N"].get<double>()),
+                          c["first_touch_s"].is_null() ? "never" : format_significant(c["first_touch_s"].get<double>(), 6),
+                          std::to_string(c["touches"].get<int>()), std::to_string(c["most_points"].get<int>())});
+  }
+  page.table(table);
+  page.heading("Time histories");
+  PlotSpecification forces{"Contact forces", {"time", "s"}, {"force", "N"}};
+  for (std::size_t k = 0; k < scenario.motion.contacts.size(); ++k) {
+    Curve curve{scenario.motion.contacts[k].name, {}, {}, CurveStyle::line, static_cast<int>(k)};
+    for (const MotionSample& s : samples) {
+      curve.x.push_back(s.time);
+      curve.y.push_back(s.contacts[k].normal_force);
+    }
+    forces.curves.push_back(curve);
+  }
+  page.line_plot(forces);
+  PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
+  for (std::size_t k = 0; k < scenario.motion.bodies.size(); ++k) {
+    Curve curve{scenario.motion.bodies[k].name, {}, {}, CurveStyle::line, static_cast<int>(k)};
+    for (const MotionSample& s : samples) {
+      curve.x.push_back(s.time);
+      curve.y.push_back(s.bodies[k].velocity.norm());
+    }
+    speeds.curves.push_back(curve);
+  }
+  page.line_plot(speeds);
+  page.heading("The motion");
+  page.animation(animation_of(scenario, samples, 0, "Seen along z: x to the right, y up"));
+  page.animation(animation_of(scenario, samples, 2, "Seen along x: z to the right, y up"));
+  page.footer(fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
+  return page.html();
+}
+
+}  // namespace
+
+ExitStatus simulate_bodies(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  const MotionScenario scenario = coupling::read_motion_scenario(file, overrides_of(options));
+  std::vector<MotionSample> samples;
+  const auto begin = std::chrono::steady_clock::now();
+  const MotionResult result = coupling::simulate(scenario.motion, scenario.options, [&](const MotionSample& s) {
+    samples.push_back(s);
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double share = s.time / scenario.options.duration;
+    console.progress(fmt::format("{:.3f} of {:.3f} s, {:.0f} s to go", s.time, scenario.options.duration,
+                                 share > 0.0 ? spent * (1.0 - share) / share : 0.0));
+    return interrupted();
+  });
+  console.end_progress();
+  const json summary = summary_of(scenario, result, samples);
+  write_history(options.out / "history.csv", scenario, samples);
+  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  numerics::write_text(options.out / "report.html", report_of(scenario, samples, summary));
+  if (scenario.paraview) {
+    std::vector<ParaviewFrame> frames;
+    for (const MotionSample& s : samples) frames.push_back({s.time, s.wires});
+    write_paraview(options.out, "wires", frames);
+  }
+  ExitStatus status = ExitStatus::done;
+  if (!result.report.usable()) {
+    console.complain(fmt::format("{} (what was reached is kept)", result.report.message));
+    status = ExitStatus::solver_stopped;
+  }
+  if (options.json) {
+    std::cout << summary.dump(1) << '\n';
+    return status;
+  }
+  for (const json& c : summary["contacts"]) {
+    console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time", c["contact"].get<std::string>(), c["touches"].get<int>(),
+                            c["peak_force_N"].get<double>(), c["most_points"].get<int>()));
+  }
+  console.say(fmt::format("wrote {0}/history.csv, summary.json, report.html", options.out.string()));
+  return status;
+}
+
+}  // namespace snare::app
