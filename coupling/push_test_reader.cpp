@@ -149,14 +149,19 @@ void check_wire_between_mounts(const PushTest& test, const PushTables& tables) {
 
 }  // namespace
 
-PushTest read_push_test(const PushTables& tables) {
+PushTest read_wire_and_mounts(const PushTables& tables) {
   PushTest test;
   test.wire = read_wire(tables.wire);
   test.mount = read_mount(tables.mount);
+  check_wire_between_mounts(test, tables);
+  return test;
+}
+
+PushTest read_push_test(const PushTables& tables) {
+  PushTest test = read_wire_and_mounts(tables);
   test.pusher = read_pusher(tables.pusher);
   test.bulge = read_bulge(tables.bulge);
   test.gravity = read_gravity(tables.gravity);
-  check_wire_between_mounts(test, tables);
   return test;
 }
 

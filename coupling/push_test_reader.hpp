@@ -20,6 +20,9 @@ struct PushTables {
 /// Contact position and travel are left to the caller.
 [[nodiscard]] PushTest read_push_test(const PushTables& tables);
 
+/// The same of wire and mounts alone.
+[[nodiscard]] PushTest read_wire_and_mounts(const PushTables& tables);
+
 /// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);
 
