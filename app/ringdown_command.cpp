@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <iostream>
+#include <numbers>
 
 namespace snare::app {
 
@@ -123,7 +124,13 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
     console.complain(fmt::format("{}: the fit did not converge {}", s.data.name, fits.back().report.message));
     status = ExitStatus::solver_stopped;
   }
-  const DampingSplit split = identification::split_damping(identification::decays_of(file, fits));
+  const std::vector<identification::MatchedMode> modes = identification::match_modes(file, fits);
+  for (const identification::MatchedMode& m : modes) {
+    json& one = result["series"][m.series]["modes"][m.mode];
+    one["bending_share"] = m.decay.bending_share;
+    one["computed_Hz"] = m.computed > 0.0 ? json(m.computed / (2.0 * std::numbers::pi)) : json();
+  }
+  const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);
   numerics::write_text(options.out / "ringdown.json", result.dump(1) + "\n");
   numerics::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});

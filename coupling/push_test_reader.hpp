@@ -20,14 +20,15 @@ struct PushTables {
 /// Contact position and travel are left to the caller.
 [[nodiscard]] PushTest read_push_test(const PushTables& tables);
 
-/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, strands, yielding, natural
-/// curvature.
+/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural curvature.
 void require_simple_motion(const PushTables& tables, const PushTest& test);
 
 /// Reads and checks a wire alone, of a table with the keys of [wire].
 [[nodiscard]] wire::WireSpecification read_wire(const numerics::TomlTable& table);
 /// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
 void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const numerics::TomlTable& table);
+/// The same of wire and mounts alone.
+[[nodiscard]] PushTest read_wire_and_mounts(const PushTables& tables);
 
 /// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);

@@ -1,11 +1,17 @@
 #include "identification/ring_down_file.hpp"
 
+#include "coupling/motion.hpp"
+#include "coupling/push_test_reader.hpp"
 #include "numerics/csv.hpp"
 #include "numerics/toml_reader.hpp"
+#include "wire/rod_modes.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 namespace snare::identification {
@@ -65,7 +71,7 @@ RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const
   series.data.friction = table.boolean_or("friction", true);
   if (table.has("bending_share")) {
     series.bending_share =
-        table.numbers("bending_share", 1, static_cast<std::size_t>(most_modes), Range::above(0.0, 1.0));
+        table.numbers("bending_share", 1, static_cast<std::size_t>(most_modes), Range::above(0.0, 1e3));
     if (series.bending_share.size() > static_cast<std::size_t>(series.data.modes))
       table.fail("bending_share", "must not have more numbers than modes");
   }
@@ -86,6 +92,19 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
   result.file = file;
   result.title = root.text("title");
   result.source = root.text_or("source", "");
+  if (root.has("wire") || root.has("mount")) {
+    const coupling::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"), root.table("wire"),
+                                      root.table("wire")};
+    result.wire = coupling::read_wire_and_mounts(tables);
+    if (result.wire->mount.kind == wire::MountKind::supports)
+      tables.mount.fail("kind", "must be \"clamped\" or \"pinned\"");
+    for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+      if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
+    }
+    for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
+      if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+    }
+  }
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("series")) {
     result.series.push_back(read_series(document, table, file.parent_path()));
@@ -96,18 +115,59 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
   return result;
 }
 
-std::vector<DecayOfMode> decays_of(const RingDownFile& file, const std::vector<RingDownFit>& fits) {
-  std::vector<DecayOfMode> decays;
+namespace {
+
+/// Modes of the declared wire at rest, some more than a record can show.
+std::vector<wire::RodMode> modes_of(const coupling::PushTest& test) {
+  constexpr int elements = 60;
+  constexpr int count = 24;
+  wire::RodInMotion rod = coupling::rod_in_motion(test.wire, test.mount.span, elements);
+  rod.properties.left.kind = rod.properties.right.kind =
+      test.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp : wire::SpatialEnd::Kind::twisting_pin;
+  return wire::rod_modes(rod, coupling::resting_wire(rod), count);
+}
+
+}  // namespace
+
+std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector<RingDownFit>& fits) {
+  std::vector<wire::RodMode> computed;
+  if (file.wire) computed = modes_of(*file.wire);
+  std::vector<MatchedMode> modes;
   for (std::size_t s = 0; s < fits.size(); ++s) {
     if (!fits[s].report.usable()) continue;
     for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
       const RingDownMode& mode = fits[s].modes[m];
       if (!mode.significant()) continue;
-      const std::vector<double>& share = file.series[s].bending_share;
-      decays.push_back({mode.natural(), m < share.size() ? share[m] : 1.0, mode.decay});
+      MatchedMode match{s, m, {mode.natural(), 1.0, mode.decay}, 0.0};
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const wire::RodMode& candidate : computed) {
+        const double distance = std::abs(std::log(candidate.natural / mode.natural()));
+        if (distance >= nearest) continue;
+        nearest = distance;
+        match.computed = candidate.natural;
+        match.decay.bending_share = candidate.bending_share + candidate.axial_share;
+      }
+      const std::vector<double>& given = file.series[s].bending_share;
+      if (!given.empty()) match.decay.bending_share = m < given.size() ? given[m] : 1.0;
+      modes.push_back(match);
     }
   }
-  return decays;
+  return modes;
+}
+
+DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
+  constexpr double far_off = 1.2;
+  std::vector<DecayOfMode> decays;
+  std::string strangers;
+  for (const MatchedMode& m : modes) {
+    decays.push_back(m.decay);
+    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
+    strangers += fmt::format("; {:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
+                             0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed);
+  }
+  DampingSplit split = split_damping(decays);
+  split.statement += strangers;
+  return split;
 }
 
 }  // namespace snare::identification

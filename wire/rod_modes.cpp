@@ -1,0 +1,99 @@
+#include "wire/rod_modes.hpp"
+
+#include <Eigen/Dense>
+
+#include <cassert>
+#include <cmath>
+
+namespace snare::wire {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int block = SpatialRod::block;
+
+/// Power that the damping takes at the velocities of a mode [W].
+double lost_power(RodInMotion rod, const RodDamping& damping, const Eigen::Matrix3Xd& rest, const Eigen::Matrix3Xd& shape,
+                  const VectorXd& turning) {
+  rod.damping = damping;
+  rod.strands = {};
+  RodPart part("wire", rod, {});
+  const numerics::DaeSystem system({&part});
+  VectorXd y = VectorXd::Zero(system.size());
+  VectorXd rate = y;
+  part.place(rest, shape, y);
+  for (int i = 0; i < part.vertices(); ++i) rate[part.angle_of(i)] = turning[i];
+  return part.energies({0.0, y, rate}).dissipation;
+}
+
+}  // namespace
+
+std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& rest, int count) {
+  // The same rod as RodPart's, and what of it moves.
+  RodPart part("wire", rod, {});
+  const SpatialRod& statics = part.rod();
+  const int n = part.vertices();
+  assert(rest.cols() == n);
+  VectorXd q = VectorXd::Zero(statics.unknowns());
+  for (int i = 0; i < n; ++i) q.segment<3>(block * i) = rest.col(i);
+  const double half = rod.length * (rod.elements / 2) / rod.elements;
+  RodAssembly tangent;
+  statics.assemble(statics.make_state(q, {0.0, half, rod.length}), {false, false, false}, tangent);
+  std::vector<int> moving;
+  std::vector<int> turning;
+  const bool twist_free = !rod.properties.left.orients() && !rod.properties.right.orients();
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!part.is_held(i, k)) moving.push_back(block * i + k);
+    }
+    if (i + 1 < n && !(twist_free && i == 0)) turning.push_back(block * i + 3);
+  }
+  const auto entries = [&](const std::vector<int>& rows, const std::vector<int>& columns) {
+    MatrixXd m(rows.size(), columns.size());
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      for (std::size_t b = 0; b < columns.size(); ++b) {
+        const int i = std::max(rows[a], columns[b]);
+        const int j = std::min(rows[a], columns[b]);
+        m(static_cast<Index>(a), static_cast<Index>(b)) =
+            i - j <= SpatialRod::half_bandwidth ? tangent.hessian.lower(i, j) : 0.0;
+      }
+    }
+    return m;
+  };
+  // dE/dtheta = 0 along: dtheta = -K_tt^-1 K_tx dx.
+  const MatrixXd follow = -entries(turning, turning).ldlt().solve(entries(turning, moving));
+  MatrixXd stiffness = entries(moving, moving) + entries(moving, turning) * follow;
+  VectorXd root_mass(static_cast<Index>(moving.size()));
+  for (std::size_t a = 0; a < moving.size(); ++a)
+    root_mass[static_cast<Index>(a)] = std::sqrt(part.mass_of(moving[a] / block));
+  stiffness = root_mass.cwiseInverse().asDiagonal() * stiffness * root_mass.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (stiffness + stiffness.transpose()));
+  const VectorXd& squares = solver.eigenvalues();
+  std::vector<RodMode> modes;
+  constexpr double round_off = 1e-12;
+  for (Index m = 0; m < squares.size() && static_cast<int>(modes.size()) < count; ++m) {
+    if (squares[m] <= round_off * squares[squares.size() - 1]) continue;
+    VectorXd x = root_mass.cwiseInverse().cwiseProduct(solver.eigenvectors().col(m));
+    const double scale = x.cwiseAbs().maxCoeff();
+    x /= scale;
+    RodMode mode;
+    mode.natural = std::sqrt(squares[m]);
+    mode.shape = Eigen::Matrix3Xd::Zero(3, n);
+    for (std::size_t a = 0; a < moving.size(); ++a)
+      mode.shape(moving[a] % block, moving[a] / block) = x[static_cast<Index>(a)];
+    const VectorXd turns = follow * x;
+    VectorXd rates = VectorXd::Zero(n);
+    for (std::size_t a = 0; a < turning.size(); ++a) rates[turning[a] / block] = turns[static_cast<Index>(a)];
+    // phi^T M phi = 1/scale^2.
+    const double whole = squares[m] / (scale * scale);
+    mode.bending_share = lost_power(rod, {1.0, 0.0, 0.0}, rest, mode.shape, rates) / whole;
+    mode.axial_share = lost_power(rod, {0.0, 1.0, 0.0}, rest, mode.shape, rates) / whole;
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
+}  // namespace snare::wire
