@@ -57,7 +57,7 @@ void fields(Archive& a, MotionEvent& e) {
 template <class Archive>
 void fields(Archive& a, MotionSums& s) {
   a(s.events)(s.peak_force)(s.largest_penetration)(s.largest_gap)(s.largest_drift)(s.impacts)(s.start_energy)(
-      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds)(s.search_seconds);
 }
 template <class Archive>
 void fields(Archive& a, MotionState& s) {

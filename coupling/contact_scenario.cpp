@@ -1,5 +1,7 @@
 #include "coupling/contact_scenario.hpp"
 
+#include "coupling/motion_reader.hpp"
+
 #include "coupling/push_test_reader.hpp"
 #include "numerics/toml_reader.hpp"
 
@@ -111,31 +113,6 @@ void read_body(const TomlTable& table, ContactScenario& scenario) {
       -table.number_or("distance_mm", 0.1 * mm, Range::from(1e-3, 1e4), mm);  // moved on in motion_of
 }
 
-MotionFriction read_friction(const TomlTable& table, double dynamic) {
-  static constexpr Choice<FrictionLaw> laws[] = {{"stick_slip", FrictionLaw::stick_slip}, {"smooth", FrictionLaw::smooth}};
-  MotionFriction f;
-  if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
-  f.dynamic_coefficient = dynamic;
-  f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
-  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
-  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
-  f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
-  f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
-  f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
-  const bool at_once = f.law == FrictionLaw::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
-  if (f.dynamic_speed <= f.static_speed && !at_once)
-    table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
-  if (f.law == FrictionLaw::smooth) {
-    if (f.static_speed == 0.0) table.fail("static_speed_m_s", "must be > 0 with the smooth law");
-    for (const char* key : {"bristle_displacement_m", "bristle_force_N", "bristle_time_s"}) {
-      if (table.has(key)) table.fail(key, "belongs to law = \"stick_slip\"");
-    }
-  } else if (f.static_coefficient < dynamic) {
-    table.fail("static_friction", "must be at least pusher.friction with law = \"stick_slip\"");
-  }
-  return f;
-}
-
 }  // namespace
 
 std::string scenario_kind(const std::filesystem::path& file,
@@ -161,11 +138,7 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   scenario.title = root.text("title");
   scenario.source = root.text_or("source", "");
   MotionOptions& o = scenario.options;
-  o.duration = root.number("duration_s", Range::above(0.0, 1e6));
-  o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
-  constexpr double most_outputs = 1e6;
-  if (o.duration / o.output_interval > most_outputs)
-    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
+  read_motion_options(root, o);
 
   const PushTables tables = push_tables(root);
   scenario.push = read_push_test(tables);
@@ -176,17 +149,9 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   }
   require_simple_motion(tables, scenario.push);
 
-  const TomlTable damping = root.table("damping");
-  scenario.damping.bending_time = damping.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
-  scenario.damping.axial_time = damping.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
-  if (scenario.push.wire.strand_friction) {
-    scenario.strand_time = damping.number_or("strand_time_s", scenario.strand_time, Range::from(1e-9, 1.0));
-  } else if (damping.has("strand_time_s")) {
-    damping.fail("strand_time_s", "needs wire.strand_extra_stiffness_Nm2");
-  }
-  scenario.damping.mass_rate = damping.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  scenario.damping = read_damping(root.table("damping"));
   read_body(root.table("body"), scenario);
-  scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction);
+  scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction, "pusher.friction");
 
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("models")) {
@@ -195,20 +160,7 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   }
   if (scenario.models.empty() && !root.has("models")) scenario.models.push_back({"wire", "wire", {}});
 
-  const TomlTable solver = root.table("solver");
-  scenario.elements = solver.integer_or("elements", 60, 8, 20000);
-  const auto tolerance = [&solver](std::string_view key, double& value, double most) {
-    value = solver.number_or(key, value, Range::above(0.0, most));
-  };
-  o.relative_tolerance = solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
-  tolerance("position_tolerance_m", o.position_tolerance, 1e-3);
-  tolerance("velocity_tolerance_m_s", o.velocity_tolerance, 1.0);
-  tolerance("body_position_tolerance_m", o.body_position_tolerance, 1e-3);
-  tolerance("body_velocity_tolerance_m_s", o.body_velocity_tolerance, 1.0);
-  tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
-  tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
-  o.max_order = solver.integer_or("max_order", 2, 1, 5);
-  o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
+  scenario.elements = root.table("solver").integer_or("elements", 60, 8, 20000);
   const TomlTable output = root.table("output");
   scenario.paraview = output.boolean_or("paraview", false);
   o.checkpoint_interval = output.number_or("checkpoint_interval_s", std::min(1.0, o.duration / 10.0), Range::above(0.0, 1e6));

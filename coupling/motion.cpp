@@ -382,7 +382,7 @@ std::optional<double> Run::first_touch(double from, const numerics::Ida& ida) {
   if (first) {
     for (ContactPoints& c : contacts_) c.forget();
   }
-  result_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  sums_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return first;
 }
 
@@ -753,6 +753,7 @@ MotionResult Run::result(numerics::IdaReport report) {
   r.largest_drift = sums_.largest_drift;
   r.statistics = sums_.statistics;
   r.wall_seconds = sums_.wall_seconds;
+  r.search_seconds = sums_.search_seconds;
   std::vector<double> memory;
   for (const ContactPoints& c : contacts_) c.remember(memory);
   const std::vector<double> parts = system_->memory();

@@ -179,6 +179,7 @@ struct MotionSums {
   long samples = 0;                                                  ///< given to the observer
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
+  double search_seconds = 0.0;
 };
 
 /// All that a motion needs to go on from a time.

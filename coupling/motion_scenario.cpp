@@ -1,5 +1,6 @@
 #include "coupling/motion_scenario.hpp"
 
+#include "coupling/motion_reader.hpp"
 #include "coupling/motion_shape_mesh.hpp"
 #include "coupling/motion_shape_revolved.hpp"
 #include "coupling/push_test_reader.hpp"
@@ -215,30 +216,6 @@ std::shared_ptr<const ContactShape> read_shape(const TomlTable& table, const std
   return nullptr;
 }
 
-MotionFriction read_friction(const TomlTable& table) {
-  MotionFriction f;
-  f.dynamic_coefficient = table.number_or("friction", 0.0, Range::from(0.0, 5.0));
-  f.static_coefficient = table.number_or("static_friction", f.dynamic_coefficient, Range::from(0.0, 5.0));
-  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::above(0.0, 10.0));
-  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::above(0.0, 100.0));
-  if (f.dynamic_speed <= f.static_speed) table.fail("dynamic_speed_m_s", "must be > static_speed_m_s");
-  return f;
-}
-
-void read_options(const TomlTable& root, MotionOptions& o) {
-  o.duration = root.number("duration_s", Range::above(0.0, 1e6));
-  o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
-  constexpr double most_outputs = 1e6;
-  if (o.duration / o.output_interval > most_outputs)
-    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
-  const TomlTable solver = root.table("solver");
-  o.relative_tolerance = solver.number_or("relative_tolerance", 1e-5, Range::from(1e-10, 1e-2));
-  o.position_tolerance = solver.number_or("position_tolerance_m", 1e-7, Range::above(0.0, 1e-3));
-  o.velocity_tolerance = solver.number_or("velocity_tolerance_m_s", 1e-4, Range::above(0.0, 1.0));
-  o.max_order = solver.integer_or("max_order", 2, 1, 5);
-  o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
-}
-
 }  // namespace
 
 bool lists_bodies(const std::filesystem::path& file, const std::vector<numerics::Override>& overrides) {
@@ -257,17 +234,13 @@ MotionScenario read_motion_scenario(const std::filesystem::path& file, const std
   static_cast<void>(root.choice("kind", kinds));
   scenario.title = root.text("title");
   scenario.source = root.text_or("source", "");
-  read_options(root, scenario.options);
+  read_motion_options(root, scenario.options);
   for (const char* key : {"body", "wire", "mount", "pusher", "models"}) {
     if (root.has(key)) root.fail(key, "not beside lists of bodies, wires and shapes");
   }
   const TomlTable gravity = root.table("gravity");
   scenario.motion.gravity = read_vector_or_zero(gravity, "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
-  const TomlTable damping_table = root.table("damping");
-  wire::RodDamping damping;
-  damping.bending_time = damping_table.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
-  damping.axial_time = damping_table.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
-  damping.mass_rate = damping_table.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  const wire::RodDamping damping = read_damping(root.table("damping"));
 
   Names wires("wire"), bodies("body"), shapes("shape");
   std::vector<DeclaredWire> declared;
@@ -286,7 +259,7 @@ MotionScenario read_motion_scenario(const std::filesystem::path& file, const std
     contact.body = of_body.value_or(0);
     contact.shape_position = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
     contact.shape_rotation = read_rotation(table);
-    contact.friction = read_friction(table);
+    contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
     contact.points = table.integer_or("points", contact.points, 1, 100);
     std::vector<std::string> met = table.texts_or_none("wires");
     if (!table.has("wires")) {

@@ -1,5 +1,6 @@
 #include "reduction/wire_file.hpp"
 
+#include "coupling/motion_reader.hpp"
 #include "coupling/push_test_reader.hpp"
 #include "coupling/spatial_push.hpp"
 #include "numerics/toml_reader.hpp"
@@ -184,9 +185,7 @@ std::optional<ImpactSettings> read_impacts(const TomlTable& root, const coupling
   if (!root.has("damping")) return std::nullopt;
   const TomlTable table = root.table("damping");
   ImpactSettings impacts;
-  impacts.damping.bending_time = table.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
-  impacts.damping.axial_time = table.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
-  impacts.damping.mass_rate = table.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  impacts.damping = coupling::read_damping(table);
   impacts.mass = table.number("impact_mass_kg", Range::above(0.0, 1e7));
   impacts.speeds = table.numbers("impact_speeds_m_s", 1, most_values, Range::above(0.0, 100.0));
   impacts.elements = table.integer_or("elements", 60, 8, 20000);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "coupling/motion.hpp"
+#include "numerics/toml_reader.hpp"
+
+namespace snare::coupling {
+
+/// What all scenarios with wires in motion have in common: keys, units and ranges in docs/scenario_file.md. What is wrong is
+/// reported to the tables' document.
+
+/// `duration_s`, `output_interval_s` and the tolerances of `[solver]`.
+void read_motion_options(const numerics::TomlTable& root, MotionOptions& options);
+
+/// `[damping]` of the wires.
+[[nodiscard]] wire::RodDamping read_damping(const numerics::TomlTable& table);
+
+/// Law, coefficients, speeds and bristle of the friction. dynamic: the coefficient of fast sliding; dynamic_key: its key in the file.
+[[nodiscard]] MotionFriction read_friction(const numerics::TomlTable& table, double dynamic, std::string_view dynamic_key);
+
+}  // namespace snare::coupling
