@@ -1,7 +1,6 @@
 #include "coupling/contact_scenario.hpp"
 
 #include "coupling/motion_reader.hpp"
-
 #include "coupling/push_test_reader.hpp"
 #include "numerics/toml_reader.hpp"
 
