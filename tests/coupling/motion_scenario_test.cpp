@@ -167,7 +167,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
       {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be from_mm"},
       {"wires[a].bulge=[0.0, 0.0, 1.0]", "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
-      {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be one of \"clamped\", \"pinned\""},
+      {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
       {"wires[a].yield_stress_MPa=500", "the wire is elastic and naturally straight in motion"},
       {"wires[a].elements=4", "wires[a].elements = 4"},
       {"bodies[target].mass_kg=0", "bodies[target].mass_kg = 0, must be > 0"},
@@ -176,7 +176,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"bodies[machine].name=\"target\"", "is taken by another body"},
       {"shapes[ball].body=\"moon\"", "shapes[ball].body = \"moon\", must be the name of a body: \"target\", \"machine\""},
       {"shapes[ball].wires=[\"b\"]", "must be the name of a wire: \"a\""},
-      {"shapes[ball].kind=\"cube\"", "shapes[ball].kind = \"cube\", must be one of \"knife_edge\""},
+      {"shapes[ball].kind=\"cube\"", "shapes[ball].kind = \"cube\", must be \"knife_edge\", \"cylinder\""},
       {"shapes[ball].radius_mm=-1", "shapes[ball].radius_mm = -1, must be > 0"},
       {"shapes[ball].length_mm=1", "shapes[ball].length_mm = 1, unknown key"},
       {"shapes[ball].points=0", "shapes[ball].points = 0"},
@@ -184,7 +184,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"shapes[taper].lower_radius_mm=0", "shapes[taper].upper_radius_mm = 0.0, must be > 0 where lower_radius_mm is 0"},
       {"shapes[shaft].cam_radius_mm=5", "grapple shaft cam_radius = 0.005, must be > shaft_radius"},
       {"shapes[box].file=\"none.stl\"", "none.stl"},
-      {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be one of \"mm\", \"m\""},
+      {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},
       {"gravity.vector_m_s2=[1.0]", "gravity.vector_m_s2"},
   };
   for (const auto& [setting, message] : wrong) {
