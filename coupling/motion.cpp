@@ -229,6 +229,7 @@ Run::Run(const Motion& motion, const MotionOptions& options, const MotionObserve
   ida.relative_tolerance = options.relative_tolerance;
   ida.max_order = options.max_order;
   ida.max_step = options.max_step;
+  ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share;
   const auto touching = static_cast<int>(contacts_.size() + springs_.size());
   integrals_ = VectorXd::Zero(integral::contacts + 3 * touching);

@@ -304,7 +304,8 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetMinStep(m, options.smallest_step), "IDASetMinStep");
   if (std::isfinite(options.max_step)) check(IDASetMaxStep(m, options.max_step), "IDASetMaxStep");
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
-  check(SUNNonlinSolSetConvTestFn(newton.get(), snare_newton_test, &callbacks), "SUNNonlinSolSetConvTestFn");
+  if (options.newton_test == NewtonTest::every_unknown)
+    check(SUNNonlinSolSetConvTestFn(newton.get(), snare_newton_test, &callbacks), "SUNNonlinSolSetConvTestFn");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
   if (system.event_count() > 0) {

@@ -14,6 +14,12 @@
 
 namespace snare::numerics {
 
+/// Of what the Newton iteration's share of the tolerance is a bound.                          theory.md (M.12)
+enum class NewtonTest {
+  mean,          ///< of the mean over all unknowns, as IDA does it, at the rate of convergence of an earlier step
+  every_unknown  ///< of every unknown, at a rate of convergence of 1/10 at best
+};
+
 /// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and of that over
 /// the blocks with differential unknowns, must be below one.
 struct IdaOptions {
@@ -26,7 +32,8 @@ struct IdaOptions {
   double smallest_step = 1e-13;
   double first_step = 0.0;      ///< [s]; 0: IDA chooses
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
-  double newton_share = 0.33;   ///< of its tolerance that the Newton iteration may leave of any unknown [-]
+  NewtonTest newton_test = NewtonTest::mean;
+  double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
 };
 
 /// What was done since the integrator was made.
