@@ -163,13 +163,16 @@ Motion motion_of(const ArmContactScenario& scenario, const WireModel& model) {
     weld.name = "grasp";
     weld.carrier = {MotionCarrier::Kind::arm, 0, tip};
     motion.welds.push_back(weld);
-  } else if (!motion.wires.empty()) {
-    for (const bool right : {false, true}) {
-      MotionMount mount;
-      mount.name = right ? "right mount" : "left mount";
-      mount.right = right;
-      mount.carrier = {MotionCarrier::Kind::arm, 0, tip};
-      motion.mounts.push_back(mount);
+  } else {
+    for (std::size_t w = 0; w < motion.wires.size(); ++w) {
+      for (const bool right : {false, true}) {
+        MotionMount mount;
+        mount.name = motion.wires[w].name + (right ? " right mount" : " left mount");
+        mount.wire = static_cast<int>(w);
+        mount.right = right;
+        mount.carrier = {MotionCarrier::Kind::arm, 0, tip};
+        motion.mounts.push_back(mount);
+      }
     }
   }
   motion.arms.push_back(std::move(arm));

@@ -38,7 +38,7 @@ TEST(ArmRows, FloatingBaseAnswersItsLink) {
 TEST(LinkedMotionRows, WeldedBodiesAreASymmetricTop) {
   expect_within(welded_top_rows());
 }
-TEST(LinkedMotionRows, SpinningWirePressesOnItsMounts) {
+TEST(SlowLinkedMotionRows, SpinningWirePressesOnItsMounts) {
   expect_within(moving_mount_rows());
 }
 TEST(SlowLinkedMotionRows, CapturesKeepTheirBalances) {
