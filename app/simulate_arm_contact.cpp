@@ -61,14 +61,16 @@ ModelRun run_model(const ArmContactScenario& scenario, const coupling::WireModel
 void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
   std::vector<std::string> columns{"model", "time_s", "force_N", "penetration_mm", "contact_arc_mm"};
   for (const char* what : {"body_x_mm", "body_y_mm", "body_z_mm", "body_vx_m_s", "body_vy_m_s", "body_vz_m_s",
-                           "body_spin_x_rad_s", "body_spin_y_rad_s", "body_spin_z_rad_s", "carried_x_N", "carried_y_N",
-                           "carried_z_N"})
+                           "body_spin_x_rad_s", "body_spin_y_rad_s", "body_spin_z_rad_s", "carried_x_N",
+                           "carried_y_N", "carried_z_N"})
     columns.emplace_back(what);
   const multibody::ElasticArm& arm = runs.front().motion.arms.front().arm;
   for (const multibody::ElasticJoint& j : arm.joints) {
-    for (const char* what : {"motor_deg", "deflection_deg", "torque_Nm"}) columns.push_back(j.name + "_" + what);
+    for (const char* what : {"motor_deg", "deflection_deg", "torque_Nm"})
+      columns.push_back(j.name + "_" + what);
   }
-  for (const char* what : {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"})
+  for (const char* what :
+       {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"})
     columns.emplace_back(what);
   numerics::CsvWriter csv(file, columns);
   for (const ModelRun& run : runs) {
@@ -76,7 +78,8 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
       const coupling::ContactSample& c = s.contacts.front();
       const multibody::RigidBodyState& b = s.bodies.front();
       const Vector3d carried = carried_force(run, s);
-      std::vector<numerics::CsvCell> row{std::string_view(run.name), s.time, c.normal_force, -1e3 * c.gap, 1e3 * c.arc};
+      std::vector<numerics::CsvCell> row{std::string_view(run.name), s.time, c.normal_force, -1e3 * c.gap,
+                                         1e3 * c.arc};
       for (const double x : {b.position.x(), b.position.y(), b.position.z()}) row.emplace_back(1e3 * x);
       for (const Vector3d* v : {&b.velocity, &b.spin, &carried}) {
         for (int k = 0; k < 3; ++k) row.emplace_back((*v)[k]);
@@ -149,7 +152,8 @@ json summary_of(const ModelRun& run) {
           {"events", events}};
 }
 
-Curve curve_of(const std::string& name, const ModelRun& run, int colour, const std::function<double(const MotionSample&)>& value) {
+Curve curve_of(const std::string& name, const ModelRun& run, int colour,
+               const std::function<double(const MotionSample&)>& value) {
   Curve curve{name, {}, {}, CurveStyle::line, colour};
   for (const MotionSample& s : run.samples) {
     curve.x.push_back(s.time);
@@ -158,7 +162,8 @@ Curve curve_of(const std::string& name, const ModelRun& run, int colour, const s
   return curve;
 }
 
-std::string report_of(const ArmContactScenario& scenario, const std::vector<ModelRun>& runs, const json& summary) {
+std::string report_of(const ArmContactScenario& scenario, const std::vector<ModelRun>& runs,
+                      const json& summary) {
   ReportPage page(scenario.title, scenario.source);
   page.heading("Summary");
   Table table{"",
@@ -172,11 +177,13 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
                {"Real-time factor", ColumnKind::number}},
               {}};
   for (const json& m : summary["models"]) {
-    table.rows.push_back(
-        {m["model"].get<std::string>(), format_significant(m["peak_force_N"].get<double>()),
-         format_significant(m["impulse_Ns"][1].get<double>()), format_significant(m["velocity_after_m_s"][1].get<double>()),
-         std::to_string(m["touches"].get<int>()), format_significant(m["energy_J"]["integrator"].get<double>(), 2),
-         std::to_string(m["steps"].get<long>()), format_significant(m["real_time_factor"].get<double>())});
+    table.rows.push_back({m["model"].get<std::string>(), format_significant(m["peak_force_N"].get<double>()),
+                          format_significant(m["impulse_Ns"][1].get<double>()),
+                          format_significant(m["velocity_after_m_s"][1].get<double>()),
+                          std::to_string(m["touches"].get<int>()),
+                          format_significant(m["energy_J"]["integrator"].get<double>(), 2),
+                          std::to_string(m["steps"].get<long>()),
+                          format_significant(m["real_time_factor"].get<double>())});
     if (!m["finished"].get<bool>())
       page.callout(m["model"].get<std::string>() + ": " + m["message"].get<std::string>(), Tone::bad);
   }
@@ -186,8 +193,10 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
   PlotSpecification velocity{"Body's velocity along the push", {"time", "s"}, {"velocity y", "m/s"}};
   int colour = 0;
   for (const ModelRun& run : runs) {
-    force.curves.push_back(curve_of(run.name, run, colour, [](const MotionSample& s) { return s.contacts.front().normal_force; }));
-    velocity.curves.push_back(curve_of(run.name, run, colour++, [](const MotionSample& s) { return s.bodies.front().velocity.y(); }));
+    force.curves.push_back(curve_of(run.name, run, colour,
+                                    [](const MotionSample& s) { return s.contacts.front().normal_force; }));
+    velocity.curves.push_back(curve_of(run.name, run, colour++,
+                                       [](const MotionSample& s) { return s.bodies.front().velocity.y(); }));
   }
   page.line_plot(force);
   page.line_plot(velocity);
@@ -197,21 +206,25 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
     const multibody::ElasticArm& arm = run.motion.arms.front().arm;
     for (int j = 0; j < arm.motors(); ++j) {
       const std::string& name = arm.joints[static_cast<std::size_t>(j)].name;
-      joints.curves.push_back(curve_of(name, run, j, [&run, j](const MotionSample& s) { return deflection(run, s, j) / degree; }));
+      joints.curves.push_back(curve_of(
+          name, run, j, [&run, j](const MotionSample& s) { return deflection(run, s, j) / degree; }));
       const double start = run.samples.front().arms.front().state.motor[j];
-      motors.curves.push_back(
-          curve_of(name, run, j, [j, start](const MotionSample& s) { return (s.arms.front().state.motor[j] - start) / degree; }));
+      motors.curves.push_back(curve_of(name, run, j, [j, start](const MotionSample& s) {
+        return (s.arms.front().state.motor[j] - start) / degree;
+      }));
     }
     page.line_plot(joints);
     page.line_plot(motors);
   }
-  page.footer(fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
+  page.footer(fmt::format(
+      "Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
   return page.html();
 }
 
 }  // namespace
 
-ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options,
+                                Console& console) {
   const ArmContactScenario scenario = coupling::read_arm_contact_scenario(file, overrides_of(options));
   std::vector<ModelRun> runs;
   ExitStatus status = ExitStatus::done;
@@ -243,10 +256,11 @@ ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonO
     return status;
   }
   for (const json& m : summary["models"]) {
-    console.say(fmt::format("{}: peak {:.4g} N, impulse {:.4g} N s, velocity {:.4g} m/s after; {} steps, {:.3g} times real time",
-                            m["model"].get<std::string>(), m["peak_force_N"].get<double>(), m["impulse_Ns"][1].get<double>(),
-                            m["velocity_after_m_s"][1].get<double>(), m["steps"].get<long>(),
-                            m["real_time_factor"].get<double>()));
+    console.say(fmt::format(
+        "{}: peak {:.4g} N, impulse {:.4g} N s, velocity {:.4g} m/s after; {} steps, {:.3g} times real time",
+        m["model"].get<std::string>(), m["peak_force_N"].get<double>(), m["impulse_Ns"][1].get<double>(),
+        m["velocity_after_m_s"][1].get<double>(), m["steps"].get<long>(),
+        m["real_time_factor"].get<double>()));
   }
   console.say(fmt::format("wrote {0}/history.csv, summary.json, report.html", options.out.string()));
   return status;

@@ -76,17 +76,20 @@ ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
   scenario.hold = root.choice("hold", holds).value_or(Hold::as_described);
   scenario.X_CT.p = read_vector(root, "tip_mm", Range::from(-1e5, 1e5), mm);
   const Vector3d turn = read_vector(root, "tip_rpy_deg", Range::from(-360.0, 360.0), degree);
-  scenario.X_CT.R = (Eigen::AngleAxisd(turn.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(turn.y(), Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(turn.x(), Vector3d::UnitX()))
-                        .toRotationMatrix();
+  scenario.X_CT.R =
+      (Eigen::AngleAxisd(turn.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(turn.y(), Vector3d::UnitY()) *
+       Eigen::AngleAxisd(turn.x(), Vector3d::UnitX()))
+          .toRotationMatrix();
   const std::optional<double> duration = root.optional_number("duration_s", Range::above(0.0, 1e6));
   const std::optional<double> interval = root.optional_number("output_interval_s", Range::above(0.0, 1e6));
   const std::string arm_name = root.text("arm"), contact_name = root.text("contact");
   std::optional<ContactScenario> contact;
   if (!contact_name.empty())
-    contact = read_beside(document, [&] { return read_contact_scenario(file.parent_path() / contact_name, inner); });
+    contact = read_beside(document,
+                          [&] { return read_contact_scenario(file.parent_path() / contact_name, inner); });
   std::optional<multibody::ArmDescription> arm;
-  if (!arm_name.empty()) arm = read_beside(document, [&] { return multibody::read_arm(file.parent_path() / arm_name); });
+  if (!arm_name.empty())
+    arm = read_beside(document, [&] { return multibody::read_arm(file.parent_path() / arm_name); });
   if (arm) {
     scenario.angles = multibody::read_pose(root, "pose", "angles_deg", *arm);
     scenario.arm = std::move(*arm);
@@ -104,8 +107,10 @@ ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
     if (scenario.carries == Carries::wire) {
       for (const WireModel& model : scenario.contact.models) {
         if (model.law) {
-          root.fail("carries", fmt::format("must be \"body\" with the model {}: a law acts against a plane that stands still",
-                                           model.name));
+          root.fail(
+              "carries",
+              fmt::format("must be \"body\" with the model {}: a law acts against a plane that stands still",
+                          model.name));
         }
       }
     }
@@ -158,13 +163,16 @@ Motion motion_of(const ArmContactScenario& scenario, const WireModel& model) {
     weld.name = "grasp";
     weld.carrier = {MotionCarrier::Kind::arm, 0, tip};
     motion.welds.push_back(weld);
-  } else if (!motion.wires.empty()) {
-    for (const bool right : {false, true}) {
-      MotionMount mount;
-      mount.name = right ? "right mount" : "left mount";
-      mount.right = right;
-      mount.carrier = {MotionCarrier::Kind::arm, 0, tip};
-      motion.mounts.push_back(mount);
+  } else {
+    for (std::size_t w = 0; w < motion.wires.size(); ++w) {
+      for (const bool right : {false, true}) {
+        MotionMount mount;
+        mount.name = motion.wires[w].name + (right ? " right mount" : " left mount");
+        mount.wire = static_cast<int>(w);
+        mount.right = right;
+        mount.carrier = {MotionCarrier::Kind::arm, 0, tip};
+        motion.mounts.push_back(mount);
+      }
     }
   }
   motion.arms.push_back(std::move(arm));

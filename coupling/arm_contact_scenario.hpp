@@ -27,8 +27,8 @@ struct ArmContactScenario {
 
 /// Reads the scenario, and the arm and the contact scenario that it names; throws InputError with everything that is wrong.
 /// Overrides whose key begins with "contact." go to the contact scenario.
-[[nodiscard]] ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
-                                                           const std::vector<numerics::Override>& overrides = {});
+[[nodiscard]] ArmContactScenario read_arm_contact_scenario(
+    const std::filesystem::path& file, const std::vector<numerics::Override>& overrides = {});
 
 /// The motion of one of its models. The world is the wire's frame at the start; the base of the arm follows from there.
 /// An arm that carries the body starts with the joint rates that give its tip the body's motion, as nearly as they can

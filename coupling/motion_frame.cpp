@@ -118,7 +118,8 @@ MovingFrame::Derivatives MovingFrame::differentiate(const VectorView& y) const {
       Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(3 + k)];
       by.topRightCorner<3, 3>() = turned;
       by.bottomRightCorner<3, 3>() = -turned * skew(X_CF_.p);
-      d.motion.col(3 + k) << turned * y.segment<3>(body_->spin()), by.bottomRightCorner<3, 3>() * y.segment<3>(body_->spin());
+      d.motion.col(3 + k) << turned * y.segment<3>(body_->spin()),
+          by.bottomRightCorner<3, 3>() * y.segment<3>(body_->spin());
     }
     return d;
   }
@@ -165,13 +166,15 @@ MatrixXd MovingFrame::Derivatives::force(const Wrench& wrench) const {
   return result;
 }
 
-void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const {
+void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench,
+                       Eigen::Ref<Eigen::VectorXd> rows) const {
   if (!moves_freely()) return;
   const int first = body_ != nullptr ? body_->velocity() : arm_->velocities();
   rows.segment(first, jacobian.cols()) -= jacobian.transpose() * wrench.vector();
 }
 
-void MovingFrame::respond(const VectorView& y, const Matrix6X& jacobian, const Wrench& wrench, Eigen::VectorXd& dv) const {
+void MovingFrame::respond(const VectorView& y, const Matrix6X& jacobian, const Wrench& wrench,
+                          Eigen::VectorXd& dv) const {
   if (!moves_freely()) return;
   const Eigen::VectorXd force = jacobian.transpose() * wrench.vector();
   if (body_ != nullptr) {
@@ -181,7 +184,8 @@ void MovingFrame::respond(const VectorView& y, const Matrix6X& jacobian, const W
   }
   const multibody::Tree& tree = arm_->arm().tree;
   multibody::DynamicsWorkspace workspace(tree);
-  const MatrixXd& H = multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
+  const MatrixXd& H =
+      multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
   dv.segment(arm_->velocities(), tree.velocities()) += H.ldlt().solve(force);
 }
 

@@ -32,9 +32,9 @@ class MovingFrame {
 
   /// Derivatives at one y, angular over linear, in the axes of the world.
   struct Derivatives {
-    multibody::Matrix6X jacobian;   ///< motion by velocities: J
-    multibody::Matrix6X place;      ///< turn and shift by coordinates
-    multibody::Matrix6X motion;     ///< motion by coordinates
+    multibody::Matrix6X jacobian;  ///< motion by velocities: J
+    multibody::Matrix6X place;     ///< turn and shift by coordinates
+    multibody::Matrix6X motion;    ///< motion by coordinates
     /// (columns of the jacobian x coordinates): derivative of J^T F for a wrench that is fixed in the world, by M and F.
     [[nodiscard]] Eigen::MatrixXd force(const multibody::Wrench& wrench) const;
     std::vector<multibody::Matrix6X> jacobian_by;  ///< J by each coordinate
@@ -48,10 +48,11 @@ class MovingFrame {
   /// Whether forces on it move it.
   [[nodiscard]] bool moves_freely() const;
   /// Adds -J^T F to the rows of whoever carries it.
-  void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const;
+  void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
+            Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier.
-  void respond(const numerics::VectorView& y, const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
-               Eigen::VectorXd& dv) const;
+  void respond(const numerics::VectorView& y, const multibody::Matrix6X& jacobian,
+               const multibody::Wrench& wrench, Eigen::VectorXd& dv) const;
   [[nodiscard]] const BodyPart* body() const { return body_; }
   [[nodiscard]] const multibody::ElasticArmPart* arm() const { return arm_; }
 

@@ -40,7 +40,8 @@ VectorXd gathered(const VectorXd& values, const std::vector<int>& indices) {
 
 }  // namespace
 
-VectorXd hold_links(const std::vector<const Link*>& links, const VectorView& y, const VectorXd& extra, VectorXd& dv) {
+VectorXd hold_links(const std::vector<const Link*>& links, const VectorView& y, const VectorXd& extra,
+                    VectorXd& dv) {
   Eigen::Index n = 0;
   for (const Link* link : links) n += link->constraints();
   if (n == 0) return {};
@@ -74,7 +75,11 @@ VectorXd hold_links(const std::vector<const Link*>& links, const VectorView& y, 
 
 WeldPart::WeldPart(std::string name, MovingFrame carrier, const BodyPart& held, const multibody::Pose& X_BH,
                    const MotionOptions& options)
-    : name_(std::move(name)), carrier_(std::move(carrier)), held_(held, X_BH), body_(held), options_(options) {}
+    : name_(std::move(name)),
+      carrier_(std::move(carrier)),
+      held_(held, X_BH),
+      body_(held),
+      options_(options) {}
 
 void WeldPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
@@ -152,13 +157,15 @@ void WeldPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& v
       for (int i = 0; i < 6; ++i) add(first_ + 6 + i, q[k], sign * d.motion(i, column));
     }
     for (std::size_t k = 0; k < v.size(); ++k) {
-      for (int i = 0; i < 6; ++i) add(first_ + 6 + i, v[k], sign * d.jacobian(i, static_cast<Eigen::Index>(k)));
+      for (int i = 0; i < 6; ++i)
+        add(first_ + 6 + i, v[k], sign * d.jacobian(i, static_cast<Eigen::Index>(k)));
     }
     if (!frame.moves_freely()) continue;
     const Eigen::MatrixXd force = d.force(on_b);
     for (std::size_t r = 0; r < v.size(); ++r) {
       const auto row = static_cast<Eigen::Index>(r);
-      for (std::size_t k = 0; k < q.size(); ++k) add(v[r], q[k], -sign * force(row, static_cast<Eigen::Index>(k)));
+      for (std::size_t k = 0; k < q.size(); ++k)
+        add(v[r], q[k], -sign * force(row, static_cast<Eigen::Index>(k)));
       for (int i = 0; i < 6; ++i) add(v[r], first_ + i, -sign * d.jacobian(i, row));
     }
   }

@@ -19,11 +19,14 @@ class Link {
 
   [[nodiscard]] virtual int constraints() const = 0;
   /// G dv of changes of the velocities (or of accelerations).
-  [[nodiscard]] virtual Eigen::VectorXd violation(const numerics::VectorView& y, const Eigen::VectorXd& dv) const = 0;
+  [[nodiscard]] virtual Eigen::VectorXd violation(const numerics::VectorView& y,
+                                                  const Eigen::VectorXd& dv) const = 0;
   /// d(G v)/dt along the rates of the coordinates, with the velocities as they are.
-  [[nodiscard]] virtual Eigen::VectorXd drift(const numerics::VectorView& y, const Eigen::VectorXd& rate) const = 0;
+  [[nodiscard]] virtual Eigen::VectorXd drift(const numerics::VectorView& y,
+                                              const Eigen::VectorXd& rate) const = 0;
   /// Adds M^-1 G^T times the multipliers.
-  virtual void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers, Eigen::VectorXd& dv) const = 0;
+  virtual void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
+                       Eigen::VectorXd& dv) const = 0;
   /// First of the multipliers among the unknowns.
   [[nodiscard]] virtual int multipliers() const = 0;
   /// Wrench on what is held, about its held frame's origin, in the axes of the world.
@@ -55,9 +58,12 @@ class WeldPart final : public numerics::DaePart, public Link {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
   [[nodiscard]] int constraints() const override { return 6; }
-  [[nodiscard]] Eigen::VectorXd violation(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
-  [[nodiscard]] Eigen::VectorXd drift(const numerics::VectorView& y, const Eigen::VectorXd& rate) const override;
-  void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers, Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd violation(const numerics::VectorView& y,
+                                          const Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd drift(const numerics::VectorView& y,
+                                      const Eigen::VectorXd& rate) const override;
+  void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
+               Eigen::VectorXd& dv) const override;
   [[nodiscard]] int multipliers() const override { return first_; }
   [[nodiscard]] multibody::Wrench wrench(const numerics::VectorView& y) const override;
   [[nodiscard]] const MovingFrame& carrier() const override { return carrier_; }

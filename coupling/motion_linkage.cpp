@@ -40,13 +40,14 @@ struct Complaints {
   }
 };
 
-void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier, Complaints& c) {
+void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier,
+                   Complaints& c) {
   if (carrier.kind == MotionCarrier::Kind::body) {
     c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.bodies.size()), name + ".carrier",
               carrier.index, "must be the index of a body");
   } else if (carrier.kind == MotionCarrier::Kind::arm) {
-    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()), name + ".carrier",
-                   carrier.index, "must be the index of an arm"))
+    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()),
+                   name + ".carrier", carrier.index, "must be the index of an arm"))
       return;
     const auto frames = motion.arms[at_index(carrier.index)].arm.tree.frames().size();
     c.require(carrier.frame >= 0 && at_index(carrier.frame) < frames, name + ".carrier.frame", carrier.frame,
@@ -60,14 +61,16 @@ void Linkage::check(const Motion& motion, std::vector<numerics::InputProblem>& p
   Complaints c{problems};
   for (const MotionArm& a : motion.arms) {
     const int n = a.arm.motors();
-    const auto fits = [n](const std::vector<multibody::Drive>& drives) { return static_cast<int>(drives.size()) == n; };
+    const auto fits = [n](const std::vector<multibody::Drive>& drives) {
+      return static_cast<int>(drives.size()) == n;
+    };
     bool fit = fits(a.drives) && a.start.motor.size() == n && a.start.motor_rate.size() == n &&
                a.start.q.size() == a.arm.tree.coordinates() && a.start.v.size() == a.arm.tree.velocities();
     for (const multibody::DriveSwitch& s : a.switches) fit = fit && fits(s.drives) && s.joint < n;
     c.require(fit, a.name + ".joints", n, "must have one drive, angle and rate for each joint");
     for (const multibody::TimedLoad& load : a.loads) {
-      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads", load.frame,
-                "must act on a frame of the arm");
+      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads",
+                load.frame, "must act on a frame of the arm");
     }
   }
   std::vector<bool> held(motion.bodies.size(), false), later(motion.bodies.size(), false);
@@ -123,7 +126,8 @@ Linkage::Linkage(const Motion& motion, std::deque<wire::RodPart>& rods, const st
   }
   for (const MotionWeld& w : motion.welds) {
     const BodyPart& body = bodies[at_index(w.body)];
-    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{}, options);
+    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{},
+                        options);
     held_.push_back(&body);
   }
   for (const MotionMount& m : motion.mounts) {
@@ -136,7 +140,8 @@ Linkage::Linkage(const Motion& motion, std::deque<wire::RodPart>& rods, const st
 }
 
 // The frame that a carrier holds where it is wanted at the start.
-MovingFrame Linkage::frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies, const Pose& X_WF) const {
+MovingFrame Linkage::frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
+                              const Pose& X_WF) const {
   switch (carrier.kind) {
     case MotionCarrier::Kind::world:
       break;
@@ -255,9 +260,10 @@ bool Linkage::follow(const DaePoint& at, std::span<const int> found, VectorXd& y
       fallen.push_back(static_cast<int>(i));
       const int joint = static_cast<int>(i) / ElasticArmPart::events_per_joint;
       if (arms_[k].crowding.crowded(joint, time)) {
-        stuck_ = fmt::format("{}: joint {} stays at a jump of its law: a load between the torques on its two sides holds it "
-                             "there; give the jump a width (jump_width_deg)",
-                             motion_.arms[k].name, arms_[k].model.joints[at_index(joint)].name);
+        stuck_ = fmt::format(
+            "{}: joint {} stays at a jump of its law: a load between the torques on its two sides holds it "
+            "there; give the jump a width (jump_width_deg)",
+            motion_.arms[k].name, arms_[k].model.joints[at_index(joint)].name);
       }
     }
     first += count;

@@ -25,7 +25,8 @@ Vector3d linear_change(const Matrix6X& J, const std::vector<int>& unknowns, cons
 
 }  // namespace
 
-MountPart::MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, bool right, const MotionOptions& options)
+MountPart::MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, bool right,
+                     const MotionOptions& options)
     : name_(std::move(name)), mount_(std::move(mount)), rod_(rod), right_(right), options_(options) {
   rod_.carry(right, [this](const VectorView& y) {
     const MovingFrame::State s = mount_.state(y);
@@ -94,7 +95,8 @@ void MountPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
   rows.segment<3>(rod_.position_of(i)) -= at.y.segment<3>(first_ + 3);
   rows.segment<3>(first_) += at.y.segment<3>(rod_.position_of(i)) - s.X_WF.p;
   rows.segment<3>(first_ + 3) += at.y.segment<3>(rod_.velocity_of(i)) - s.linear;
-  if (mount_.moves_freely()) mount_.push(mount_.jacobian(at.y), {rod_.mount_moment(at, right_), -force}, rows);
+  if (mount_.moves_freely())
+    mount_.push(mount_.jacobian(at.y), {rod_.mount_moment(at, right_), -force}, rows);
 }
 
 void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
@@ -112,7 +114,8 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
     add(first_ + i, end + i, 1.0);
     add(first_ + 3 + i, speed + i, 1.0);
   }
-  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()), wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
+  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()),
+           wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
   for (std::size_t k = 0; k < q.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     const Vector3d turn = d.place.col(column).head<3>(), spin = d.motion.col(column).head<3>();

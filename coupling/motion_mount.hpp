@@ -15,7 +15,8 @@ namespace snare::coupling {
 class MountPart final : public numerics::DaePart, public Link {
  public:
   /// Lets the end of the rod be carried: before the rod declares its unknowns.
-  MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, bool right, const MotionOptions& options);
+  MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, bool right,
+            const MotionOptions& options);
 
   void declare(numerics::DaeLayout& layout) override;
   void couple(std::vector<std::pair<int, int>>& entries) const override;
@@ -25,14 +26,19 @@ class MountPart final : public numerics::DaePart, public Link {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
   [[nodiscard]] int constraints() const override { return 3; }
-  [[nodiscard]] Eigen::VectorXd violation(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
-  [[nodiscard]] Eigen::VectorXd drift(const numerics::VectorView& y, const Eigen::VectorXd& rate) const override;
-  void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers, Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd violation(const numerics::VectorView& y,
+                                          const Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd drift(const numerics::VectorView& y,
+                                      const Eigen::VectorXd& rate) const override;
+  void respond(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
+               Eigen::VectorXd& dv) const override;
   [[nodiscard]] int multipliers() const override { return first_; }
   /// Force on the wire's end; no moment: see `moment`.
   [[nodiscard]] multibody::Wrench wrench(const numerics::VectorView& y) const override;
   /// Of the wire on the mount, at the point of the rod's last evaluation [N m].
-  [[nodiscard]] Eigen::Vector3d moment(const numerics::DaePoint& at) const { return rod_.mount_moment(at, right_); }
+  [[nodiscard]] Eigen::Vector3d moment(const numerics::DaePoint& at) const {
+    return rod_.mount_moment(at, right_);
+  }
   [[nodiscard]] const MovingFrame& carrier() const override { return mount_; }
   [[nodiscard]] const wire::RodPart& rod() const { return rod_; }
   [[nodiscard]] bool right() const { return right_; }

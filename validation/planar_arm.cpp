@@ -26,27 +26,30 @@ void add_joint(ElasticArm& arm, double motor_inertia, const DeflectionLaw& law) 
 Eigen::Matrix2d planar_mass(const PlanarLink& a, const PlanarLink& b, double q2) {
   const double cross = b.mass * a.length * b.centre * std::cos(q2);
   const double h22 = b.inertia + b.mass * b.centre * b.centre;
-  const double h11 = a.inertia + a.mass * a.centre * a.centre + b.mass * a.length * a.length + h22 + 2.0 * cross;
+  const double h11 =
+      a.inertia + a.mass * a.centre * a.centre + b.mass * a.length * a.length + h22 + 2.0 * cross;
   Eigen::Matrix2d H;
   H << h11, h22 + cross, h22 + cross, h22;
   return H;
 }
 
-Eigen::Vector2d planar_bias(const PlanarLink& a, const PlanarLink& b, double q2, const Eigen::Vector2d& rate) {
+Eigen::Vector2d planar_bias(const PlanarLink& a, const PlanarLink& b, double q2,
+                            const Eigen::Vector2d& rate) {
   const double h = b.mass * a.length * b.centre * std::sin(q2);
   return {-h * (2.0 * rate[0] * rate[1] + rate[1] * rate[1]), h * rate[0] * rate[0]};
 }
 
-ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second, double motor_inertia, const DeflectionLaw& law) {
+ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second, double motor_inertia,
+                      const DeflectionLaw& law) {
   ElasticArm arm;
   int frame = 0;
   double reach = 0.0;
   for (const PlanarLink* link : {&first, &second}) {
     const Eigen::Vector3d moments(0.1 * link->inertia, link->inertia, link->inertia);
-    frame = arm.tree.add_moving(frame, frame == 0 ? "first" : "second", multibody::JointKind::revolute,
-                                Eigen::Vector3d::UnitZ(), {Eigen::Matrix3d::Identity(), {reach, 0.0, 0.0}},
-                                multibody::SpatialInertia::about_centre(link->mass, {link->centre, 0.0, 0.0},
-                                                                        moments.asDiagonal()));
+    frame = arm.tree.add_moving(
+        frame, frame == 0 ? "first" : "second", multibody::JointKind::revolute, Eigen::Vector3d::UnitZ(),
+        {Eigen::Matrix3d::Identity(), {reach, 0.0, 0.0}},
+        multibody::SpatialInertia::about_centre(link->mass, {link->centre, 0.0, 0.0}, moments.asDiagonal()));
     reach = link->length;
     add_joint(arm, motor_inertia, law);
   }
@@ -63,7 +66,8 @@ ElasticArm one_joint_arm(double link_inertia, double motor_inertia, const Deflec
   return arm;
 }
 
-multibody::ArmScenario at_rest(const ElasticArm& arm, const multibody::Drive& drive, double end, double tolerance) {
+multibody::ArmScenario at_rest(const ElasticArm& arm, const multibody::Drive& drive, double end,
+                               double tolerance) {
   multibody::ArmScenario s;
   s.arm = arm;
   s.initial = multibody::resting(arm, multibody::zero_state(arm.tree).q);

@@ -9,9 +9,9 @@ namespace snare::validation {
 /// A uniform link of the plane.
 struct PlanarLink {
   double mass = 10.0;
-  double length = 1.0;  ///< to the next joint [m]
-  double centre = 0.5;  ///< of mass, from its joint [m]
-  double inertia = 0.9; ///< about the centre of mass [kg m^2]
+  double length = 1.0;   ///< to the next joint [m]
+  double centre = 0.5;   ///< of mass, from its joint [m]
+  double inertia = 0.9;  ///< about the centre of mass [kg m^2]
 };
 
 /// The double pendulum in the plane as textbooks write it (relative angles): H(q) and the velocity terms c(q, q').
@@ -21,16 +21,16 @@ struct PlanarLink {
                                           const Eigen::Vector2d& rate);
 
 /// The same two links as an elastic arm about z, both joints with the same motor inertia and spring.
-[[nodiscard]] multibody::ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second, double motor_inertia,
-                                               const multibody::DeflectionLaw& law);
+[[nodiscard]] multibody::ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second,
+                                               double motor_inertia, const multibody::DeflectionLaw& law);
 
 /// One link with the given moment of inertia about its joint.
 [[nodiscard]] multibody::ElasticArm one_joint_arm(double link_inertia, double motor_inertia,
                                                   const multibody::DeflectionLaw& law);
 
 /// `arm` at rest in its zero pose, all drives alike, both tolerances the same.
-[[nodiscard]] multibody::ArmScenario at_rest(const multibody::ElasticArm& arm, const multibody::Drive& drive, double end,
-                                             double tolerance);
+[[nodiscard]] multibody::ArmScenario at_rest(const multibody::ElasticArm& arm, const multibody::Drive& drive,
+                                             double end, double tolerance);
 
 /// Table 2 of Abiko et al. with the constants as printed; damping times a factor.
 [[nodiscard]] multibody::DeflectionLaw table2_law(double damping_factor, multibody::StiffnessReading reading,

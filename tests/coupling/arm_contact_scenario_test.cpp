@@ -47,14 +47,17 @@ TEST(ArmContactScenario, AnArmThatCarriesTheBodyStartsWithItsMotion) {
 
 TEST(ArmContactScenario, MistakesInAllFilesAreListedAtOnce) {
   try {
-    static_cast<void>(read_arm_contact_scenario(shipped("jemrms_capture.toml"),
-                                                {{"carries", "probe"}, {"pose", "crooked"}, {"contact.wire.diameter_mm", "-1.0"}}));
+    static_cast<void>(read_arm_contact_scenario(
+        shipped("jemrms_capture.toml"),
+        {{"carries", "probe"}, {"pose", "crooked"}, {"contact.wire.diameter_mm", "-1.0"}}));
     FAIL() << "accepted";
   } catch (const numerics::InputError& error) {
-    EXPECT_THAT(error.what(),
-                testing::AllOf(testing::HasSubstr("--set: carries = probe, must be \"wire\" or \"body\""),
-                               testing::HasSubstr("--set: pose = crooked, must be a pose of the arm: \"straight\", \"bent\""),
-                               testing::HasSubstr("wire.diameter_mm = -1.0")));
+    EXPECT_THAT(
+        error.what(),
+        testing::AllOf(
+            testing::HasSubstr("--set: carries = probe, must be \"wire\" or \"body\""),
+            testing::HasSubstr("--set: pose = crooked, must be a pose of the arm: \"straight\", \"bent\""),
+            testing::HasSubstr("wire.diameter_mm = -1.0")));
   }
 }
 
@@ -63,14 +66,17 @@ TEST(ArmContactScenario, ALawNeedsAWireThatStands) {
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(shipped("air_table.toml"), folder / "air_table.toml",
                              std::filesystem::copy_options::overwrite_existing);
-  std::ofstream(folder / "x.toml") << "schema = \"snare-scenario/1\"\nkind = \"arm_contact\"\ntitle = \"t\"\narm = \""
-                                   << (std::filesystem::path(SNARE_SOURCE_DIR) / "data/arms/jemrms_like.toml").string()
-                                   << "\"\npose = \"bent\"\ncontact = \"air_table.toml\"\ncarries = \"wire\"\nhold = \"limp\"\n";
+  std::ofstream(folder / "x.toml")
+      << "schema = \"snare-scenario/1\"\nkind = \"arm_contact\"\ntitle = \"t\"\narm = \""
+      << (std::filesystem::path(SNARE_SOURCE_DIR) / "data/arms/jemrms_like.toml").string()
+      << "\"\npose = \"bent\"\ncontact = \"air_table.toml\"\ncarries = \"wire\"\nhold = \"limp\"\n";
   try {
     static_cast<void>(read_arm_contact_scenario(folder / "x.toml"));
     FAIL() << "accepted";
   } catch (const numerics::InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("x.toml:7: carries = \"wire\", must be \"body\" with the model quadratic of Table 4"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr(
+                    "x.toml:7: carries = \"wire\", must be \"body\" with the model quadratic of Table 4"));
   }
   std::filesystem::remove_all(folder);
 }

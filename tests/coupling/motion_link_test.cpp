@@ -35,8 +35,8 @@ multibody::ElasticArm small_arm(bool floating, double stiffness, double damping)
     const multibody::Pose X{Eigen::Matrix3d::Identity(), Vector3d(i == 0 ? 0.0 : 1.0, 0.0, 0.0)};
     frame = arm.tree.add_moving(frame, "link" + std::to_string(i), multibody::JointKind::revolute,
                                 Vector3d::Unit(2 - i), X,
-                                multibody::SpatialInertia::about_centre(10.0, {0.5, 0.05, 0.0},
-                                                                        Vector3d(0.1, 0.9, 0.9).asDiagonal()));
+                                multibody::SpatialInertia::about_centre(
+                                    10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
     multibody::ElasticJoint joint;
     joint.name = "joint" + std::to_string(i);
     joint.body = arm.tree.size() - 1;
@@ -123,9 +123,11 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
     const MotionOptions options;
     const multibody::ElasticArm model = small_arm(floating, 30.0, 1.0);
     multibody::ElasticArmPart arm(model, {Drive::limp(), Drive::limp()}, {});
-    const MotionBody held = block(3.0, {0.3, 0.4, 0.5}, Vector3d::Zero()), other = block(2.0, {0.2, 0.3, 0.4}, Vector3d::Zero());
+    const MotionBody held = block(3.0, {0.3, 0.4, 0.5}, Vector3d::Zero()),
+                     other = block(2.0, {0.2, 0.3, 0.4}, Vector3d::Zero());
     BodyPart body(held, Vector3d::Zero(), options), second(other, Vector3d::Zero(), options);
-    const multibody::Pose X_BF{Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(), {0.9, 0.1, -0.2}};
+    const multibody::Pose X_BF{
+        Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(), {0.9, 0.1, -0.2}};
     WeldPart weld("weld", {arm, model.tree.size() - 1, X_BF}, body, {}, options);
     WeldPart next("next", {body, X_BF}, second, {}, options);
     numerics::DaeSystem system({&body, &second, &arm, &weld, &next});
@@ -176,7 +178,8 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
 
 TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
   // Free flight of two welded blocks beside that of the composite body, by the same tolerances.
-  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}), b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
+  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}),
+             b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
   a.start.orientation = Eigen::AngleAxisd(0.7, Vector3d(1.0, -1.0, 0.5).normalized());
   const Vector3d spin(0.9, -1.1, 0.6), velocity(0.2, 0.1, -0.3);
   a.start.velocity = velocity + spin.cross(a.start.position);
@@ -195,8 +198,9 @@ TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
   for (const MotionBody* part : {&a, &b}) {
     const Eigen::Matrix3d R = part->start.orientation.toRotationMatrix();
     const Vector3d d = part->start.position - centre;
-    whole.properties.inertia += R * part->properties.inertia * R.transpose() +
-                                part->properties.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+    whole.properties.inertia +=
+        R * part->properties.inertia * R.transpose() +
+        part->properties.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
   }
   whole.start.position = centre;
   whole.start.velocity = velocity + spin.cross(centre);
@@ -206,8 +210,14 @@ TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
 
   const MotionOptions options = fine(5.0);
   MotionSample last, plain;
-  const MotionResult result = simulate(welded, options, [&](const MotionSample& s) { last = s; return false; });
-  const MotionResult reference = simulate(rigid, options, [&](const MotionSample& s) { plain = s; return false; });
+  const MotionResult result = simulate(welded, options, [&](const MotionSample& s) {
+    last = s;
+    return false;
+  });
+  const MotionResult reference = simulate(rigid, options, [&](const MotionSample& s) {
+    plain = s;
+    return false;
+  });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   ASSERT_TRUE(reference.report.usable());
   const Vector3d arm = a.start.position - centre;
@@ -215,7 +225,8 @@ TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
   // Five seconds at 1e-8 a step.
   EXPECT_LT((last.bodies[0].position - expected).norm(), 1e-5);
   EXPECT_LT((last.bodies[1].orientation * spin - plain.bodies[0].orientation * spin).norm(), 1e-5);
-  EXPECT_LT(result.largest_drift, 1e-8);  // what Newton's method may leave at a tolerance of 1e-8 of places of order one
+  EXPECT_LT(result.largest_drift,
+            1e-8);  // what Newton's method may leave at a tolerance of 1e-8 of places of order one
   EXPECT_LT(std::abs(result.energy.integrator), 1e-6 * result.energy.kinetic);
   EXPECT_LT(result.momentum_error.norm(), 1e-6);
   // The force that holds the second block makes its centre go round.
@@ -225,7 +236,8 @@ TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
 TEST(MotionLink, ABodyOnAnArmIsPartOfItsLastLink) {
   // Beside the same arm with the block as part of its tree.
   multibody::ElasticArm arm = small_arm(true, 400.0, 10.0);
-  const multibody::SpatialInertia inertia = multibody::SpatialInertia::about_centre(8.0, Vector3d::Zero(), 0.7 * Eigen::Matrix3d::Identity());
+  const multibody::SpatialInertia inertia =
+      multibody::SpatialInertia::about_centre(8.0, Vector3d::Zero(), 0.7 * Eigen::Matrix3d::Identity());
   Motion welded, whole;
   MotionArm standing_arm = standing(arm, Drive::holding(0.0, 300.0, 50.0));
   standing_arm.drives[0].course = {0.0, 0.5, 0.1, 1.0};
@@ -236,12 +248,19 @@ TEST(MotionLink, ABodyOnAnArmIsPartOfItsLastLink) {
   weld.carrier = {MotionCarrier::Kind::arm, 0, tip_of(standing_arm)};
   welded.welds = {weld};
   MotionArm loaded = standing_arm;
-  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}}, inertia);
+  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}},
+                            inertia);
   whole.arms = {loaded};
   MotionSample a, b;
   const MotionOptions options = fine(2.0);
-  const MotionResult with = simulate(welded, options, [&](const MotionSample& s) { a = s; return false; });
-  const MotionResult without = simulate(whole, options, [&](const MotionSample& s) { b = s; return false; });
+  const MotionResult with = simulate(welded, options, [&](const MotionSample& s) {
+    a = s;
+    return false;
+  });
+  const MotionResult without = simulate(whole, options, [&](const MotionSample& s) {
+    b = s;
+    return false;
+  });
   ASSERT_TRUE(with.report.usable()) << with.report.message;
   ASSERT_TRUE(without.report.usable()) << without.report.message;
   EXPECT_LT((a.arms[0].state.q - b.arms[0].state.q).norm(), 1e-6);
@@ -275,13 +294,20 @@ TEST(MotionLink, AWireBetweenMountsThatMoveTogetherIsTheFixedWire) {
   }
   MotionSample a, b;
   const MotionOptions options = fine(0.1);
-  const MotionResult still = simulate(fixed, options, [&](const MotionSample& s) { a = s; return false; });
-  const MotionResult carried = simulate(moving, options, [&](const MotionSample& s) { b = s; return false; });
+  const MotionResult still = simulate(fixed, options, [&](const MotionSample& s) {
+    a = s;
+    return false;
+  });
+  const MotionResult carried = simulate(moving, options, [&](const MotionSample& s) {
+    b = s;
+    return false;
+  });
   ASSERT_TRUE(still.report.usable()) << still.report.message;
   ASSERT_TRUE(carried.report.usable()) << carried.report.message;
   const Matrix3Xd shift = (speed * 0.1).replicate(1, 13);
   EXPECT_GT((a.wires[0] - wire.positions).norm(), 1e-3);
-  EXPECT_LT((b.wires[0] - shift - a.wires[0]).norm(), 1e-6);  // of some 5e-3, by two integrations at 1e-8 a step
+  EXPECT_LT((b.wires[0] - shift - a.wires[0]).norm(),
+            1e-6);  // of some 5e-3, by two integrations at 1e-8 a step
   EXPECT_LT((b.mount_forces[0] - a.mount_forces[0]).norm(), 1e-4 * a.mount_forces[0].norm() + 1e-6);
   EXPECT_LT(carried.largest_drift, 1e-9);
   // The carrier's work is in the balance.
@@ -299,7 +325,8 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   rod.damping.bending_time = 1e-2;
   MotionWire wire{"wire", rod, straight_wire(rod, Vector3d::Zero(), {0.2, 0.0, 0.0}), Matrix3Xd::Zero(3, 21)};
   const double spin = 6.0;
-  for (int i = 0; i <= 20; ++i) wire.velocities.col(i) = spin * Vector3d::UnitZ().cross(wire.positions.col(i) - Vector3d(0.1, 0.0, 0.0));
+  for (int i = 0; i <= 20; ++i)
+    wire.velocities.col(i) = spin * Vector3d::UnitZ().cross(wire.positions.col(i) - Vector3d(0.1, 0.0, 0.0));
   motion.wires = {wire};
   MotionBody carrier = block(1e4, Vector3d::Constant(1e4), {0.1, 0.0, 0.0});
   carrier.start.spin = {0.0, 0.0, spin};
@@ -312,7 +339,10 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   }
   MotionOptions options = fine(1.0);
   MotionSample last;
-  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) { last = s; return false; });
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    last = s;
+    return false;
+  });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   const Vector3d along = last.bodies[0].orientation * Vector3d::UnitX();
   const double load = 0.01 * spin * spin;
@@ -322,7 +352,8 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   EXPECT_NEAR(last.mount_forces[0].dot(along), -end, 2e-2 * std::abs(end));
   // In the carrier's frame the wire rests on its chord.
   for (int i = 0; i <= 20; ++i) {
-    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    const Vector3d x =
+        last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
     EXPECT_LT(x.tail<2>().norm(), 1e-6);
   }
   EXPECT_LT(result.largest_drift, 1e-9);
@@ -341,7 +372,8 @@ TEST(MotionLink, MomentumAndEnergyOfAWireOnAFloatingArmStay) {
   rod.properties.right.position = {2.1, 0.1, 0.1};
   rod.properties.left.direction = rod.properties.right.direction = Vector3d::UnitZ();
   rod.properties.left.director = rod.properties.right.director = Vector3d::UnitX();
-  motion.wires = {{"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
+  motion.wires = {
+      {"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
   for (const bool right : {false, true}) {
     MotionMount mount;
     mount.right = right;
@@ -391,7 +423,8 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   MotionOptions options = fine(1.0);
   double before = 0.0, after = 0.0;
   const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
-    (s.time < 0.499 ? before : after) = std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
+    (s.time < 0.499 ? before : after) =
+        std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
     return false;
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -415,7 +448,8 @@ TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
   limp.time = 1.0;
   limp.drives = {Drive::limp(), Drive::locked()};
   part.switches = {limp};
-  part.loads = {{tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
+  part.loads = {
+      {tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
   multibody::ArmScenario alone;
   alone.arm = part.arm;
   alone.initial = part.start;
@@ -432,7 +466,10 @@ TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
   motion.arms = {part};
   MotionOptions options = fine(2.0);
   MotionSample last;
-  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) { last = s; return false; });
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    last = s;
+    return false;
+  });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   const multibody::ArmSample& expected = history.samples.back();
   EXPECT_LT((last.arms[0].state.q - expected.state.q).norm(), 1e-6);
@@ -444,7 +481,8 @@ TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
 
 TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
   Motion motion;
-  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()), block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
+  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()),
+                   block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
   motion.bodies[1].driven = true;
   motion.wires = {{"wire", soft_rod(8), straight_wire(soft_rod(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};
   MotionWeld first, second, third;
@@ -460,10 +498,11 @@ TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
     static_cast<void>(simulate(motion, {}));
     FAIL() << "accepted";
   } catch (const numerics::InputError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("weld.carrier = 0, must be the index of an arm"),
-                                             testing::HasSubstr("weld.body = 0, must not be held by two welds"),
-                                             testing::HasSubstr("other.body = 1, must not be driven"),
-                                             testing::HasSubstr("mount.wire = 2, must be the index of a wire")));
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("weld.carrier = 0, must be the index of an arm"),
+                               testing::HasSubstr("weld.body = 0, must not be held by two welds"),
+                               testing::HasSubstr("other.body = 1, must not be driven"),
+                               testing::HasSubstr("mount.wire = 2, must be the index of a wire")));
   }
 }
 

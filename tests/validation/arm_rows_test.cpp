@@ -13,27 +13,49 @@ namespace {
 void expect_within(const std::vector<Row>& rows) {
   EXPECT_FALSE(rows.empty());
   for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference << ", error "
-                              << row.error() << " of " << row.limit;
+    EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference
+                              << ", error " << row.error() << " of " << row.limit;
   }
 }
 
 const std::string arms = std::string(SNARE_SOURCE_DIR) + "/data/arms";
 
-TEST(ArmRows, WorkIsTheChangeOfTheEnergy) { expect_within(arm_work_rows()); }
-TEST(ArmRows, FrequenciesAreThoseOfTwoMasses) { expect_within(arm_frequency_rows()); }
-TEST(ArmRows, StiffGearsGiveTheRigidArm) { expect_within(rigid_limit_rows()); }
-TEST(ArmRows, PeriodFollowsTheAmplitude) { expect_within(amplitude_rows()); }
-TEST(ArmRows, FloatingBaseAnswersItsLink) { expect_within(floating_base_rows()); }
-TEST(LinkedMotionRows, WeldedBodiesAreASymmetricTop) { expect_within(welded_top_rows()); }
-TEST(LinkedMotionRows, SpinningWirePressesOnItsMounts) { expect_within(moving_mount_rows()); }
+TEST(ArmRows, WorkIsTheChangeOfTheEnergy) {
+  expect_within(arm_work_rows());
+}
+TEST(ArmRows, FrequenciesAreThoseOfTwoMasses) {
+  expect_within(arm_frequency_rows());
+}
+TEST(ArmRows, StiffGearsGiveTheRigidArm) {
+  expect_within(rigid_limit_rows());
+}
+TEST(ArmRows, PeriodFollowsTheAmplitude) {
+  expect_within(amplitude_rows());
+}
+TEST(ArmRows, FloatingBaseAnswersItsLink) {
+  expect_within(floating_base_rows());
+}
+TEST(LinkedMotionRows, WeldedBodiesAreASymmetricTop) {
+  expect_within(welded_top_rows());
+}
+TEST(SlowLinkedMotionRows, SpinningWirePressesOnItsMounts) {
+  expect_within(moving_mount_rows());
+}
 TEST(SlowLinkedMotionRows, CapturesKeepTheirBalances) {
   expect_within(capture_rows(std::string(SNARE_SOURCE_DIR) + "/data"));
 }
-TEST(SlowArmRows, EnergyAndMomentumStay) { expect_within(arm_conservation_rows()); }
-TEST(SlowArmRows, JumpsAreOneEventEach) { expect_within(jump_rows()); }
-TEST(SlowArmRows, JointStepVibratesAsTable2Says) { expect_within(joint_step_rows(arms)); }
-TEST(SlowArmRows, PushAtTheTip) { expect_within(tip_push_rows(arms)); }
+TEST(SlowArmRows, EnergyAndMomentumStay) {
+  expect_within(arm_conservation_rows());
+}
+TEST(SlowArmRows, JumpsAreOneEventEach) {
+  expect_within(jump_rows());
+}
+TEST(SlowArmRows, JointStepVibratesAsTable2Says) {
+  expect_within(joint_step_rows(arms));
+}
+TEST(SlowArmRows, PushAtTheTip) {
+  expect_within(tip_push_rows(arms));
+}
 
 }  // namespace
 }  // namespace snare::validation
