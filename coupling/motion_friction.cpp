@@ -78,7 +78,8 @@ TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode, co
   const SlipLaw law = slip_law(friction, speed);
   t.by_normal = law.coefficient * direction;
   t.force = at.normal * t.by_normal;
-  t.by_bristle = law.coefficient * at.normal / size * (Matrix2d::Identity() - direction * direction.transpose());
+  t.by_bristle =
+      law.coefficient * at.normal / size * (Matrix2d::Identity() - direction * direction.transpose());
   t.by_sliding =
       friction.bristle_time * t.by_bristle + at.normal * law.slope * direction * at.sliding.transpose();
   return t;

@@ -206,7 +206,8 @@ Estimate of(const VectorXd& p, const MatrixXd& covariance, Index k, double unit 
 
 double bic(const VectorXd& residual, Index numbers) {
   const double n = static_cast<double>(residual.size());
-  return n * std::log(std::max(residual.squaredNorm() / n, 1e-300)) + static_cast<double>(numbers) * std::log(n);
+  return n * std::log(std::max(residual.squaredNorm() / n, 1e-300)) +
+         static_cast<double>(numbers) * std::log(n);
 }
 
 }  // namespace
@@ -218,7 +219,8 @@ double RingDownMode::natural() const {
 std::string ring_down_problem(const RingDown& data) {
   constexpr Index least = 20;
   const Index needed = std::max(least, 3 * (numbers_a_mode * data.modes + 2));
-  if (data.time.size() < needed) return fmt::format("has {} readings, must have at least {}", data.time.size(), needed);
+  if (data.time.size() < needed)
+    return fmt::format("has {} readings, must have at least {}", data.time.size(), needed);
   for (Index i = 1; i < data.time.size(); ++i) {
     if (data.time[i] <= data.time[i - 1]) return fmt::format("time_s must rise, reading {} does not", i + 1);
   }
@@ -258,7 +260,8 @@ RingDownFit fit_ring_down(const RingDown& data) {
     start[decay] *= 2.0 / 3.0;
     const Solution other = solve(rubbing, start, time, values);
     if (other.report.usable()) {
-      fit.friction_bic = without - bic(values - evaluate(rubbing, other.numbers, time, nullptr), rubbing.size());
+      fit.friction_bic =
+          without - bic(values - evaluate(rubbing, other.numbers, time, nullptr), rubbing.size());
       if (fit.friction_bic > least_significant_bic) {
         layout = rubbing;
         p = other.numbers;
@@ -278,12 +281,14 @@ RingDownFit fit_ring_down(const RingDown& data) {
   const VectorXd scale = by.colwise().norm().cwiseMax(1e-300);
   const MatrixXd scaled = by * scale.cwiseInverse().asDiagonal();
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size() - layout.size());
-  const MatrixXd covariance = variance * scale.cwiseInverse().asDiagonal() *
-                              (scaled.transpose() * scaled).completeOrthogonalDecomposition().pseudoInverse() *
-                              scale.cwiseInverse().asDiagonal();
+  const MatrixXd covariance =
+      variance * scale.cwiseInverse().asDiagonal() *
+      (scaled.transpose() * scaled).completeOrthogonalDecomposition().pseudoInverse() *
+      scale.cwiseInverse().asDiagonal();
   std::vector<Index> order;
   for (Index m = 0; m < layout.modes; ++m) order.push_back(m);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return p[layout.of(a) + 2] < p[layout.of(b) + 2]; });
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return p[layout.of(a) + 2] < p[layout.of(b) + 2]; });
   for (const Index m : order) {
     const Index k = layout.of(m);
     RingDownMode mode;
@@ -296,7 +301,8 @@ RingDownFit fit_ring_down(const RingDown& data) {
     const double s = p[k + 3];
     const double cube = std::pow(w * w + s * s, 1.5);
     const Eigen::Vector2d slope(-s * w / cube, w * w / cube);
-    mode.damping_ratio = {s / std::hypot(w, s), std::sqrt(std::max(0.0, slope.dot(covariance.block<2, 2>(k + 2, k + 2) * slope)))};
+    mode.damping_ratio = {s / std::hypot(w, s),
+                          std::sqrt(std::max(0.0, slope.dot(covariance.block<2, 2>(k + 2, k + 2) * slope)))};
     if (m == largest) fit.largest = fit.modes.size();
     fit.modes.push_back(mode);
   }
@@ -343,10 +349,13 @@ DampingSplit split_damping(const std::vector<DecayOfMode>& decays) {
     split.mass_rate = {mass.dot(right) / mass.squaredNorm(), 1.0 / mass.norm()};
     split.correlation = -1.0;
     split.statement = fmt::format(
-        "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} 1/s, its split is "
-        "not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = {:.4g}. A second mode, or "
+        "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} "
+        "1/s, its split is "
+        "not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = {:.4g}. A "
+        "second mode, or "
         "the same wire at another span, separates them",
-        decays[surest].natural / (2.0 * pi), split.mass_rate.value, split.bending_time.value, split.mass_rate.value);
+        decays[surest].natural / (2.0 * pi), split.mass_rate.value, split.bending_time.value,
+        split.mass_rate.value);
     return split;
   }
   split.separated = true;
@@ -363,15 +372,18 @@ DampingSplit split_damping(const std::vector<DecayOfMode>& decays) {
     const Estimate& e = k == 0 ? split.bending_time : split.mass_rate;
     const char* name = k == 0 ? "bending_time" : "mass_rate";
     if (e.upper() < 0.0) {
-      split.statement += fmt::format("; {} would be negative: the decays do not follow mass_rate + bending_time w^2", name);
+      split.statement +=
+          fmt::format("; {} would be negative: the decays do not follow mass_rate + bending_time w^2", name);
     } else if (e.lower() < 0.0) {
       split.statement += fmt::format("; {} is not different from zero, at most {:.4g}", name, e.upper());
     }
   }
   constexpr double unlikely = 0.01;
   if (split.misfit_p < unlikely) {
-    split.statement += fmt::format("; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a "
-                                   "bending_share is wrong", n, split.misfit_p);
+    split.statement += fmt::format(
+        "; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a "
+        "bending_share is wrong",
+        n, split.misfit_p);
   }
   return split;
 }

@@ -42,15 +42,16 @@ struct RingDownMode {
 };
 
 struct RingDownFit {
-  std::vector<RingDownMode> modes;   ///< by frequency
-  std::size_t largest = 0;           ///< index of the mode of the largest amplitude
-  std::optional<Estimate> friction;  ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
-  double friction_bic = 0.0;         ///< BIC without friction less that with it; kept above 10
-  Eigen::VectorXd fitted;            ///< [m]
-  double rmse = 0.0;                 ///< [m]
-  double nrmse = 0.0;                ///< over the range of the readings [-]
-  double runs_p = 1.0;               ///< p of the number of runs of one sign of the residual
-  double ljung_box_p = 1.0;          ///< p of its autocorrelations
+  std::vector<RingDownMode> modes;  ///< by frequency
+  std::size_t largest = 0;          ///< index of the mode of the largest amplitude
+  std::optional<Estimate>
+      friction;               ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
+  double friction_bic = 0.0;  ///< BIC without friction less that with it; kept above 10
+  Eigen::VectorXd fitted;     ///< [m]
+  double rmse = 0.0;          ///< [m]
+  double nrmse = 0.0;         ///< over the range of the readings [-]
+  double runs_p = 1.0;        ///< p of the number of runs of one sign of the residual
+  double ljung_box_p = 1.0;   ///< p of its autocorrelations
   numerics::SolveReport report;
   /// The residual looks like noise; where it does not, the standard errors are too small.
   [[nodiscard]] bool noise_only() const { return runs_p > 1e-3 && ljung_box_p > 1e-3; }
@@ -65,9 +66,10 @@ struct RingDownFit {
 
 /// One decay rate for the split: 2 s = mass_rate + bending_time share w^2.                       theory.md (M.4)
 struct DecayOfMode {
-  double natural = 0.0;        ///< w [rad/s], > 0
-  double bending_share = 1.0;  ///< of the mode's stiffness that bends material: 1 for a straight wire without tension
-  Estimate decay;              ///< s [1/s]
+  double natural = 0.0;  ///< w [rad/s], > 0
+  double bending_share =
+      1.0;         ///< of the mode's stiffness that bends material: 1 for a straight wire without tension
+  Estimate decay;  ///< s [1/s]
 };
 
 /// Material and mass-proportional damping from decay rates.

@@ -25,15 +25,17 @@ namespace {
 
 constexpr std::string_view schema = "snare-ringdown/1";
 constexpr double mm = 1e-3;
-constexpr double longest = 1e6;          // [s]
+constexpr double longest = 1e6;  // [s]
 constexpr std::size_t most_rows = 200000;
 constexpr int most_modes = 6;
 
 RingDown read_readings(TomlDocument& document, const TomlTable& table, const std::filesystem::path& folder) {
   RingDown data;
   const std::string name = table.text("file");
-  const double from = table.number_or("from_s", -std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
-  const double to = table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
+  const double from =
+      table.number_or("from_s", -std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
+  const double to =
+      table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
   if (to <= from) table.fail("to_s", "must be > from_s");
   if (name.empty()) return data;
   const std::filesystem::path path = folder / name;
@@ -43,7 +45,8 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
   }
   try {
     const numerics::CsvTable csv = numerics::read_csv(
-        path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0, CsvColumn::Order::non_decreasing},
+        path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0,
+                CsvColumn::Order::non_decreasing},
                {"displacement_mm", CsvColumn::Presence::required, Range::from(-1e4, 1e4), mm}});
     std::vector<double> time;
     std::vector<double> displacement;
@@ -53,17 +56,19 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
       displacement.push_back(csv.columns[1][i]);
     }
     data.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
-    data.displacement =
-        Eigen::Map<const Eigen::VectorXd>(displacement.data(), static_cast<Eigen::Index>(displacement.size()));
+    data.displacement = Eigen::Map<const Eigen::VectorXd>(displacement.data(),
+                                                          static_cast<Eigen::Index>(displacement.size()));
     if (time.size() > most_rows)
-      table.fail("file", fmt::format("{} has {} readings, must have at most {}: thin it out", path.string(), time.size(), most_rows));
+      table.fail("file", fmt::format("{} has {} readings, must have at most {}: thin it out", path.string(),
+                                     time.size(), most_rows));
   } catch (const numerics::InputError& error) {
     for (const numerics::InputProblem& problem : error.problems()) document.add(problem);
   }
   return data;
 }
 
-RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const std::filesystem::path& folder) {
+RingDownSeries read_series(TomlDocument& document, const TomlTable& table,
+                           const std::filesystem::path& folder) {
   RingDownSeries series;
   series.data = read_readings(document, table, folder);
   series.data.name = table.text("name");
@@ -84,7 +89,8 @@ RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const
 
 }  // namespace
 
-RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::vector<numerics::Override>& overrides) {
+RingDownFile read_ring_down_file(const std::filesystem::path& file,
+                                 const std::vector<numerics::Override>& overrides) {
   TomlDocument document(file, overrides);
   const TomlTable root = document.root();
   if (root.text("schema") != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
@@ -93,8 +99,8 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
   result.title = root.text("title");
   result.source = root.text_or("source", "");
   if (root.has("wire") || root.has("mount")) {
-    const coupling::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"), root.table("wire"),
-                                      root.table("wire")};
+    const coupling::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"),
+                                      root.table("wire"), root.table("wire")};
     result.wire = coupling::read_wire_and_mounts(tables);
     if (result.wire->mount.kind == wire::MountKind::supports)
       tables.mount.fail("kind", "must be \"clamped\" or \"pinned\"");
@@ -102,13 +108,15 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
       if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
     }
     for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
-      if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+      if (tables.wire.has(key))
+        tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
     }
   }
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("series")) {
     result.series.push_back(read_series(document, table, file.parent_path()));
-    if (!names.insert(result.series.back().data.name).second) table.fail("name", "is taken by another series");
+    if (!names.insert(result.series.back().data.name).second)
+      table.fail("name", "is taken by another series");
   }
   if (result.series.empty()) root.fail("series", "must have at least one [[series]]");
   document.finish();
@@ -122,8 +130,9 @@ std::vector<wire::RodMode> modes_of(const coupling::PushTest& test) {
   constexpr int elements = 60;
   constexpr int count = 24;
   wire::RodInMotion rod = coupling::rod_in_motion(test.wire, test.mount.span, elements);
-  rod.properties.left.kind = rod.properties.right.kind =
-      test.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp : wire::SpatialEnd::Kind::twisting_pin;
+  rod.properties.left.kind = rod.properties.right.kind = test.mount.kind == wire::MountKind::clamped
+                                                             ? wire::SpatialEnd::Kind::clamp
+                                                             : wire::SpatialEnd::Kind::twisting_pin;
   return wire::rod_modes(rod, coupling::resting_wire(rod), count);
 }
 
@@ -161,7 +170,8 @@ DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
   std::string strangers;
   for (const MatchedMode& m : modes) {
     decays.push_back(m.decay);
-    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
+    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off)
+      continue;
     strangers += fmt::format("; {:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
                              0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed);
   }

@@ -113,10 +113,11 @@ std::vector<Row> incline_rows() {
   {
     motion.contacts[0].friction.law = coupling::FrictionLaw::smooth;
     double x = 0.5;
-    for (int k = 0; k < 50; ++k) x -= (0.5 * x * (3.0 - x * x) - std::tan(0.9 * friction_angle) / 0.3) / (1.5 * (1.0 - x * x));
+    for (int k = 0; k < 50; ++k)
+      x -= (0.5 * x * (3.0 - x * x) - std::tan(0.9 * friction_angle) / 0.3) / (1.5 * (1.0 - x * x));
     const Travel creeping = travel(motion, 0.1, 1.1);
-    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic", 0.01 * x,
-                    creeping.late - creeping.early, ErrorKind::relative, 1e-3});
+    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic",
+                    0.01 * x, creeping.late - creeping.early, ErrorKind::relative, 1e-3});
   }
   for (const double angle : {20.0 * degree, 35.0 * degree}) {
     motion.contacts[0].friction = two_coefficients(0.3, 0.1);
@@ -146,9 +147,10 @@ std::vector<Row> stopping_block_rows() {
   const double back = mu * g / motion.contacts[0].friction.bristle_stiffness();
   const Travel t = travel(motion, 1.0, 11.0);
   std::vector<Row> rows;
-  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give", path - back, t.late,
-                  ErrorKind::relative, 1e-4});
-  rows.push_back({"friction", "and then moves in 10 s by", "m", "rest", 0.0, std::abs(t.late - t.early), ErrorKind::absolute, 1e-9});
+  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give",
+                  path - back, t.late, ErrorKind::relative, 1e-4});
+  rows.push_back({"friction", "and then moves in 10 s by", "m", "rest", 0.0, std::abs(t.late - t.early),
+                  ErrorKind::absolute, 1e-9});
   const double energy = 0.5 * speed * speed;
   rows.push_back({"friction", "and has turned into heat, of its kinetic energy", "", "conservation", 1.0,
                   t.result.energy.dissipated / energy, ErrorKind::absolute, 1e-3});
@@ -176,8 +178,8 @@ std::vector<Row> rolling_rows() {
   });
   const double expected = g * std::sin(angle) / (1.0 + inertia / (radius * radius));
   const double found = r.report.usable() && sticks ? (late - early) / 0.05 : std::nan("");
-  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))", expected, found,
-           ErrorKind::relative, 1e-3}};
+  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))",
+           expected, found, ErrorKind::relative, 1e-3}};
 }
 
 // A mass on a belt, held by a spring K: seen from the belt, the spring's far end moves at v. In the slip the mass swings
@@ -235,8 +237,8 @@ std::vector<Row> stick_slip_rows() {
            fine ? (slips[3] - slips[0]) / 3.0 : nothing, ErrorKind::relative, 1e-3},
           {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", amplitude,
            fine ? 0.5 * (most - least) : nothing, ErrorKind::relative, 1e-3},
-          {"friction", "mass on a belt, heat", "J", "mu_d N times the way slid", sliding * g * travel, fine ? heat : nothing,
-           ErrorKind::relative, 1e-3},
+          {"friction", "mass on a belt, heat", "J", "mu_d N times the way slid", sliding * g * travel,
+           fine ? heat : nothing, ErrorKind::relative, 1e-3},
           {"friction", "mass on a belt, heat", "J", "area of force over way", area, fine ? heat : nothing,
            ErrorKind::relative, 2e-3}};
 }
@@ -245,7 +247,8 @@ namespace {
 
 /// The pusher goes 2 mm in and comes back, slowly; the static wire does the same on the same mesh. Friction of one
 /// coefficient, or strands.
-std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name, const std::vector<double>& stations) {
+std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name,
+                               const std::vector<double>& stations) {
   constexpr double depth = 2.0 * mm;
   constexpr int elements = 200;
   const double radius = test.pusher.radius;
@@ -302,7 +305,8 @@ std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name,
     const bool loading = k <= stations.size();
     double force = std::nan("");
     for (std::size_t i = 1; i < travels.size(); ++i) {
-      const bool passes = loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
+      const bool passes =
+          loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
       if (!passes) continue;
       const double share = (d - travels[i - 1]) / (travels[i] - travels[i - 1]);
       force = forces[i - 1] + share * (forces[i] - forces[i - 1]);
@@ -311,8 +315,11 @@ std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name,
     // At the turn the least motion back unloads what sticks: there the largest force counts.
     if (k == stations.size()) force = *std::max_element(forces.begin(), forces.end());
     if (!r.report.usable()) force = std::nan("");
-    rows.push_back({"friction", fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at", d / mm),
-                    "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute, 1e-3});
+    rows.push_back({"friction",
+                    fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name,
+                                loading ? "in" : "back at", d / mm),
+                    "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute,
+                    1e-3});
   }
   return rows;
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr int block = SpatialRod::block;
 
 /// Power that the damping takes at the velocities of a mode [W].
-double lost_power(RodInMotion rod, const RodDamping& damping, const Eigen::Matrix3Xd& rest, const Eigen::Matrix3Xd& shape,
-                  const VectorXd& turning) {
+double lost_power(RodInMotion rod, const RodDamping& damping, const Eigen::Matrix3Xd& rest,
+                  const Eigen::Matrix3Xd& shape, const VectorXd& turning) {
   rod.damping = damping;
   rod.strands = {};
   RodPart part("wire", rod, {});

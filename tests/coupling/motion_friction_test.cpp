@@ -27,8 +27,9 @@ MotionFriction papers_friction() {
 TEST(MotionFriction, ForceHasExactDerivatives) {
   MotionFriction smooth = papers_friction();
   smooth.law = FrictionLaw::smooth;
-  const std::pair<MotionFriction, FrictionMode> cases[] = {
-      {papers_friction(), FrictionMode::stick}, {papers_friction(), FrictionMode::slip}, {smooth, FrictionMode::stick}};
+  const std::pair<MotionFriction, FrictionMode> cases[] = {{papers_friction(), FrictionMode::stick},
+                                                           {papers_friction(), FrictionMode::slip},
+                                                           {smooth, FrictionMode::stick}};
   for (const auto& [friction, mode] : cases) {
     for (const double speed : {0.004, 0.3, 2.0}) {
       // Of order one: z in micrometres, w in units of its size.
@@ -38,7 +39,8 @@ TEST(MotionFriction, ForceHasExactDerivatives) {
       };
       VectorXd x(5);
       x << 0.4, -0.7, 0.8, 0.3, 1.1;
-      const TangentForce t = tangent_force(friction, mode, {1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]});
+      const TangentForce t =
+          tangent_force(friction, mode, {1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]});
       Eigen::MatrixXd analytic(2, 5);
       analytic << 1e-6 * t.by_bristle, speed * t.by_sliding, 10.0 * t.by_normal;
       const test::DerivativeError error = test::compare_jacobian(force, x, analytic);
@@ -63,8 +65,9 @@ TEST(MotionFriction, HeatIsNeverNegative) {
   const MotionFriction f = papers_friction();
   int slips = 0;
   for (int k = 0; k < 10000; ++k) {
-    const BristleState s{2e-6 * Vector2d(unit(random), unit(random)), std::pow(10.0, 3.0 * unit(random) - 2.0) *
-                         Vector2d(unit(random), unit(random)), 10.0 * (1.0 + unit(random))};
+    const BristleState s{2e-6 * Vector2d(unit(random), unit(random)),
+                         std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)),
+                         10.0 * (1.0 + unit(random))};
     for (const FrictionMode mode : {FrictionMode::stick, FrictionMode::slip}) {
       if (friction_margin(f, mode, s) < 0.0) continue;
       slips += mode == FrictionMode::slip ? 1 : 0;
@@ -229,7 +232,9 @@ Motion block_on_arch() {
   w.length = elements * 2.0 * radius * std::sin(half / elements);
   wire::RodInMotion rod = rod_in_motion(w, 0.0, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-4;
-  const auto place = [&](double a) -> Vector3d { return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0); };
+  const auto place = [&](double a) -> Vector3d {
+    return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0);
+  };
   const auto along = [](double a) { return Vector3d(std::cos(a), -std::sin(a), 0.0); };
   rod.properties.natural_curvature = {-1.0 / radius, 0.0};
   for (const double side : {-1.0, 1.0}) {
@@ -304,13 +309,16 @@ TEST(MotionFriction, WrongNumbersAreNamed) {
     return "accepted";
   };
   using testing::HasSubstr;
-  EXPECT_THAT(message([](MotionFriction& f) { f.static_coefficient = 0.05; }), HasSubstr("at least the dynamic coefficient"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.static_coefficient = 0.05; }),
+              HasSubstr("at least the dynamic coefficient"));
   EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_coefficient = -0.1; }),
               HasSubstr("contact.friction.dynamic_coefficient = -0.1, must be >= 0"));
   EXPECT_THAT(message([](MotionFriction& f) { f.bristle_displacement = 0.0; }),
               HasSubstr("contact.friction.bristle_displacement = 0, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }), HasSubstr("bristle_time = -1, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }), HasSubstr("and < dynamic_speed, or both 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }),
+              HasSubstr("bristle_time = -1, must be > 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }),
+              HasSubstr("and < dynamic_speed, or both 0"));
   EXPECT_THAT(message([](MotionFriction& f) {
                 f.law = FrictionLaw::smooth;
                 f.static_speed = f.dynamic_speed = 0.0;

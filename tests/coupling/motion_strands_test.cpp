@@ -53,7 +53,8 @@ TEST(MotionStrands, JacobianMatchesDifferences) {
       velocities.col(i) = 0.1 * Vector3d(unit(random), unit(random), out * unit(random));
     }
     rod.place(positions, velocities, y);
-    for (int i = 0; i < rod.vertices(); ++i) y.segment<2>(rod.strand_of(i)) << 0.4 * unit(random), 0.4 * out * unit(random);
+    for (int i = 0; i < rod.vertices(); ++i)
+      y.segment<2>(rod.strand_of(i)) << 0.4 * unit(random), 0.4 * out * unit(random);
     VectorXd rate(y.size());
     for (double& r : rate) r = 0.1 * unit(random);
     Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
@@ -147,8 +148,9 @@ TEST(MotionStrands, WrongNumbersAreNamed) {
     (void)simulate(motion, {});
     FAIL() << "accepted";
   } catch (const numerics::InputError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("wire.strands.slip_curvature = 0, must be > 0"),
-                                             testing::HasSubstr("wire.strands.time = -1, must be > 0")));
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("wire.strands.slip_curvature = 0, must be > 0"),
+                               testing::HasSubstr("wire.strands.time = -1, must be > 0")));
   }
 }
 

@@ -8,7 +8,8 @@ namespace {
 TEST(ContactLawRows, AreWithinTheirLimits) {
   for (const Check& check : contact_law_checks()) {
     for (const Row& row : check.run()) {
-      EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference << ", error " << row.error();
+      EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference
+                                << ", error " << row.error();
     }
   }
 }
