@@ -26,6 +26,9 @@ constexpr double no_tolerance = 1e6;
 // any shape that wires meet.
 constexpr double least_curvature = 1.0;
 
+// n.X' below this is round-off.
+constexpr double level_slope = 1e-9;
+
 /// Weights of the slope of the curve at vertex i on the vertices i-1, i, i+1 (at an end on the three nearest).
 struct SlopeWeights {
   int first;
@@ -389,7 +392,8 @@ bool ContactPart::accept(const DaePoint& at) {
   } else if (slope * fixed_slope_ < 0.0 && gap_curvature(g) > 2.0 * least_curvature) {
     fixed_ = false;
   }
-  fixed_slope_ = slope;
+  // Along a flat face the slope is round-off of either sign, which says nothing.
+  fixed_slope_ = std::abs(slope) > level_slope ? slope : 0.0;
   return follow(at.y);
 }
 
@@ -434,7 +438,7 @@ bool ContactPart::close(double coordinate, Eigen::VectorXd& y) {
   }
   const Geometry g = geometry(y);
   fixed_ = is_at_an_end(coordinate) || gap_curvature(g) < least_curvature;
-  fixed_slope_ = g.normal.dot(g.slope);
+  fixed_slope_ = 0.0;
   const bool added = !coupled_;
   coupled_ = true;
   return follow(y) || added;

@@ -3,6 +3,7 @@
 #include "coupling/motion.hpp"
 #include "coupling/motion_body.hpp"
 #include "coupling/motion_contact.hpp"
+#include "coupling/motion_points.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
 
@@ -136,7 +137,8 @@ struct Touching {
     y.segment<4>(body.quaternion()) = Eigen::Vector4d(0.98, 0.1, -0.12, 0.11).normalized();
     y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
     const VectorXd placed = y;
-    (void)contact.close(y);
+    const double nearest = ContactPoints(touch(friction), rod, body, {}).nearest(y).coordinate;
+    (void)contact.close(nearest, y);
     y.head(27) = placed.head(27);  // not moved out of the ball: the rod's frames stay in their plane
     y[contact.force_unknown()] = 2.0;
   }
