@@ -48,7 +48,7 @@ double deflection(const ModelRun& run, const MotionSample& s, int joint) {
 
 ModelRun run_model(const ArmContactScenario& scenario, const coupling::WireModel& model, Console& console) {
   ModelRun run{model.name, coupling::motion_of(scenario, model), {}, {}};
-  const coupling::MotionOptions& options = scenario.contact.options;
+  const coupling::MotionOptions options = coupling::options_of(scenario.contact, model);
   run.result = coupling::simulate(run.motion, options, [&](const MotionSample& s) {
     run.samples.push_back(s);
     console.progress(fmt::format("{}: {:.3f} of {:.3f} s", model.name, s.time, options.duration));

@@ -95,7 +95,7 @@ class ScenarioRun {
     const double begun = from ? from->time : 0.0;
     std::vector<MotionSample> samples = progress_.samples;
     const auto begin = Clock::now();
-    coupling::MotionOptions options = scenario_.options;
+    coupling::MotionOptions options = coupling::options_of(scenario_, model);
     options.stop = interrupted;
     MotionResult result = coupling::simulate(
         coupling::motion_of(scenario_, model), options,

@@ -169,6 +169,15 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   return scenario;
 }
 
+MotionOptions options_of(const ContactScenario& scenario, const WireModel& model) {
+  MotionOptions options = scenario.options;
+  const MotionBody& body = scenario.body;
+  const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
+  constexpr double resolved_travel = 1e-4;  // [m]
+  if (model.law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
+  return options;
+}
+
 Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
   const PushTest& push = scenario.push;
   const wire::WireSpecification& w = push.wire;

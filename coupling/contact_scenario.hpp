@@ -42,6 +42,10 @@ struct ContactScenario {
 /// The motion of one of its models. The world frame has the left mount at its origin, x along the chord, y with the bulge.
 [[nodiscard]] Motion motion_of(const ContactScenario& scenario, const WireModel& model);
 
+/// The scenario's options for one of its models. A law that stands for the wire may be zero over the first part of its travel: its steps
+/// are limited to a tenth of a millimetre at the speed of the start, so that none leaps over the rest.
+[[nodiscard]] MotionOptions options_of(const ContactScenario& scenario, const WireModel& model);
+
 /// Kind of the scenario in a file ("contact"), or what it says there. Throws InputError when it is no scenario.
 [[nodiscard]] std::string scenario_kind(const std::filesystem::path& file,
                                         const std::vector<numerics::Override>& overrides);
