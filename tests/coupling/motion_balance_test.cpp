@@ -288,7 +288,7 @@ TEST(MotionState, AFailureKeepsWhatWasReached) {
   EXPECT_NEAR(written, result.report.time, options.output_interval);
   EXPECT_EQ(result.last.time, result.report.time);
   EXPECT_TRUE(result.last.unknowns.allFinite());
-  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact normal force")));
+  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact point 1 normal force")));
 }
 
 TEST(MotionState, OfAnotherMotionIsRefused) {
