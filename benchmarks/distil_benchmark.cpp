@@ -3,7 +3,7 @@
 #include "coupling/push_solver.hpp"
 #include "reduction/distil.hpp"
 
-#include "law.hpp"  // generated: see CMakeLists.txt
+#include <law.hpp>  // generated: see CMakeLists.txt
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
