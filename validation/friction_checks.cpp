@@ -205,6 +205,7 @@ std::vector<Row> stick_slip_rows() {
   const double amplitude = std::hypot(jump, belt / w);
   MotionOptions options = accurate(3.6 * period + fixed * g / stiffness / belt);
   options.output_interval = period / 1000.0;
+  options.max_step = period / 2000.0;  // in the stick time alone moves, which the integrals see and the error of a step does not
   double least = 1e9;
   double most = -1e9;
   double heat = 0.0;
