@@ -1,13 +1,13 @@
 #include "coupling/motion.hpp"
 
 #include "coupling/motion_body.hpp"
+#include "coupling/motion_check.hpp"
 #include "coupling/motion_contact.hpp"
 #include "coupling/motion_impulse.hpp"
 #include "coupling/motion_linkage.hpp"
 #include "coupling/motion_points.hpp"
 #include "coupling/motion_spring.hpp"
 #include "numerics/errors.hpp"
-#include "wire/loose_wire.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -27,114 +27,6 @@ using Eigen::VectorXd;
 using numerics::DaePoint;
 
 namespace {
-
-/// Collects what is wrong with a motion.
-class Complaints {
- public:
-  void require(bool fine, const std::string& key, double value, const std::string& requirement) {
-    if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
-  }
-  std::vector<numerics::InputProblem>& problems() { return problems_; }
-  void raise() {
-    if (!problems_.empty()) throw numerics::InputError(problems_);
-  }
-
- private:
-  std::vector<numerics::InputProblem> problems_;
-};
-
-void validate_friction(Complaints& c, const std::string& key, const MotionFriction& f) {
-  const auto not_negative = [&](const std::string& name, double value) {
-    c.require(std::isfinite(value) && value >= 0.0, key + name, value, "must be >= 0");
-  };
-  not_negative("static_coefficient", f.static_coefficient);
-  not_negative("dynamic_coefficient", f.dynamic_coefficient);
-  if (f.law == FrictionLaw::smooth) {
-    c.require(f.static_speed > 0.0 && f.dynamic_speed > f.static_speed, key + "static_speed", f.static_speed,
-              "must be > 0 and < dynamic_speed");
-    return;
-  }
-  const bool at_once = f.static_speed == 0.0 && f.dynamic_speed == 0.0;
-  c.require(at_once || (f.static_speed >= 0.0 && f.dynamic_speed > f.static_speed), key + "static_speed",
-            f.static_speed, "must be >= 0 and < dynamic_speed, or both 0");
-  c.require(f.static_coefficient >= f.dynamic_coefficient, key + "static_coefficient", f.static_coefficient,
-            "must be at least the dynamic coefficient");
-  for (const auto& [name, value] : {std::pair{"bristle_displacement", f.bristle_displacement},
-                                    {"bristle_force", f.bristle_force},
-                                    {"bristle_time", f.bristle_time}}) {
-    c.require(std::isfinite(value) && value > 0.0, key + name, value, "must be > 0");
-  }
-}
-
-void validate(const Motion& motion, const MotionOptions& options) {
-  Complaints c;
-  const auto positive = [&c](const std::string& key, double value) {
-    c.require(std::isfinite(value) && value > 0.0, key, value, "must be > 0");
-  };
-  positive("duration", options.duration);
-  positive("output_interval", options.output_interval);
-  positive("relative_tolerance", options.relative_tolerance);
-  positive("position_tolerance", options.position_tolerance);
-  positive("velocity_tolerance", options.velocity_tolerance);
-  positive("twist_tolerance", options.twist_tolerance);
-  positive("body_position_tolerance", options.body_position_tolerance);
-  positive("body_velocity_tolerance", options.body_velocity_tolerance);
-  positive("angle_tolerance", options.angle_tolerance);
-  positive("spin_tolerance", options.spin_tolerance);
-  positive("newton_share", options.newton_share);
-  c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
-  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order,
-            "must be 1 to 5");
-  for (const MotionWire& w : motion.wires) {
-    positive(w.name + ".length", w.rod.length);
-    positive(w.name + ".mass_per_length", w.rod.mass_per_length);
-    positive(w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
-    positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
-    positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
-    c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
-    if (w.rod.strands.act()) {
-      positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
-      positive(w.name + ".strands.time", w.rod.strands.time);
-    }
-    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
-              static_cast<double>(w.positions.cols()), "must be one more than the elements");
-    c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
-              static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
-    c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
-              "must be finite");
-  }
-  for (const MotionBody& b : motion.bodies) {
-    positive(b.name + ".mass", b.properties.mass);
-    const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
-    c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
-              "must be positive definite");
-    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
-              b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
-    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
-              b.start.orientation.norm(), "must be a unit quaternion");
-  }
-  for (const MotionContact& k : motion.contacts) {
-    c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
-              "must be the index of a wire");
-    c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
-              "must be the index of a body");
-    c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
-    c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
-    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius, "must be >= 0");
-    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius", k.wire_radius,
-              "must be > 0 for a shape with edges");
-    validate_friction(c, k.name + ".friction.", k.friction);
-  }
-  for (const MotionSpring& s : motion.springs) {
-    c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
-              "must be the index of a body");
-    c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
-              "must be a unit vector");
-    c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
-  }
-  Linkage::check(motion, c.problems());
-  c.raise();
-}
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
 /// wires and free bodies, and the force of every contact on its wire and of every body on its spring [N].
@@ -774,55 +666,6 @@ double next_stop(const MotionOptions& options, double time) {
 
 }  // namespace
 
-wire::RodInMotion rod_in_motion(const wire::WireSpecification& specification, double span, int elements) {
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = specification.bending_stiffness();
-  rod.properties.torsional_stiffness = specification.torsional_stiffness();
-  rod.properties.axial_stiffness = specification.axial_stiffness();
-  rod.properties.right.position = {span, 0.0, 0.0};
-  rod.mass_per_length = specification.mass_per_length();
-  if (specification.strand_friction) {
-    rod.strands.extra_stiffness = specification.strand_friction->extra_stiffness;
-    rod.strands.slip_curvature = specification.strand_friction->slip_curvature;
-  }
-  rod.length = specification.length;
-  rod.elements = elements;
-  return rod;
-}
-
-Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& from, const Vector3d& to) {
-  const wire::MaterialMesh mesh(rod.elements / 2, rod.elements - rod.elements / 2, rod.grading);
-  const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};
-  Eigen::Matrix3Xd x(3, mesh.vertices());
-  for (int i = 0; i < mesh.vertices(); ++i)
-    x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
-  return x;
-}
-
-Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
-  const Vector3d from = rod.properties.left.position;
-  const Vector3d to = rod.properties.right.position;
-  if (rod.length <= (to - from).norm()) return straight_wire(rod, from, to);
-  wire::PlanarRodProperties plane;
-  plane.bending_stiffness = rod.properties.bending_stiffness;
-  plane.axial_stiffness = rod.properties.axial_stiffness;
-  plane.right.position = {(to - from).norm(), 0.0};
-  const wire::PlanarRod planar(wire::MaterialMesh(rod.elements / 2, rod.elements - rod.elements / 2, rod.grading), plane);
-  const wire::Controls controls{0.0, rod.length * (rod.elements / 2) / rod.elements, rod.length};
-  const wire::LooseWire loose = wire::find_loose_wire(planar, controls, 1);
-  if (!loose.report.usable()) throw numerics::InputError({"", 0, "wire", "", loose.report.message});
-  const Vector3d along = (to - from).normalized();
-  Vector3d up = Vector3d::UnitY() - along.y() * along;
-  if (up.norm() < 1e-6) up = Vector3d::UnitX() - along.x() * along;
-  up.normalize();
-  Eigen::Matrix3Xd x(3, rod.elements + 1);
-  for (int i = 0; i <= rod.elements; ++i) {
-    const Eigen::Vector2d p = wire::vertex(loose.state, i);
-    x.col(i) = from + p.x() * along + p.y() * up;
-  }
-  return x;
-}
-
 std::string to_string(MotionEvent::Kind kind) {
   switch (kind) {
     case MotionEvent::Kind::touch: return "touch";
@@ -835,7 +678,7 @@ std::string to_string(MotionEvent::Kind kind) {
 
 MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,
                       const MotionState* from, const MotionKeeper& keeper) {
-  validate(motion, options);
+  require_valid(motion, options);
   // What the joints of an arm remember is not part of a state.
   if (!motion.arms.empty() && (from != nullptr || keeper)) {
     throw numerics::InputError(
@@ -852,7 +695,7 @@ MotionResult simulate(const Motion& motion, const MotionOptions& options, const 
     } else {
       run.begin();
     }
-    const double stop = next_stop(options, state ? state->time : 0.0);
+    const double stop = motion.arms.empty() ? next_stop(options, state ? state->time : 0.0) : options.duration;
     MotionResult result = run.go(stop);
     if (!result.report.usable() || result.report.time < stop || stop >= options.duration) return result;
     state = std::move(result.last);
