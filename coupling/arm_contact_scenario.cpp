@@ -1,5 +1,6 @@
 #include "coupling/arm_contact_scenario.hpp"
 
+#include "coupling/motion_reader.hpp"
 #include "multibody/arm_scenario_file.hpp"
 #include "numerics/toml_reader.hpp"
 
@@ -25,12 +26,6 @@ namespace {
 constexpr double mm = 1e-3;
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr std::string_view prefix = "contact.";
-
-Vector3d read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
-  if (!table.has(key)) return Vector3d::Zero();
-  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
-  return v.size() == 3 ? Vector3d(v[0], v[1], v[2]) : Vector3d::Zero();
-}
 
 /// Runs a reader of another file; its problems go to the document.
 template <class Read>
@@ -74,8 +69,8 @@ ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
   static constexpr Choice<Hold> holds[] = {
       {"as_described", Hold::as_described}, {"limp", Hold::limp}, {"locked", Hold::locked}};
   scenario.hold = root.choice("hold", holds).value_or(Hold::as_described);
-  scenario.X_CT.p = read_vector(root, "tip_mm", Range::from(-1e5, 1e5), mm);
-  const Vector3d turn = read_vector(root, "tip_rpy_deg", Range::from(-360.0, 360.0), degree);
+  scenario.X_CT.p = read_vector_or_zero(root, "tip_mm", Range::from(-1e5, 1e5), mm);
+  const Vector3d turn = read_vector_or_zero(root, "tip_rpy_deg", Range::from(-360.0, 360.0), degree);
   scenario.X_CT.R =
       (Eigen::AngleAxisd(turn.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(turn.y(), Vector3d::UnitY()) *
        Eigen::AngleAxisd(turn.x(), Vector3d::UnitX()))

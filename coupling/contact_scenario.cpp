@@ -84,12 +84,6 @@ WireModel read_model(const TomlTable& table) {
   return model;
 }
 
-Vector3d read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
-  if (!table.has(key)) return Vector3d::Zero();
-  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
-  return v.size() == 3 ? Vector3d(v[0], v[1], v[2]) : Vector3d::Zero();
-}
-
 void read_body(const TomlTable& table, ContactScenario& scenario) {
   MotionBody& body = scenario.body;
   body.name = table.text_or("name", "body");
@@ -102,10 +96,10 @@ void read_body(const TomlTable& table, ContactScenario& scenario) {
       table.fail("inertia_kg_m2",
                  "must satisfy the triangle inequality: none larger than the other two together");
   }
-  scenario.probe = read_vector(table, "probe_mm", Range::from(-1e5, 1e5), mm);
-  const Vector3d velocity = read_vector(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
+  scenario.probe = read_vector_or_zero(table, "probe_mm", Range::from(-1e5, 1e5), mm);
+  const Vector3d velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
   body.start.velocity = velocity;
-  body.start.spin = read_vector(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
+  body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
   body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
   body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
   body.start.position.y() =

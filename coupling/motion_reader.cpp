@@ -4,9 +4,21 @@
 
 namespace snare::coupling {
 
+using Eigen::Vector3d;
 using numerics::Choice;
 using numerics::Range;
 using numerics::TomlTable;
+
+std::optional<Vector3d> read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
+  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
+  if (v.size() != 3) return std::nullopt;
+  return Vector3d(v[0], v[1], v[2]);
+}
+
+Vector3d read_vector_or_zero(const TomlTable& table, std::string_view key, Range range, double unit) {
+  if (!table.has(key)) return Vector3d::Zero();
+  return read_vector(table, key, range, unit).value_or(Vector3d::Zero());
+}
 
 void read_motion_options(const TomlTable& root, MotionOptions& o) {
   o.duration = root.number("duration_s", Range::above(0.0, 1e6));

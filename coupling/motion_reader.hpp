@@ -3,10 +3,20 @@
 #include "coupling/motion.hpp"
 #include "numerics/toml_reader.hpp"
 
+#include <optional>
+#include <string_view>
+
 namespace snare::coupling {
 
 /// What all scenarios with wires in motion have in common: keys, units and ranges in docs/scenario_file.md. What is wrong is
 /// reported to the tables' document.
+
+/// Three numbers under a key; nothing when they are wrong.
+[[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const numerics::TomlTable& table, std::string_view key,
+                                                         numerics::Range range, double unit);
+/// The same, zero where the key is missing.
+[[nodiscard]] Eigen::Vector3d read_vector_or_zero(const numerics::TomlTable& table, std::string_view key,
+                                                  numerics::Range range, double unit);
 
 /// `duration_s`, `output_interval_s` and the tolerances of `[solver]`.
 void read_motion_options(const numerics::TomlTable& root, MotionOptions& options);

@@ -29,17 +29,6 @@ constexpr double mm = 1e-3;
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double far = 1e5;  // [mm]
 
-std::optional<Vector3d> read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
-  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
-  if (v.size() != 3) return std::nullopt;
-  return Vector3d(v[0], v[1], v[2]);
-}
-
-Vector3d read_vector_or_zero(const TomlTable& table, std::string_view key, Range range, double unit) {
-  if (!table.has(key)) return Vector3d::Zero();
-  return read_vector(table, key, range, unit).value_or(Vector3d::Zero());
-}
-
 // Axis times angle.
 Matrix3d read_rotation(const TomlTable& table) {
   const Vector3d turn = read_vector_or_zero(table, "rotation_deg", Range::from(-360.0, 360.0), degree);

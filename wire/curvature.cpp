@@ -1,5 +1,7 @@
 #include "wire/curvature.hpp"
 
+#include "wire/cross_matrix.hpp"
+
 #include <Eigen/Geometry>
 
 namespace snare::wire {
@@ -8,13 +10,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-// [v]_x, the matrix of v x (.).
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 // x y^T + y x^T
 Matrix3d symmetric_product(const Vector3d& x, const Vector3d& y) {

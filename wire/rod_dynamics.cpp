@@ -1,5 +1,6 @@
 #include "wire/rod_dynamics.hpp"
 
+#include "wire/cross_matrix.hpp"
 #include "wire/curvature.hpp"
 
 #include <Eigen/Geometry>
@@ -141,8 +142,7 @@ struct RodPart::ViscousCell {
     if (spin.isZero(0.0)) return m;
     const double size = edge.norm();
     const Vector3d t = edge / size;
-    Matrix3d spinning;
-    spinning << 0.0, -spin.z(), spin.y(), spin.z(), 0.0, -spin.x(), -spin.y(), spin.x(), 0.0;
+    const Matrix3d spinning = cross_matrix(spin);
     const Vector3d along = (spin - spin.dot(t) * t) / size;
     // At the left end rate(8..10) -= spin x (x_1 - x_0); at the right one rate(0..2) += spin x (x_n - x_{n-1}).
     const int row = right ? 0 : 8, angle = right ? 3 : 7, first = right ? 0 : 4;
@@ -636,16 +636,6 @@ RodPart::EndForces RodPart::end_forces(const DaePoint& at, bool right) const {
   return f;
 }
 
-namespace {
-
-Matrix3d skew_of(const Vector3d& a) {
-  Matrix3d m;
-  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return m;
-}
-
-}  // namespace
-
 Vector3d RodPart::mount_moment(const DaePoint& at, bool right) {
   const EndForces f = end_forces(at, right);
   return f.edge.cross(f.force.head<3>()) + f.force[3] * f.tangent;
@@ -661,23 +651,23 @@ RodPart::MountCell RodPart::mount_cell(const DaePoint& at, bool right) {
   const Matrix3d across = (Matrix3d::Identity() - f.tangent * f.tangent.transpose()) / f.length;
   // By the edge, its angle, and their rates, the mount being fixed or spinning as it is.
   Eigen::Matrix4d rate_by_place = Eigen::Matrix4d::Zero();
-  rate_by_place.topLeftCorner<3, 3>() = -skew_of(f.spin);
+  rate_by_place.topLeftCorner<3, 3>() = -cross_matrix(f.spin);
   rate_by_place.bottomLeftCorner<1, 3>() = -f.spin.transpose() * across;
   const Eigen::Matrix4d by_place = f.by_place + f.by_rate * rate_by_place;
   Eigen::Matrix<double, 4, 3> turned, turned_rate, spun;  // what a turn and a spin of both would do
-  turned << -skew_of(f.edge), f.tangent.transpose();
-  turned_rate << -skew_of(f.edge_rate), Eigen::RowVector3d::Zero();
-  spun << skew_of(f.edge), -f.tangent.transpose();
+  turned << -cross_matrix(f.edge), f.tangent.transpose();
+  turned_rate << -cross_matrix(f.edge_rate), Eigen::RowVector3d::Zero();
+  spun << cross_matrix(f.edge), -f.tangent.transpose();
   Eigen::Matrix<double, 4, 3> by_turn = -f.by_place * turned - f.by_rate * turned_rate;
   // Relative rates at fixed spin: e' - w x e has nothing that turns with the mount but is seen from it.
-  by_turn.topRows<3>() -= skew_of(g);
+  by_turn.topRows<3>() -= cross_matrix(g);
   const Eigen::Matrix<double, 4, 3> by_spin = f.by_rate * spun;
   // M = e x g + t gamma.
   const auto moment = [&](const auto& change) {
-    return (skew_of(f.edge) * change.template topRows<3>() + f.tangent * change.template bottomRows<1>()).eval();
+    return (cross_matrix(f.edge) * change.template topRows<3>() + f.tangent * change.template bottomRows<1>()).eval();
   };
   Eigen::Matrix<double, 3, 4> by_edge = moment(by_place);
-  by_edge.leftCols<3>() += -skew_of(g) + gamma * across;
+  by_edge.leftCols<3>() += -cross_matrix(g) + gamma * across;
   const Eigen::Matrix<double, 3, 4> by_edge_rate = moment(f.by_rate);
   MountCell cell;
   cell.moment = f.edge.cross(g) + gamma * f.tangent;
