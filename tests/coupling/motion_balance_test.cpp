@@ -2,6 +2,7 @@
 
 #include "coupling/motion.hpp"
 #include "numerics/errors.hpp"
+#include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,18 +21,9 @@ using Eigen::Vector3d;
 constexpr double length = 0.2;
 
 wire::RodInMotion soft_rod(wire::SpatialEnd::Kind left, wire::SpatialEnd::Kind right) {
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-3;
-  rod.properties.torsional_stiffness = 8e-4;
-  rod.properties.axial_stiffness = 1e3;
-  rod.properties.right.position = {length, 0.0, 0.0};
+  wire::RodInMotion rod = test::soft_wire(16);
   rod.properties.left.kind = left;
   rod.properties.right.kind = right;
-  rod.mass_per_length = 0.01;
-  rod.length = length;
-  rod.elements = 16;
-  rod.damping.bending_time = 2e-4;
-  rod.damping.axial_time = 1e-4;
   return rod;
 }
 

@@ -6,6 +6,7 @@
 #include "coupling/motion_points.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -91,14 +92,8 @@ struct Touching {
   VectorXd y;
 
   static wire::RodInMotion soft_rod() {
-    wire::RodInMotion r;
-    r.properties.bending_stiffness = r.properties.second_bending_stiffness = 1e-3;
-    r.properties.torsional_stiffness = 8e-4;
-    r.properties.axial_stiffness = 1e3;
-    r.properties.right.position = {0.2, 0.0, 0.0};
-    r.mass_per_length = 0.01;
-    r.length = 0.2;
-    r.elements = 8;
+    wire::RodInMotion r = test::soft_wire(8);
+    r.damping = {};
     return r;
   }
   static MotionBody ball() {

@@ -6,6 +6,7 @@
 #include "multibody/arm_run.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,21 +67,6 @@ MotionBody block(double mass, const Vector3d& moments, const Vector3d& position)
   body.properties.inertia = moments.asDiagonal();
   body.start.position = position;
   return body;
-}
-
-/// A soft wire of 0.2 m between clamps along x.
-wire::RodInMotion soft_rod(int elements) {
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-3;
-  rod.properties.torsional_stiffness = 8e-4;
-  rod.properties.axial_stiffness = 1e3;
-  rod.properties.right.position = {0.2, 0.0, 0.0};
-  rod.mass_per_length = 0.01;
-  rod.length = 0.2;
-  rod.elements = elements;
-  rod.damping.bending_time = 2e-4;
-  rod.damping.axial_time = 1e-4;
-  return rod;
 }
 
 MotionOptions fine(double duration) {
@@ -148,7 +134,7 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
   for (const bool right : {false, true}) {
     for (const bool driven : {false, true}) {
       const MotionOptions options;
-      wire::RodPart rod("wire", soft_rod(6), {});
+      wire::RodPart rod("wire", test::soft_wire(6), {});
       MotionBody frame = block(0.05, {2e-3, 3e-3, 4e-3}, Vector3d::Zero());
       frame.driven = driven;
       BodyPart body(frame, Vector3d::Zero(), options);
@@ -160,7 +146,7 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
       std::uniform_real_distribution<double> unit(-1.0, 1.0);
       VectorXd y = VectorXd::Zero(system.size()), rate(system.size());
       body.place(y);
-      Matrix3Xd positions = straight_wire(soft_rod(6), Vector3d::Zero(), {0.2, 0.0, 0.0}), velocities(3, 7);
+      Matrix3Xd positions = straight_wire(test::soft_wire(6), Vector3d::Zero(), {0.2, 0.0, 0.0}), velocities(3, 7);
       // In the plane, where the carried frames have no holonomy and the Hessian is exact.
       for (int i = 0; i < 7; ++i) {
         positions.col(i) += 2e-3 * Vector3d(unit(random), unit(random), 0.0);
@@ -275,7 +261,7 @@ TEST(MotionLink, ABodyOnAnArmIsPartOfItsLastLink) {
 TEST(MotionLink, AWireBetweenMountsThatMoveTogetherIsTheFixedWire) {
   // On a driven body at a constant velocity: Galileo's frame. The wire is plucked in both.
   Motion fixed;
-  MotionWire wire{"wire", soft_rod(12), {}, Matrix3Xd::Zero(3, 13)};
+  MotionWire wire{"wire", test::soft_wire(12), {}, Matrix3Xd::Zero(3, 13)};
   wire.positions = straight_wire(wire.rod, Vector3d::Zero(), {0.2, 0.0, 0.0});
   for (int i = 1; i < 12; ++i) wire.velocities.col(i) = std::sin(EIGEN_PI * i / 12) * Vector3d(0.0, 0.3, 0.2);
   fixed.wires = {wire};
@@ -320,7 +306,7 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   // EA u'' = -m w^2 x, u = 0 at both ends, so that the mounts' tension is m w^2 l^2/12 (l the length) less ... at x = +-l/2:
   // N = EA u' = m w^2 (l^2/24 - x^2/2).
   Motion motion;
-  wire::RodInMotion rod = soft_rod(20);
+  wire::RodInMotion rod = test::soft_wire(20);
   rod.damping.axial_time = 2e-3;
   rod.damping.bending_time = 1e-2;
   MotionWire wire{"wire", rod, straight_wire(rod, Vector3d::Zero(), {0.2, 0.0, 0.0}), Matrix3Xd::Zero(3, 21)};
@@ -367,7 +353,7 @@ TEST(MotionLink, MomentumAndEnergyOfAWireOnAFloatingArmStay) {
   MotionWeld weld;
   weld.carrier = {MotionCarrier::Kind::arm, 0, tip_of(motion.arms[0])};
   motion.welds = {weld};
-  wire::RodInMotion rod = soft_rod(16);
+  wire::RodInMotion rod = test::soft_wire(16);
   rod.properties.left.position = {2.1, 0.1, -0.1};
   rod.properties.right.position = {2.1, 0.1, 0.1};
   rod.properties.left.direction = rod.properties.right.direction = Vector3d::UnitZ();
@@ -484,7 +470,7 @@ TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
   motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()),
                    block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
   motion.bodies[1].driven = true;
-  motion.wires = {{"wire", soft_rod(8), straight_wire(soft_rod(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};
+  motion.wires = {{"wire", test::soft_wire(8), straight_wire(test::soft_wire(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};
   MotionWeld first, second, third;
   first.carrier = {MotionCarrier::Kind::arm, 0, 0};
   second.carrier = {MotionCarrier::Kind::body, 1, 0};

@@ -3,6 +3,7 @@
 #include "coupling/motion.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,14 +21,8 @@ using Eigen::VectorXd;
 using std::numbers::pi;
 
 wire::RodInMotion strand_rod(int elements) {
-  wire::RodInMotion r;
-  r.properties.bending_stiffness = r.properties.second_bending_stiffness = 1e-3;
-  r.properties.torsional_stiffness = 8e-4;
-  r.properties.axial_stiffness = 1e3;
-  r.properties.right.position = {0.2, 0.0, 0.0};
-  r.mass_per_length = 0.01;
-  r.length = 0.2;
-  r.elements = elements;
+  wire::RodInMotion r = test::soft_wire(elements);
+  r.damping = {};
   r.strands.extra_stiffness = 2e-3;
   r.strands.slip_curvature = 0.5;
   return r;

@@ -5,6 +5,7 @@
 #include "coupling/motion_search.hpp"
 #include "numerics/errors.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,17 +22,8 @@ using Eigen::VectorXd;
 
 /// A soft wire of 0.2 m between clamps, free ends on request.
 wire::RodInMotion soft_rod(int elements, wire::SpatialEnd::Kind kind) {
-  wire::RodInMotion rod;
-  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-3;
-  rod.properties.torsional_stiffness = 8e-4;
-  rod.properties.axial_stiffness = 1e3;
-  rod.properties.right.position = {0.2, 0.0, 0.0};
+  wire::RodInMotion rod = test::soft_wire(elements);
   rod.properties.left.kind = rod.properties.right.kind = kind;
-  rod.mass_per_length = 0.01;
-  rod.length = 0.2;
-  rod.elements = elements;
-  rod.damping.bending_time = 2e-4;
-  rod.damping.axial_time = 1e-4;
   return rod;
 }
 
