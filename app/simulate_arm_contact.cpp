@@ -1,5 +1,8 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
+#include "app/motion_animation.hpp"
+#include "app/motion_json.hpp"
+#include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
 #include "app/simulate_kinds.hpp"
@@ -10,7 +13,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <functional>
 #include <iostream>
 #include <numbers>
@@ -44,18 +46,6 @@ Vector3d carried_force(const ModelRun& run, const MotionSample& s) {
 
 double deflection(const ModelRun& run, const MotionSample& s, int joint) {
   return multibody::deflection(run.motion.arms.front().arm, s.arms.front().state, joint);
-}
-
-ModelRun run_model(const ArmContactScenario& scenario, const coupling::WireModel& model, Console& console) {
-  ModelRun run{model.name, coupling::motion_of(scenario, model), {}, {}};
-  const coupling::MotionOptions options = coupling::options_of(scenario.contact, model);
-  run.result = coupling::simulate(run.motion, options, [&](const MotionSample& s) {
-    run.samples.push_back(s);
-    console.progress(fmt::format("{}: {:.3f} of {:.3f} s", model.name, s.time, options.duration));
-    return interrupted();
-  });
-  console.end_progress();
-  return run;
 }
 
 void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
@@ -98,10 +88,6 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
   csv.commit();
 }
 
-json vector_json(const Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 json summary_of(const ModelRun& run) {
   const MotionResult& r = run.result;
   const MotionSample& first = run.samples.front();
@@ -109,9 +95,8 @@ json summary_of(const ModelRun& run) {
   json events = json::array();
   int touches = 0;
   for (const coupling::MotionEvent& e : r.events) {
-    const bool touch = e.kind == coupling::MotionEvent::Kind::touch;
-    touches += touch ? 1 : 0;
-    events.push_back({{"time_s", e.time}, {"what", touch ? "touch" : "lift_off"}});
+    touches += e.kind == coupling::MotionEvent::Kind::touch ? 1 : 0;
+    events.push_back({{"time_s", e.time}, {"what", coupling::to_string(e.kind)}});
   }
   json deflections = json::object();
   for (int j = 0; j < run.motion.arms.front().arm.motors(); ++j) {
@@ -119,37 +104,19 @@ json summary_of(const ModelRun& run) {
     for (const MotionSample& s : run.samples) largest = std::max(largest, std::abs(deflection(run, s, j)));
     deflections[run.motion.arms.front().arm.joints[static_cast<std::size_t>(j)].name] = largest / degree;
   }
-  const numerics::IdaStatistics& n = r.statistics;
-  return {{"model", run.name},
-          {"finished", r.report.usable()},
-          {"message", r.report.usable() ? json() : json(r.report.message)},
-          {"time_s", r.report.time},
-          {"peak_force_N", r.peak_force.front()},
-          {"impulse_Ns", vector_json(r.impulse.front())},
-          {"touches", touches},
-          {"in_contact_at_the_end", last.contacts.front().closed},
-          {"velocity_before_m_s", vector_json(first.bodies.front().velocity)},
-          {"velocity_after_m_s", vector_json(last.bodies.front().velocity)},
-          {"spin_before_rad_s", vector_json(first.bodies.front().spin)},
-          {"spin_after_rad_s", vector_json(last.bodies.front().spin)},
-          {"largest_deflection_deg", deflections},
-          {"energy_J",
-           {{"kinetic", r.energy.kinetic},
-            {"strain", r.energy.strain},
-            {"potential", r.energy.potential},
-            {"dissipated", r.energy.dissipated},
-            {"impacts", r.energy.impacts},
-            {"work", r.energy.work},
-            {"integrator", r.energy.integrator}}},
-          {"momentum_error_Ns", vector_json(r.momentum_error)},
-          {"largest_penetration_m", r.largest_penetration},
-          {"largest_drift", r.largest_drift},
-          {"steps", n.steps},
-          {"jacobians", n.jacobians},
-          {"restarts", n.restarts},
-          {"wall_s", r.wall_seconds},
-          {"real_time_factor", r.wall_seconds > 0.0 ? r.report.time / r.wall_seconds : 0.0},
-          {"events", events}};
+  json summary{{"model", run.name},
+               {"peak_force_N", r.peak_force.front()},
+               {"impulse_Ns", vector_json(r.impulse.front())},
+               {"touches", touches},
+               {"in_contact_at_the_end", last.contacts.front().closed},
+               {"velocity_before_m_s", vector_json(first.bodies.front().velocity)},
+               {"velocity_after_m_s", vector_json(last.bodies.front().velocity)},
+               {"spin_before_rad_s", vector_json(first.bodies.front().spin)},
+               {"spin_after_rad_s", vector_json(last.bodies.front().spin)},
+               {"largest_deflection_deg", deflections},
+               {"events", events}};
+  add_result(r, summary);
+  return summary;
 }
 
 Curve curve_of(const std::string& name, const ModelRun& run, int colour,
@@ -216,6 +183,11 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
     page.line_plot(joints);
     page.line_plot(motors);
   }
+  page.heading("The contact");
+  for (const ModelRun& run : runs) {
+    page.animation(animation_of(scenario.contact, run.name, run.samples));
+    for (const View view : {View::along_z, View::along_x}) page.animation(animation_of(run.motion, run.samples, view));
+  }
   page.footer(fmt::format(
       "Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
   return page.html();
@@ -226,15 +198,16 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
 ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options,
                                 Console& console) {
   const ArmContactScenario scenario = coupling::read_arm_contact_scenario(file, overrides_of(options));
+  std::vector<MotionTask> tasks;
+  for (const coupling::WireModel& model : scenario.contact.models)
+    tasks.push_back({model.name, coupling::motion_of(scenario, model), coupling::options_of(scenario.contact, model)});
+  std::vector<MotionRecord> records = run_motions(
+      tasks, {options.out / "checkpoint.bin", scenario.input, scenario.contact.output.checkpoint_wall_time}, console);
+  const ExitStatus status = status_of(records);
   std::vector<ModelRun> runs;
-  ExitStatus status = ExitStatus::done;
-  for (const coupling::WireModel& model : scenario.contact.models) {
-    runs.push_back(run_model(scenario, model, console));
-    const numerics::IdaReport& report = runs.back().result.report;
-    if (report.usable()) continue;
-    console.complain(fmt::format("{}: {} (what was reached is kept)", model.name, report.message));
-    status = ExitStatus::solver_stopped;
-    if (interrupted()) break;
+  for (MotionRecord& record : records) {
+    MotionTask& task = tasks[runs.size()];
+    runs.push_back({task.name, std::move(task.motion), std::move(record.samples), std::move(record.result)});
   }
   json summary{{"schema", "snare-summary/1"}, {"kind", "arm_contact"},
                {"title", scenario.title},     {"source", scenario.source},
@@ -244,7 +217,7 @@ ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonO
   write_history(options.out / "history.csv", runs);
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
-  if (scenario.contact.paraview) {
+  if (scenario.contact.output.paraview) {
     for (const ModelRun& run : runs) {
       std::vector<ParaviewFrame> frames;
       for (const MotionSample& s : run.samples) frames.push_back({s.time, s.wires});

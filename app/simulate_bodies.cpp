@@ -1,5 +1,8 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
+#include "app/motion_animation.hpp"
+#include "app/motion_json.hpp"
+#include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
 #include "app/simulate_kinds.hpp"
@@ -11,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 
 namespace snare::app {
@@ -25,10 +27,6 @@ using coupling::MotionSample;
 using coupling::MotionScenario;
 using Eigen::Vector3d;
 using nlohmann::json;
-
-json vector_json(const Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 void write_history(const std::filesystem::path& file, const MotionScenario& scenario, const std::vector<MotionSample>& samples) {
   std::vector<std::string> columns{"time_s"};
@@ -68,7 +66,7 @@ json contact_json(const MotionScenario& scenario, const MotionResult& r, const s
     if (static_cast<std::size_t>(e.contact) != k) continue;
     if (e.kind == MotionEvent::Kind::touch) {
       if (touches++ == 0) first = e.time;
-    } else {
+    } else if (e.kind == MotionEvent::Kind::lift_off) {
       last = e.time;
     }
   }
@@ -94,9 +92,6 @@ json summary_of(const MotionScenario& scenario, const MotionResult& r, const std
                {"source", scenario.source},
                {"version", version()},
                {"duration_s", scenario.options.duration},
-               {"finished", r.report.usable()},
-               {"message", r.report.usable() ? json() : json(r.report.message)},
-               {"time_s", r.report.time},
                {"bodies", json::array()},
                {"contacts", json::array()},
                {"events", json::array()}};
@@ -114,57 +109,15 @@ json summary_of(const MotionScenario& scenario, const MotionResult& r, const std
   for (const MotionEvent& e : r.events) {
     const bool touch = e.kind == MotionEvent::Kind::touch;
     json event{{"time_s", e.time},
-               {"what", touch ? "touch" : "lift_off"},
+               {"what", coupling::to_string(e.kind)},
                {"contact", scenario.motion.contacts[static_cast<std::size_t>(e.contact)].name},
                {"point", e.point + 1},
                {"arc_mm", 1e3 * e.arc}};
     if (touch) event["approach_m_s"] = e.approach_speed;
     summary["events"].push_back(event);
   }
-  const numerics::IdaStatistics& n = r.statistics;
-  summary["energy_J"] = {{"kinetic", r.energy.kinetic},       {"strain", r.energy.strain},   {"potential", r.energy.potential},
-                         {"dissipated", r.energy.dissipated}, {"impacts", r.energy.impacts}, {"work", r.energy.work},
-                         {"integrator", r.energy.integrator}};
-  summary["momentum_error_Ns"] = vector_json(r.momentum_error);
-  summary["largest_penetration_m"] = r.largest_penetration;
-  summary["largest_drift"] = r.largest_drift;
-  summary["steps"] = n.steps;
-  summary["residuals"] = n.residuals;
-  summary["jacobians"] = n.jacobians;
-  summary["factorizations"] = n.factorizations;
-  summary["analyses"] = n.analyses;
-  summary["restarts"] = n.restarts;
-  summary["wall_s"] = r.wall_seconds;
-  summary["real_time_factor"] = r.wall_seconds > 0.0 ? r.report.time / r.wall_seconds : 0.0;
+  add_result(r, summary);
   return summary;
-}
-
-// Seen along z and along x; bodies as their centres of mass.
-AnimationSpecification animation_of(const MotionScenario& scenario, const std::vector<MotionSample>& samples, int across, const std::string& title) {
-  AnimationSpecification animation{title, {}, {}, "To scale; the bodies' centres of mass are the small crosses."};
-  constexpr std::size_t most_frames = 200;
-  constexpr double cross = 2.0;  // half its size [mm]
-  const std::size_t step = std::max<std::size_t>(1, samples.size() / most_frames);
-  for (std::size_t k = 0; k < samples.size(); k += step) {
-    const MotionSample& s = samples[k];
-    double force = 0.0;
-    for (const ContactSample& c : s.contacts) force += c.normal_force;
-    AnimationFrame frame{fmt::format("t = {:.4f} s, {:.3g} N", s.time, force), {}};
-    for (std::size_t w = 0; w < scenario.motion.wires.size(); ++w) {
-      frame.outlines.emplace_back();
-      for (Eigen::Index i = 0; i < s.wires[w].cols(); ++i)
-        frame.outlines.back().insert(frame.outlines.back().end(), {1e3 * s.wires[w](across, i), 1e3 * s.wires[w](1, i)});
-    }
-    for (const multibody::RigidBodyState& b : s.bodies) {
-      const double x = 1e3 * b.position[across];
-      const double y = 1e3 * b.position.y();
-      frame.outlines.push_back({x - cross, y, x + cross, y, x, y, x, y - cross, x, y + cross});
-    }
-    animation.frames.push_back(std::move(frame));
-  }
-  for (const auto& w : scenario.motion.wires) animation.names.push_back(w.name);
-  for (const auto& b : scenario.motion.bodies) animation.names.push_back(b.name);
-  return animation;
 }
 
 std::string report_of(const MotionScenario& scenario, const std::vector<MotionSample>& samples, const json& summary) {
@@ -206,8 +159,7 @@ std::string report_of(const MotionScenario& scenario, const std::vector<MotionSa
   }
   page.line_plot(speeds);
   page.heading("The motion");
-  page.animation(animation_of(scenario, samples, 0, "Seen along z: x to the right, y up"));
-  page.animation(animation_of(scenario, samples, 2, "Seen along x: z to the right, y up"));
+  for (const View view : {View::along_z, View::along_x}) page.animation(animation_of(scenario.motion, samples, view));
   page.footer(fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
   return page.html();
 }
@@ -216,30 +168,20 @@ std::string report_of(const MotionScenario& scenario, const std::vector<MotionSa
 
 ExitStatus simulate_bodies(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const MotionScenario scenario = coupling::read_motion_scenario(file, overrides_of(options));
-  std::vector<MotionSample> samples;
-  const auto begin = std::chrono::steady_clock::now();
-  const MotionResult result = coupling::simulate(scenario.motion, scenario.options, [&](const MotionSample& s) {
-    samples.push_back(s);
-    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const double share = s.time / scenario.options.duration;
-    console.progress(fmt::format("{:.3f} of {:.3f} s, {:.0f} s to go", s.time, scenario.options.duration,
-                                 share > 0.0 ? spent * (1.0 - share) / share : 0.0));
-    return interrupted();
-  });
-  console.end_progress();
+  const std::vector<MotionRecord> records =
+      run_motions({{scenario.title, scenario.motion, scenario.options}},
+                  {options.out / "checkpoint.bin", scenario.input, scenario.output.checkpoint_wall_time}, console);
+  const ExitStatus status = status_of(records);
+  const std::vector<MotionSample>& samples = records.front().samples;
+  const MotionResult& result = records.front().result;
   const json summary = summary_of(scenario, result, samples);
   write_history(options.out / "history.csv", scenario, samples);
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, samples, summary));
-  if (scenario.paraview) {
+  if (scenario.output.paraview) {
     std::vector<ParaviewFrame> frames;
     for (const MotionSample& s : samples) frames.push_back({s.time, s.wires});
     write_paraview(options.out, "wires", frames);
-  }
-  ExitStatus status = ExitStatus::done;
-  if (!result.report.usable()) {
-    console.complain(fmt::format("{} (what was reached is kept)", result.report.message));
-    status = ExitStatus::solver_stopped;
   }
   if (options.json) {
     std::cout << summary.dump(1) << '\n';

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
-#include "app/contact_checkpoint.hpp"
 #include "app/experiment_input.hpp"
+#include "app/motion_animation.hpp"
+#include "app/motion_json.hpp"
+#include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
 #include "app/simulate_kinds.hpp"
@@ -12,11 +14,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace snare::app {
@@ -43,98 +43,6 @@ double angle(const multibody::RigidBodyState& s) {
   const Eigen::Quaterniond& q = s.orientation;
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
-
-/// Runs a scenario's models in turn, with checkpoints between which nothing is lost.
-class ScenarioRun {
- public:
-  ScenarioRun(const ContactScenario& scenario, const std::filesystem::path& out, Console& console)
-      : scenario_(scenario), file_(out / "checkpoint.bin"), console_(console), written_(Clock::now()) {
-    LoadedCheckpoint loaded = read_contact_checkpoint(file_, scenario.input);
-    if (!loaded.refusal.empty()) console.complain(loaded.refusal);
-    if (!loaded.progress || loaded.progress->finished.size() >= scenario.models.size()) return;
-    progress_ = std::move(*loaded.progress);
-    console.say(fmt::format("goes on from {}: {} at {:.6g} s", file_.string(),
-                            scenario.models[progress_.finished.size()].name,
-                            progress_.state ? progress_.state->time : 0.0));
-  }
-
-  /// Stops early when it is interrupted; then the checkpoint is kept for the next time.
-  [[nodiscard]] std::vector<ModelRun> all() {
-    bool stopped = false;
-    while (!stopped && progress_.finished.size() < scenario_.models.size()) {
-      stopped = !run_next();
-    }
-    if (!stopped) {
-      std::error_code ignored;
-      std::filesystem::remove(file_, ignored);
-    }
-    std::vector<ModelRun> runs;
-    for (ContactProgress::Model& model : progress_.finished) {
-      ModelRun run;
-      run.model = &scenario_.models[runs.size()];
-      run.side = scenario_.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
-      run.samples = std::move(model.samples);
-      run.result = std::move(model.result);
-      runs.push_back(std::move(run));
-    }
-    return runs;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  static double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  }
-
-  /// False when it was interrupted.
-  bool run_next() {
-    const WireModel& model = scenario_.models[progress_.finished.size()];
-    const double duration = scenario_.options.duration;
-    const std::optional<coupling::MotionState> from = progress_.state;
-    const double begun = from ? from->time : 0.0;
-    std::vector<MotionSample> samples = progress_.samples;
-    const auto begin = Clock::now();
-    coupling::MotionOptions options = coupling::options_of(scenario_, model);
-    options.stop = interrupted;
-    MotionResult result = coupling::simulate(
-        coupling::motion_of(scenario_, model), options,
-        [&](const MotionSample& s) {
-          samples.push_back(s);
-          const double share = (s.time - begun) / (duration - begun);
-          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", model.name, s.time, duration,
-                                        share > 0.0 ? seconds_since(begin) * (1.0 - share) / share : 0.0));
-          return false;
-        },
-        from ? &*from : nullptr,
-        [&](const coupling::MotionState& state) {
-          progress_.state = state;
-          progress_.samples.insert(progress_.samples.end(), samples.begin() + static_cast<std::ptrdiff_t>(progress_.samples.size()),
-                                   samples.end());
-          if (seconds_since(written_) >= scenario_.checkpoint_wall_time) write();
-        });
-    console_.end_progress();
-    const bool stopped = result.report.termination == numerics::Termination::interrupted;
-    if (stopped) write();  // before the model counts as finished: it goes on from its last checkpoint
-    progress_.finished.push_back({std::move(samples), std::move(result)});
-    if (stopped) return false;
-    progress_.samples.clear();
-    progress_.state.reset();
-    if (seconds_since(written_) >= scenario_.checkpoint_wall_time) write();
-    return true;
-  }
-
-  void write() {
-    write_contact_checkpoint(file_, scenario_.input, progress_);
-    written_ = Clock::now();
-  }
-
-  const ContactScenario& scenario_;
-  std::filesystem::path file_;
-  Console& console_;
-  ContactProgress progress_;
-  Clock::time_point written_;  // when a checkpoint was
-};
 
 void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
   numerics::CsvWriter csv(
@@ -178,10 +86,6 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
   csv.commit();
 }
 
-json vector_json(const Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 json summary_of(const ContactScenario& scenario, const ModelRun& run) {
   const MotionResult& r = run.result;
   const multibody::RigidBodyState& before = run.samples.front().bodies.front();
@@ -204,45 +108,22 @@ json summary_of(const ContactScenario& scenario, const ModelRun& run) {
   };
   const double touch = place(run.samples.front()) - run.side * scenario.body.start.position.y();
   for (const MotionSample& s : run.samples) deepest = std::max(deepest, run.side * (place(s) - touch));
-  const numerics::IdaStatistics& n = r.statistics;
-  return {{"model", run.model->name},
-          {"kind", run.model->kind},
-          {"finished", r.report.usable()},
-          {"message", r.report.usable() ? json() : json(r.report.message)},
-          {"time_s", r.report.time},
-          {"peak_force_N", r.peak_force.front()},
-          {"impulse_Ns", vector_json(r.impulse.front())},
-          {"first_touch_s", first >= 0.0 ? json(first) : json()},
-          {"last_lift_off_s", last >= 0.0 ? json(last) : json()},
-          {"touches", touches},
-          {"deepest_mm", 1e3 * deepest},
-          {"in_contact_at_the_end", run.samples.back().contacts.front().closed},
-          {"velocity_before_m_s", vector_json(before.velocity)},
-          {"velocity_after_m_s", vector_json(after.velocity)},
-          {"spin_before_rad_s", vector_json(before.spin)},
-          {"spin_after_rad_s", vector_json(after.spin)},
-          {"energy_J",
-           {{"kinetic", r.energy.kinetic},
-            {"strain", r.energy.strain},
-            {"potential", r.energy.potential},
-            {"dissipated", r.energy.dissipated},
-            {"impacts", r.energy.impacts},
-            {"work", r.energy.work},
-            {"integrator", r.energy.integrator}}},
-          {"momentum_error_Ns", vector_json(r.momentum_error)},
-          {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
-          {"largest_penetration_m", r.largest_penetration},
-          {"largest_gap_m", r.largest_gap},
-          {"largest_drift", r.largest_drift},
-          {"steps", n.steps},
-          {"residuals", n.residuals},
-          {"jacobians", n.jacobians},
-          {"factorizations", n.factorizations},
-          {"analyses", n.analyses},
-          {"restarts", n.restarts},
-          {"wall_s", r.wall_seconds},
-          {"real_time_factor", r.wall_seconds > 0.0 ? r.report.time / r.wall_seconds : 0.0},
-          {"events", events}};
+  json summary{{"model", run.model->name},
+               {"kind", run.model->kind},
+               {"peak_force_N", r.peak_force.front()},
+               {"impulse_Ns", vector_json(r.impulse.front())},
+               {"first_touch_s", first >= 0.0 ? json(first) : json()},
+               {"last_lift_off_s", last >= 0.0 ? json(last) : json()},
+               {"touches", touches},
+               {"deepest_mm", 1e3 * deepest},
+               {"in_contact_at_the_end", run.samples.back().contacts.front().closed},
+               {"velocity_before_m_s", vector_json(before.velocity)},
+               {"velocity_after_m_s", vector_json(after.velocity)},
+               {"spin_before_rad_s", vector_json(before.spin)},
+               {"spin_after_rad_s", vector_json(after.spin)},
+               {"events", events}};
+  add_result(r, summary);
+  return summary;
 }
 
 Curve curve_of(const ModelRun& run, int colour, const std::function<double(const MotionSample&)>& value) {
@@ -252,37 +133,6 @@ Curve curve_of(const ModelRun& run, int colour, const std::function<double(const
     curve.y.push_back(value(s));
   }
   return curve;
-}
-
-AnimationSpecification animation_of(const ContactScenario& scenario, const ModelRun& run) {
-  AnimationSpecification animation{
-      "Wire and probe: " + run.model->name,
-      {"wire", "probe", "arm to the centre of mass"},
-      {},
-      "To scale; the probe is the circle, the line from it leads to the body's centre of mass."};
-  constexpr std::size_t most_frames = 200;
-  constexpr int corners = 36;
-  const std::size_t step = std::max<std::size_t>(1, run.samples.size() / most_frames);
-  const double radius = scenario.push.pusher.radius;
-  for (std::size_t k = 0; k < run.samples.size(); k += step) {
-    const MotionSample& s = run.samples[k];
-    AnimationFrame frame{fmt::format("t = {:.3f} s, {:.3g} N", s.time, s.contacts.front().normal_force),
-                         {{}, {}, {}}};
-    for (const Eigen::Matrix3Xd& w : s.wires) {
-      for (Eigen::Index i = 0; i < w.cols(); ++i)
-        frame.outlines[0].insert(frame.outlines[0].end(), {1e3 * w(0, i), 1e3 * w(1, i)});
-    }
-    const multibody::RigidBodyState& b = s.bodies.front();
-    const Vector3d probe = b.position + b.orientation * scenario.probe;
-    for (int i = 0; i <= corners; ++i) {
-      const double a = 2.0 * std::numbers::pi * i / corners;
-      frame.outlines[1].insert(frame.outlines[1].end(), {1e3 * (probe.x() + radius * std::cos(a)),
-                                                         1e3 * (probe.y() + radius * std::sin(a))});
-    }
-    frame.outlines[2] = {1e3 * probe.x(), 1e3 * probe.y(), 1e3 * b.position.x(), 1e3 * b.position.y()};
-    animation.frames.push_back(std::move(frame));
-  }
-  return animation;
 }
 
 std::string report_of(const ContactScenario& scenario, const std::vector<ModelRun>& runs,
@@ -341,7 +191,7 @@ std::string report_of(const ContactScenario& scenario, const std::vector<ModelRu
     page.line_plot(specification);
   }
   page.heading("The contact");
-  for (const ModelRun& run : runs) page.animation(animation_of(scenario, run));
+  for (const ModelRun& run : runs) page.animation(animation_of(scenario, run.model->name, run.samples));
   page.footer(fmt::format(
       "Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version()));
   return page.html();
@@ -358,15 +208,16 @@ void write_shapes(const std::filesystem::path& out, const ModelRun& run) {
 ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options,
                             Console& console) {
   const ContactScenario scenario = coupling::read_contact_scenario(file, overrides_of(options));
-  const std::vector<ModelRun> runs = ScenarioRun(scenario, options.out, console).all();
-  ExitStatus status = ExitStatus::done;
-  for (const ModelRun& run : runs) {
-    const numerics::IdaReport& report = run.result.report;
-    if (report.usable()) continue;
-    const bool stopped = report.termination == numerics::Termination::interrupted;
-    console.complain(fmt::format("{}: {} (what was reached is kept{})", run.model->name, report.message,
-                                 stopped ? "; the same command goes on from the last checkpoint" : ""));
-    status = ExitStatus::solver_stopped;
+  std::vector<MotionTask> tasks;
+  for (const WireModel& model : scenario.models)
+    tasks.push_back({model.name, coupling::motion_of(scenario, model), coupling::options_of(scenario, model)});
+  std::vector<MotionRecord> records =
+      run_motions(tasks, {options.out / "checkpoint.bin", scenario.input, scenario.output.checkpoint_wall_time}, console);
+  const ExitStatus status = status_of(records);
+  std::vector<ModelRun> runs;
+  for (MotionRecord& record : records) {
+    const double side = scenario.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+    runs.push_back({&scenario.models[runs.size()], std::move(record.samples), std::move(record.result), side});
   }
   json summary{{"schema", "snare-summary/1"}, {"kind", "contact"},
                {"title", scenario.title},     {"source", scenario.source},
@@ -376,7 +227,7 @@ ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptio
   write_history(options.out / "history.csv", runs);
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
-  if (scenario.paraview) {
+  if (scenario.output.paraview) {
     for (const ModelRun& run : runs) write_shapes(options.out, run);
   }
   if (options.json) {

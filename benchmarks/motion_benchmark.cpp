@@ -142,7 +142,7 @@ void search(benchmark::State& state) {
   if (mesh) motion.contacts[0].shape = tessellated_ball(6.0 * mm, 50);
   if (!near) motion.bodies[0].start.position.y() -= 50.0 * mm;
   coupling::MotionOptions options;
-  options.duration = near ? 1.2e-3 : 2e-4;
+  options.duration = near ? 2e-3 : 2e-4;
   options.max_step = 1e-5;
   coupling::MotionResult result;
   for (auto _ : state) result = coupling::simulate(motion, options);

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <numbers>
 #include <optional>
 
@@ -94,10 +95,14 @@ ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
   }
   if (contact) {
     scenario.contact = std::move(*contact);
-    if (duration) scenario.contact.options.duration = *duration;
-    if (interval) scenario.contact.options.output_interval = *interval;
+    MotionOptions& options = scenario.contact.options;
+    if (duration) {
+      options.duration = *duration;
+      options.checkpoint_interval = std::max(options.checkpoint_interval, default_checkpoint_interval(*duration));
+    }
+    if (interval) options.output_interval = *interval;
     constexpr double most_outputs = 1e6;
-    if (scenario.contact.options.duration / scenario.contact.options.output_interval > most_outputs)
+    if (options.duration / options.output_interval > most_outputs)
       root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
     if (scenario.carries == Carries::wire) {
       for (const WireModel& model : scenario.contact.models) {
@@ -110,6 +115,7 @@ ArmContactScenario read_arm_contact_scenario(const std::filesystem::path& file,
       }
     }
   }
+  scenario.input = document.canonical() + scenario.arm.input + scenario.contact.input;
   document.finish();
   return scenario;
 }

@@ -16,6 +16,7 @@ struct ArmContactScenario {
 
   std::string title, source;
   std::filesystem::path file;
+  std::string input;  ///< canonical text of everything that was read: equal for equal scenarios
   ContactScenario contact;  ///< wire, mounts, body with its probe, models, solver
   multibody::ArmDescription arm;
   Eigen::VectorXd angles;  ///< of the arm's joints at the start [rad]

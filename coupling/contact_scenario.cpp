@@ -154,10 +154,7 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   if (scenario.models.empty() && !root.has("models")) scenario.models.push_back({"wire", "wire", {}});
 
   scenario.elements = root.table("solver").integer_or("elements", 60, 8, 20000);
-  const TomlTable output = root.table("output");
-  scenario.paraview = output.boolean_or("paraview", false);
-  o.checkpoint_interval = output.number_or("checkpoint_interval_s", std::min(1.0, o.duration / 10.0), Range::above(0.0, 1e6));
-  scenario.checkpoint_wall_time = output.number_or("checkpoint_wall_time_s", 10.0, Range::from(0.0, 1e6));
+  scenario.output = read_motion_output(root.table("output"), o);
   scenario.input = document.canonical();
   document.finish();
   return scenario;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/motion.hpp"
+#include "coupling/motion_reader.hpp"
 #include "coupling/push_test.hpp"
 #include "numerics/toml_tree.hpp"
 
@@ -31,8 +31,7 @@ struct ContactScenario {
   MotionFriction friction;
   std::vector<WireModel> models;  ///< run one after the other
   MotionOptions options;
-  bool paraview = false;  ///< shapes of the wire are written
-  double checkpoint_wall_time = 10.0;  ///< least wall time between two checkpoints that are written [s], >= 0
+  MotionOutput output;
 };
 
 /// Reads a scenario; throws InputError with everything that is wrong in it.

@@ -38,6 +38,12 @@ constexpr Eigen::Index outer_moment = 5;
 constexpr Eigen::Index contacts = 8;
 }  // namespace integral
 
+/// Times that differ by less are the same: the integrator cannot step from one to the other.
+bool reached(double time, double limit) {
+  constexpr double round_off = 1e-13;
+  return time >= limit - round_off * std::max(1.0, limit);
+}
+
 /// A point of a contact.
 struct Closed {
   std::size_t contact = 0, point = 0;
@@ -557,6 +563,7 @@ void Run::resume(const MotionState& from) {
   sums_ = from.sums;
   std::span<const double> memory = from.memory;
   for (ContactPoints& c : contacts_) c.recall(memory);
+  linkage_->recall(time_, y_, memory);
   system_->recall(y_, memory);
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
@@ -566,7 +573,7 @@ MotionResult Run::go(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
   bool stopped = write_until(time_);
-  while (!stopped && !refused_ && time_ < limit) {
+  while (!stopped && !refused_ && !reached(time_, limit)) {
     const numerics::IdaAdvance advance = ida_->advance(std::min(limit, linkage_->limit()));
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
@@ -649,6 +656,7 @@ MotionResult Run::result(numerics::IdaReport report) {
   r.search_seconds = sums_.search_seconds;
   std::vector<double> memory;
   for (const ContactPoints& c : contacts_) c.remember(memory);
+  linkage_->remember(memory);
   const std::vector<double> parts = system_->memory();
   memory.insert(memory.end(), parts.begin(), parts.end());
   r.last = {time_, y_, rate_, integrals_, std::move(memory), sums_};
@@ -679,11 +687,6 @@ std::string to_string(MotionEvent::Kind kind) {
 MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,
                       const MotionState* from, const MotionKeeper& keeper) {
   require_valid(motion, options);
-  // What the joints of an arm remember is not part of a state.
-  if (!motion.arms.empty() && (from != nullptr || keeper)) {
-    throw numerics::InputError(
-        {"", 0, "arms", fmt::format("{}", motion.arms.size()), "must be none in a motion that goes on from a state"});
-  }
   std::optional<MotionState> state;
   if (from != nullptr) state = *from;
   // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are those of one
@@ -695,9 +698,9 @@ MotionResult simulate(const Motion& motion, const MotionOptions& options, const 
     } else {
       run.begin();
     }
-    const double stop = motion.arms.empty() ? next_stop(options, state ? state->time : 0.0) : options.duration;
+    const double stop = next_stop(options, state ? state->time : 0.0);
     MotionResult result = run.go(stop);
-    if (!result.report.usable() || result.report.time < stop || stop >= options.duration) return result;
+    if (!result.report.usable() || !reached(result.report.time, stop) || stop >= options.duration) return result;
     state = std::move(result.last);
     if (keeper) keeper(*state);
   }

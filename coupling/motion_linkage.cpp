@@ -289,6 +289,24 @@ bool Linkage::follow(const DaePoint& at, std::span<const int> found, VectorXd& y
   return anew;
 }
 
+void Linkage::remember(std::vector<double>& memory) const {
+  for (const Arm& a : arms_) {
+    memory.push_back(static_cast<double>(a.next_switch));
+    a.crowding.remember(memory);
+  }
+}
+
+void Linkage::recall(double time, VectorXd& y, std::span<const double>& memory) {
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    const auto& switches = motion_.arms[k].switches;
+    arms_[k].next_switch = std::min(static_cast<std::size_t>(numerics::take(memory)), switches.size());
+    arms_[k].crowding.recall(memory);
+    // A motor that the drives brake stands still in y already.
+    if (arms_[k].next_switch > 0) arms_[k].part->set_drives(switches[arms_[k].next_switch - 1].drives, y);
+  }
+  enter(time);
+}
+
 void Linkage::add_energy(const VectorView& y, EnergyBalance& energy, MotionSample* sample) const {
   for (const Arm& a : arms_) {
     const multibody::ArmState state = a.part->state(y);

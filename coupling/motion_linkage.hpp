@@ -42,6 +42,9 @@ class Linkage {
   /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms, empty
   /// when it found none. True: the integration must start anew.
   [[nodiscard]] bool follow(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
+  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: drives and crowding of events.
+  void remember(std::vector<double>& memory) const;
+  void recall(double time, Eigen::VectorXd& y, std::span<const double>& memory);
   /// Why it cannot go on, if so.
   [[nodiscard]] const std::optional<std::string>& stuck() const { return stuck_; }
 

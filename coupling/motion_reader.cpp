@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace snare::coupling {
 
 using Eigen::Vector3d;
@@ -39,6 +41,20 @@ void read_motion_options(const TomlTable& root, MotionOptions& o) {
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   o.max_order = solver.integer_or("max_order", 2, 1, 5);
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
+}
+
+double default_checkpoint_interval(double duration) {
+  return std::min(1.0, duration / 10.0);
+}
+
+MotionOutput read_motion_output(const TomlTable& table, MotionOptions& o) {
+  MotionOutput output;
+  output.paraview = table.boolean_or("paraview", output.paraview);
+  o.checkpoint_interval =
+      table.number_or("checkpoint_interval_s", default_checkpoint_interval(o.duration), Range::above(0.0, 1e6));
+  output.checkpoint_wall_time =
+      table.number_or("checkpoint_wall_time_s", output.checkpoint_wall_time, Range::from(0.0, 1e6));
+  return output;
 }
 
 wire::RodDamping read_damping(const TomlTable& table) {

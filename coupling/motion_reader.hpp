@@ -18,6 +18,17 @@ namespace snare::coupling {
 [[nodiscard]] Eigen::Vector3d read_vector_or_zero(const numerics::TomlTable& table, std::string_view key,
                                                   numerics::Range range, double unit);
 
+/// What `[output]` says beside the interval.
+struct MotionOutput {
+  bool paraview = false;               ///< shapes of the wires are written
+  double checkpoint_wall_time = 10.0;  ///< least wall time between two checkpoints that are written [s], >= 0
+};
+/// Also sets the options' interval of checkpoints; their duration must be known.
+[[nodiscard]] MotionOutput read_motion_output(const numerics::TomlTable& table, MotionOptions& options);
+
+/// Simulated time between two checkpoints where nobody asks for another: a tenth of a duration, at most a second [s].
+[[nodiscard]] double default_checkpoint_interval(double duration);
+
 /// `duration_s`, `output_interval_s` and the tolerances of `[solver]`.
 void read_motion_options(const numerics::TomlTable& root, MotionOptions& options);
 

@@ -4,12 +4,15 @@
 #include "coupling/motion_shape_mesh.hpp"
 #include "coupling/motion_shape_revolved.hpp"
 #include "coupling/push_test_reader.hpp"
+#include "numerics/archive.hpp"
+#include "numerics/files.hpp"
 #include "numerics/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -151,7 +154,7 @@ std::shared_ptr<const ContactShape> made(const TomlTable& table, std::string_vie
   return nullptr;
 }
 
-std::shared_ptr<const ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder) {
+std::shared_ptr<const ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder, std::string& input) {
   static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge}, {"cylinder", ShapeKind::cylinder},
                                                 {"sphere", ShapeKind::sphere},         {"capsule", ShapeKind::capsule},
                                                 {"cone", ShapeKind::cone},             {"grapple_shaft", ShapeKind::grapple_shaft},
@@ -199,7 +202,12 @@ std::shared_ptr<const ContactShape> read_shape(const TomlTable& table, const std
       const std::string name = table.text("file");
       const auto unit = table.choice("unit", units);
       if (name.empty() || !unit) return nullptr;
-      return made(table, "file", [&] { return std::make_shared<MeshShape>(read_triangle_mesh(folder / name, *unit)); });
+      return made(table, "file", [&] {
+        const TriangleMesh mesh = read_triangle_mesh(folder / name, *unit);
+        const std::string text = numerics::read_text(folder / name, std::numeric_limits<std::size_t>::max());
+        input += fmt::format("{:x};", numerics::fingerprint(text));
+        return std::make_shared<MeshShape>(mesh);
+      });
     }
   }
   return nullptr;
@@ -241,7 +249,7 @@ MotionScenario read_motion_scenario(const std::filesystem::path& file, const std
   for (const TomlTable& table : root.tables("shapes")) {
     MotionContact contact;
     const std::string name = shapes.take(table);
-    contact.shape = read_shape(table, file.parent_path());
+    contact.shape = read_shape(table, file.parent_path(), scenario.input);
     const std::string body = table.text("body");
     const std::optional<int> of_body = bodies.find(body);
     if (!of_body && !body.empty()) table.fail("body", bodies.requirement());
@@ -266,7 +274,8 @@ MotionScenario read_motion_scenario(const std::filesystem::path& file, const std
       scenario.motion.contacts.push_back(contact);
     }
   }
-  scenario.paraview = root.table("output").boolean_or("paraview", false);
+  scenario.output = read_motion_output(root.table("output"), scenario.options);
+  scenario.input += document.canonical();
   document.finish();
   for (DeclaredWire& w : declared) scenario.motion.wires.push_back(place(std::move(w)));
   return scenario;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/motion.hpp"
+#include "coupling/motion_reader.hpp"
 #include "numerics/toml_tree.hpp"
 
 #include <filesystem>
@@ -13,9 +13,10 @@ namespace snare::coupling {
 struct MotionScenario {
   std::string title, source;
   std::filesystem::path file;
+  std::string input;  ///< canonical text of everything that was read, meshes too: equal for equal scenarios
   Motion motion;  ///< one contact for every shape and every wire that it may touch, named "SHAPE on WIRE"
   MotionOptions options;
-  bool paraview = false;  ///< shapes of the wires are written
+  MotionOutput output;
 };
 
 /// Whether a scenario lists its bodies instead of having one [body], one [wire] and one [pusher]. Throws InputError when the file cannot be

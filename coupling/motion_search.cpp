@@ -117,6 +117,34 @@ ContactSearch::ContactSearch(const MotionContact& contact, const wire::RodPart& 
   const double radius = wire_radius_ + shape_->smallest_radius();
   resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, shortest)), shortest / most_pieces);
   skip_depth_ = std::max(1e-3 * wire_radius_, 10.0 * position_tolerance);
+  free_until_.assign(static_cast<std::size_t>(curve_.elements()), 0.0);
+}
+
+void ContactSearch::forget() {
+  for (const int e : asked_) free_until_[static_cast<std::size_t>(e)] = 0.0;
+}
+
+double ContactSearch::known_clearance() const {
+  return *std::min_element(free_until_.begin(), free_until_.end()) - passed_;
+}
+
+// The elements that the shape may have met on a step that ends at y. An element whose gap was g when the way was w meets nothing before the
+// way is w + g: only where that has come does its distance have to be looked up.
+std::vector<int> ContactSearch::met_within(double way, const VectorView& y) {
+  passed_ += way;
+  asked_.clear();
+  for (int e = 0; e < curve_.elements(); ++e) {
+    if (free_until_[static_cast<std::size_t>(e)] <= passed_) asked_.push_back(e);
+  }
+  std::vector<int> met;
+  if (asked_.empty()) return met;
+  const Pose where = pose(y);
+  for (const int e : asked_) {
+    const double gap = lower_bound(where, box_of(curve_.control(e, y)));
+    free_until_[static_cast<std::size_t>(e)] = passed_ + gap;
+    if (gap <= way) met.push_back(e);
+  }
+  return met;
 }
 
 ContactSearch::Pose ContactSearch::pose(const VectorView& y) const {
@@ -328,12 +356,8 @@ std::optional<double> ContactSearch::first_touch(const Step& step, double until,
                                                 double touch) {
   const double h = step.to - step.from;
   const double way = h * speed_bound(step);
-  if (known_clearance_ - way > 0.0) {
-    known_clearance_ -= way;
-    return std::nullopt;
-  }
   const VectorXd& end = step.ida.y();
-  const std::vector<int> candidates = near_elements(pose(end), end, way, known_clearance_);
+  const std::vector<int> candidates = met_within(way, end);
   if (candidates.empty()) return std::nullopt;
   const double speed = speed_bound(step, candidates);
   if (speed == 0.0) return std::nullopt;

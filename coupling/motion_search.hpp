@@ -80,10 +80,10 @@ class ContactSearch {
   /// Those minima at a state whose gap is at most `touch`.
   [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held, double touch) const;
   [[nodiscard]] double skip_depth() const { return skip_depth_; }
-  /// The state is another than the end of the last step: what is known about far parts is forgotten.
-  void forget() { known_clearance_ = 0.0; }
+  /// The state is another than the end of the last step: what was found out there is forgotten.
+  void forget();
   /// A lower bound of the gap at the end of the last step; <= 0 when none is known [m].
-  [[nodiscard]] double known_clearance() const { return known_clearance_; }
+  [[nodiscard]] double known_clearance() const;
 
  private:
   struct Pose;
@@ -97,6 +97,7 @@ class ContactSearch {
                  const Place& to, double reach, std::vector<Interval>& out) const;
   [[nodiscard]] std::vector<GapMinimum> minima_of(const std::vector<int>& elements, const numerics::VectorView& y, double reach) const;
   [[nodiscard]] std::vector<GapMinimum> open_minima(std::vector<GapMinimum> all, const numerics::VectorView& y, const std::vector<Held>& held) const;
+  [[nodiscard]] std::vector<int> met_within(double way, const numerics::VectorView& y);
   [[nodiscard]] double speed_bound(const Step& step) const;
   [[nodiscard]] double speed_bound(const Step& step, const std::vector<int>& elements) const;
 
@@ -109,7 +110,9 @@ class ContactSearch {
   WireCurve curve_;
   double resolution_ = 0.0;
   double skip_depth_ = 0.0;
-  double known_clearance_ = 0.0;  // of all that is open, at the end of the last step [m]
+  double passed_ = 0.0;             // way that anything can have gone since the start [m]
+  std::vector<double> free_until_;  // of every element: what it cannot be touched before
+  std::vector<int> asked_;          // elements whose distance was looked up in the last step
 };
 
 }  // namespace snare::coupling

@@ -10,6 +10,7 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -29,8 +30,12 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+// Which triangle is nearest is asked in plain double precision: four times as fast, and a triangle that is no farther than another to
+// round-off is as good.
+using FastKernel = CGAL::Simple_cartesian<double>;
+using FastMesh = CGAL::Surface_mesh<FastKernel::Point_3>;
+using Primitive = CGAL::AABB_face_graph_triangle_primitive<FastMesh>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<FastKernel, Primitive>>;
 namespace pmp = CGAL::Polygon_mesh_processing;
 
 constexpr std::size_t most_problems = 10;  // of one kind that are listed
@@ -123,6 +128,7 @@ double volume_of(const Mesh& m) {
 struct MeshShape::Surface {
   Mesh mesh;
   std::vector<Vector3d> face_normal, edge_normal, vertex_normal;  // outward; of edges and vertices of no length in particular
+  FastMesh fast_mesh;  // faces as in mesh
   std::unique_ptr<Tree> tree;
   std::unique_ptr<CGAL::Side_of_triangle_mesh<Mesh, Kernel>> side;
 };
@@ -185,9 +191,16 @@ MeshShape::MeshShape(const TriangleMesh& mesh) {
       surface->vertex_normal[m.target(h).idx()] += std::atan2(back.cross(on).norm(), back.dot(on)) * normal;
     }
   }
-  surface->tree = std::make_unique<Tree>(m.faces().begin(), m.faces().end(), m);
+  FastMesh& fast = surface->fast_mesh;
+  for (const Mesh::Vertex_index v : m.vertices()) fast.add_vertex({m.point(v).x(), m.point(v).y(), m.point(v).z()});
+  for (const Mesh::Face_index f : m.faces()) {
+    std::vector<FastMesh::Vertex_index> corners;
+    for (const Mesh::Vertex_index v : m.vertices_around_face(m.halfedge(f))) corners.emplace_back(v.idx());
+    fast.add_face(corners);
+  }
+  surface->tree = std::make_unique<Tree>(fast.faces().begin(), fast.faces().end(), fast);
   surface->tree->accelerate_distance_queries();
-  surface->side = std::make_unique<CGAL::Side_of_triangle_mesh<Mesh, Kernel>>(*surface->tree);
+  surface->side = std::make_unique<CGAL::Side_of_triangle_mesh<Mesh, Kernel>>(surface->mesh);
   surface_ = std::move(surface);
 }
 
@@ -197,7 +210,7 @@ MeshShape::~MeshShape() = default;
 // What lies straight above a face is the face's, though its foot be on an edge: between the triangles of one flat face, or to round-off.
 MeshShape::Near MeshShape::nearest(const Vector3d& p) const {
   const Mesh& m = surface_->mesh;
-  const Mesh::Face_index face = surface_->tree->closest_point_and_primitive(point(p)).second;
+  const Mesh::Face_index face(surface_->tree->closest_point_and_primitive({p.x(), p.y(), p.z()}).second.idx());
   std::array<Mesh::Halfedge_index, 3> sides;
   std::array<Vector3d, 3> corner;  // the start of every side
   sides[0] = m.halfedge(face);

@@ -1,5 +1,6 @@
 #include "multibody/arm_file.hpp"
 
+#include "numerics/files.hpp"
 #include "numerics/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -41,11 +42,13 @@ void know(const TomlTable& table, std::initializer_list<std::string_view> keys) 
 
 /// A URDF file named by a key; nothing after a problem, which goes to the document.
 std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable& table,
-                                         const std::filesystem::path& folder) {
+                                         const std::filesystem::path& folder, std::string& input) {
   const std::string name = table.text("urdf");
   if (name.empty()) return std::nullopt;
   try {
-    return read_urdf(folder / name);
+    const RobotDescription robot = read_urdf(folder / name);
+    input += numerics::read_text(folder / name);
+    return robot;
   } catch (const InputError& error) {
     for (const numerics::InputProblem& problem : error.problems()) document.add(problem);
     return std::nullopt;
@@ -184,7 +187,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     const auto kind = base.choice("kind", base_kinds);
     const RootJoint joint = kind == BaseKind::free ? RootJoint::free : RootJoint::fixed;
     if (base.has("urdf")) {
-      const auto robot = robot_of(document, base, folder);
+      const auto robot = robot_of(document, base, folder, description.input);
       if (robot && put(base, tree, 0, joint, *robot)) mount = frame_of(base, "frame", tree);
       if (!robot) static_cast<void>(base.text("frame"));
     } else {
@@ -195,12 +198,13 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const std::string urdf = root.text("urdf");
   if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
   const std::optional<RobotDescription> robot = read_urdf(folder / urdf);
+  description.input += numerics::read_text(folder / urdf) + document.canonical();
   const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
   if (whole) {
     for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;
   }
   for (const TomlTable& load : root.tables("payload")) {
-    const auto carried = robot_of(document, load, folder);
+    const auto carried = robot_of(document, load, folder, description.input);
     const int frame = whole ? frame_of(load, "on", tree) : (static_cast<void>(load.text("on")), -1);
     if (carried && frame >= 0) static_cast<void>(put(load, tree, frame, RootJoint::fixed, *carried));
   }

@@ -22,6 +22,7 @@ struct ArmPose {
 struct ArmDescription {
   std::string title, source;
   std::filesystem::path file;
+  std::string input;  ///< canonical text of everything that was read: equal for equal arms
   ElasticArm arm;
   std::vector<RobotJoint> joints;  ///< the moving joints of the arm, one an elastic joint
   std::vector<Drive> drives;       ///< at rest, held where they are

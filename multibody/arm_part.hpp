@@ -72,6 +72,9 @@ class ElasticArmPart : public numerics::DaePart {
   /// Six a joint, and one for the watched torque; one that falls below zero says that its mode is over.
   [[nodiscard]] int event_count() const override { return events_per_joint * arm_.motors() + 1; }
   void events(const numerics::DaePoint& at, std::span<double> values) override;
+  /// The modes; drives and watched torque are for who sets them to remember.
+  void remember(std::vector<double>& memory) const override;
+  void recall(const numerics::VectorView& y, std::span<const double>& memory) override;
 
   /// Modes that fit a state; at rest a joint with dry friction sticks when it can.
   void settle(double time, numerics::VectorView y);

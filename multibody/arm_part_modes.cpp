@@ -84,6 +84,18 @@ void ElasticArmPart::enter_interval(double begin, double end) {
   interval_end_ = end;
 }
 
+void ElasticArmPart::remember(std::vector<double>& memory) const {
+  for (const JointMode& mode : modes_) {
+    for (const int value : {mode.branch, mode.turning, mode.saturated}) memory.push_back(value);
+  }
+}
+
+void ElasticArmPart::recall(const numerics::VectorView& /*y*/, std::span<const double>& memory) {
+  for (JointMode& mode : modes_) {
+    for (int* value : {&mode.branch, &mode.turning, &mode.saturated}) *value = static_cast<int>(numerics::take(memory));
+  }
+}
+
 void ElasticArmPart::settle(double time, numerics::VectorView y) {
   for (int k = 0; k < arm_.motors(); ++k) {
     const ElasticJoint& joint = arm_.joints[at(k)];

@@ -1,6 +1,10 @@
 #pragma once
 
+#include "numerics/dae.hpp"
+
+#include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace snare::multibody {
@@ -14,14 +18,31 @@ class EventCrowding {
   /// Told an event of a joint [s]; true: more than a hundred within a tenth of a second.
   [[nodiscard]] bool crowded(int joint, double time) {
     constexpr double window = 0.1;  // [s]
-    constexpr std::size_t too_many = 100;
     std::vector<double>& times = times_[static_cast<std::size_t>(joint)];
     times.push_back(time);
-    return times.size() > too_many && time - times[times.size() - 1 - too_many] < window;
+    if (times.size() <= too_many) return false;
+    const double before = times.front();
+    times.erase(times.begin());
+    return time - before < window;
+  }
+
+  /// Appends what it knows to a memory, and takes it back: see numerics::DaePart.
+  void remember(std::vector<double>& memory) const {
+    for (const std::vector<double>& times : times_) {
+      memory.push_back(static_cast<double>(times.size()));
+      memory.insert(memory.end(), times.begin(), times.end());
+    }
+  }
+  void recall(std::span<const double>& memory) {
+    for (std::vector<double>& times : times_) {
+      times.resize(std::min(static_cast<std::size_t>(numerics::take(memory)), too_many));
+      for (double& time : times) time = numerics::take(memory);
+    }
   }
 
  private:
-  std::vector<std::vector<double>> times_;  // of each joint [s]
+  static constexpr std::size_t too_many = 100;
+  std::vector<std::vector<double>> times_;  // the last of each joint [s], at most too_many
 };
 
 }  // namespace snare::multibody

@@ -7,6 +7,8 @@ namespace snare::validation {
 /// What the integration of a motion costs in accuracy, and where a slow motion ends: energy of a conservative impact,
 /// balances of momentum and angular momentum, convergence with the tolerance, steps against the axial wave.
 [[nodiscard]] std::vector<Row> balance_rows();
+/// Energy of an impact without any damping, every wave resolved: half a minute.
+[[nodiscard]] std::vector<Row> undamped_impact_rows();
 [[nodiscard]] std::vector<Row> tolerance_rows();
 
 /// Slow pushes against the static curves: friction that reverses, snap-through.

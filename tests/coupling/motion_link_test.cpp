@@ -419,9 +419,9 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   EXPECT_LT(std::abs(result.energy.integrator), 1e-5 * result.energy.dissipated);
 }
 
-TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
-  // Piecewise law, friction that sticks, a servo that reaches its limit, a switch set off by a torque: the run of the arm by
-  // itself passes the same modes.
+/// Piecewise law, friction that sticks, a servo that reaches its limit, a switch of the drives at 1 s, a load: all that an arm
+/// remembers.
+MotionArm restless_arm() {
   multibody::ElasticArm arm = small_arm(false, 1.0, 0.0);
   for (multibody::ElasticJoint& joint : arm.joints) {
     joint.spring = DeflectionLaw({{0.0, 300.0, 5.0}, {0.005, 3000.0, 20.0}});
@@ -436,6 +436,12 @@ TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
   part.switches = {limp};
   part.loads = {
       {tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
+  return part;
+}
+
+TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
+  // The run of the arm by itself passes the same modes.
+  const MotionArm part = restless_arm();
   multibody::ArmScenario alone;
   alone.arm = part.arm;
   alone.initial = part.start;
@@ -463,6 +469,45 @@ TEST(MotionLink, AnArmInAMotionIsTheArmAlone) {
   EXPECT_NEAR(last.energy.kinetic + last.energy.strain, expected.energy, 1e-5);
   EXPECT_NEAR(last.energy.dissipated, expected.work.lost, 1e-5);
   EXPECT_GE(result.statistics.restarts, static_cast<long>(history.events.size()) / 2);
+}
+
+TEST(MotionLink, AnArmGoesOnFromACheckpointToTheSameBits) {
+  // Checkpoints fall on the load's begin and end and on the switch, and between them.
+  Motion motion;
+  motion.arms = {restless_arm()};
+  MotionOptions options = fine(1.6);
+  options.output_interval = 0.04;
+  options.checkpoint_interval = 0.1;
+  std::vector<VectorXd> whole;
+  const auto into = [](std::vector<VectorXd>& list) {
+    return [&list](const MotionSample& s) {
+      list.push_back(s.arms[0].state.q);
+      list.push_back(s.arms[0].state.motor_rate);
+      list.push_back(s.arms[0].joint_torque);
+      list.push_back(Vector3d(s.energy.dissipated, s.energy.work, s.energy.integrator));
+      return false;
+    };
+  };
+  std::vector<MotionState> states;
+  const MotionResult through =
+      simulate(motion, options, into(whole), nullptr, [&](const MotionState& s) { states.push_back(s); });
+  ASSERT_TRUE(through.report.usable()) << through.report.message;
+  ASSERT_EQ(states.size(), 15U);
+  for (const MotionState& from : states) {
+    std::vector<VectorXd> parts(whole.begin(), whole.begin() + 4 * from.sums.samples);
+    const MotionResult on = simulate(motion, options, into(parts), &from);
+    ASSERT_TRUE(on.report.usable()) << on.report.message;
+    EXPECT_EQ(parts, whole) << "from " << from.time << " s";
+    EXPECT_EQ(on.last.unknowns, through.last.unknowns);
+    EXPECT_EQ(on.last.memory, through.last.memory);
+    EXPECT_EQ(on.statistics.steps, through.statistics.steps);
+  }
+  // The legs change nothing that matters.
+  options.checkpoint_interval = std::numeric_limits<double>::infinity();
+  std::vector<VectorXd> undivided;
+  ASSERT_TRUE(simulate(motion, options, into(undivided)).report.usable());
+  ASSERT_EQ(undivided.size(), whole.size());
+  for (std::size_t k = 0; k < whole.size(); k += 4) EXPECT_LT((undivided[k] - whole[k]).norm(), 1e-6) << k;
 }
 
 TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {

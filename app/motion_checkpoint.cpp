@@ -1,4 +1,4 @@
-#include "app/contact_checkpoint.hpp"
+#include "app/motion_checkpoint.hpp"
 
 #include "app/commands.hpp"
 #include "numerics/archive.hpp"
@@ -17,6 +17,20 @@ namespace snare::multibody {
 template <class Archive>
 void fields(Archive& a, RigidBodyState& s) {
   a(s.position)(s.orientation.coeffs())(s.velocity)(s.spin);
+}
+template <class Archive>
+void fields(Archive& a, ArmState& s) {
+  static_assert(sizeof(ArmState) == 4 * sizeof(Eigen::VectorXd));
+  a(s.q)(s.v)(s.motor)(s.motor_rate);
+}
+template <class Archive>
+void fields(Archive& a, ArmWork& w) {
+  static_assert(sizeof(ArmWork) == 3 * sizeof(double));
+  a(w.motors)(w.loads)(w.lost);
+}
+template <class Archive>
+void fields(Archive& a, Wrench& w) {
+  a(w.moment)(w.force);
 }
 }  // namespace snare::multibody
 
@@ -46,8 +60,13 @@ void fields(Archive& a, EnergyBalance& e) {
   a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.impacts)(e.work)(e.integrator);
 }
 template <class Archive>
+void fields(Archive& a, MotionSample::Arm& s) {
+  a(s.state)(s.work)(s.joint_torque);
+}
+template <class Archive>
 void fields(Archive& a, MotionSample& s) {
-  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.energy)(s.momentum)(s.angular_momentum);
+  static_assert(sizeof(MotionSample) == sizeof(double) + 6 * sizeof(std::vector<double>) + 13 * sizeof(double));
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.energy)(s.momentum)(s.angular_momentum);
 }
 template <class Archive>
 void fields(Archive& a, MotionEvent& e) {
@@ -73,11 +92,11 @@ void fields(Archive& a, MotionResult& r) {
 namespace snare::app {
 
 template <class Archive>
-void fields(Archive& a, ContactProgress::Model& m) {
+void fields(Archive& a, MotionRecord& m) {
   a(m.samples)(m.result);
 }
 template <class Archive>
-void fields(Archive& a, ContactProgress& p) {
+void fields(Archive& a, MotionProgress& p) {
   bool begun = p.state.has_value();
   a(p.finished)(p.samples)(begun);
   if (!begun) return;
@@ -87,7 +106,7 @@ void fields(Archive& a, ContactProgress& p) {
 
 namespace {
 
-constexpr std::string_view mark = "snare contact checkpoint 1\n";
+constexpr std::string_view mark = "snare motion checkpoint 2\n";
 
 /// Of the input and of the program that is to go on with it.
 std::uint64_t key_of(const std::string& input) {
@@ -97,7 +116,7 @@ std::uint64_t key_of(const std::string& input) {
 }  // namespace
 
 // The mark, the key, the fingerprint of the content, the content.
-void write_contact_checkpoint(const std::filesystem::path& file, const std::string& input, ContactProgress& progress) {
+void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input, MotionProgress& progress) {
   numerics::ByteWriter content;
   content(progress);
   numerics::ByteWriter head;
@@ -111,7 +130,7 @@ void write_contact_checkpoint(const std::filesystem::path& file, const std::stri
   out.commit();
 }
 
-LoadedCheckpoint read_contact_checkpoint(const std::filesystem::path& file, const std::string& input) {
+LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file, const std::string& input) {
   std::error_code code;
   if (!std::filesystem::exists(file, code)) return {};
   const auto refused = [&file](const std::string& why) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "app/report_page.hpp"
+#include "coupling/contact_scenario.hpp"
+
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// How the world is looked at; y is up.
+enum class View {
+  along_z,  ///< x to the right
+  along_x   ///< z to the right
+};
+
+/// Wire, probe and the way to the body's centre of mass, seen along z, to scale.
+[[nodiscard]] AnimationSpecification animation_of(const coupling::ContactScenario& scenario, const std::string& model,
+                                                  const std::vector<coupling::MotionSample>& samples);
+
+/// Wires, bodies (centres of mass) and arms (lines from joint to joint), to scale.
+[[nodiscard]] AnimationSpecification animation_of(const coupling::Motion& motion,
+                                                  const std::vector<coupling::MotionSample>& samples, View view);
+
+}  // namespace snare::app

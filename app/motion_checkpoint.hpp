@@ -1,0 +1,33 @@
+#pragma once
+
+#include "app/motion_runs.hpp"
+#include "coupling/motion.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// How far some motions have come.
+struct MotionProgress {
+  std::vector<MotionRecord> finished;
+  std::vector<coupling::MotionSample> samples;  ///< of the motion at hand, up to its state
+  std::optional<coupling::MotionState> state;   ///< of the motion at hand; none before its first checkpoint
+};
+
+/// Writes a checkpoint; the file is either the old one or the new one at any time. `input`: what the progress belongs to.
+/// A failure of the system throws std::system_error.
+void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input, MotionProgress& progress);
+
+/// What a checkpoint says, or why it is of no use.
+struct LoadedCheckpoint {
+  std::optional<MotionProgress> progress;
+  std::string refusal;  ///< empty also where there is no file
+};
+
+/// Reads a checkpoint that belongs to this input; never throws for what is in the file.
+[[nodiscard]] LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file, const std::string& input);
+
+}  // namespace snare::app

@@ -1,0 +1,114 @@
+#include "app/motion_runs.hpp"
+
+#include "app/motion_checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace snare::app {
+
+namespace {
+
+using coupling::MotionResult;
+using coupling::MotionSample;
+
+class Runs {
+ public:
+  Runs(const std::vector<MotionTask>& tasks, const CheckpointPolicy& policy, Console& console)
+      : tasks_(tasks), policy_(policy), console_(console), written_(Clock::now()) {
+    LoadedCheckpoint loaded = read_motion_checkpoint(policy.file, policy.input);
+    if (!loaded.refusal.empty()) console.complain(loaded.refusal);
+    if (!loaded.progress || loaded.progress->finished.size() >= tasks.size()) return;
+    progress_ = std::move(*loaded.progress);
+    console.say(fmt::format("goes on from {}: {} at {:.6g} s", policy.file.string(), tasks[progress_.finished.size()].name,
+                            progress_.state ? progress_.state->time : 0.0));
+  }
+
+  [[nodiscard]] std::vector<MotionRecord> all() {
+    bool stopped = false;
+    while (!stopped && progress_.finished.size() < tasks_.size()) stopped = !run_next();
+    if (!stopped) {
+      std::error_code ignored;
+      std::filesystem::remove(policy_.file, ignored);
+    }
+    return std::move(progress_.finished);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+
+  /// False when it was interrupted.
+  bool run_next() {
+    const MotionTask& task = tasks_[progress_.finished.size()];
+    const double duration = task.options.duration;
+    const std::optional<coupling::MotionState> from = progress_.state;
+    const double begun = from ? from->time : 0.0;
+    std::vector<MotionSample> samples = progress_.samples;
+    const auto begin = Clock::now();
+    coupling::MotionOptions options = task.options;
+    options.stop = interrupted;
+    MotionResult result = coupling::simulate(
+        task.motion, options,
+        [&](const MotionSample& s) {
+          samples.push_back(s);
+          const double share = (s.time - begun) / (duration - begun);
+          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", task.name, s.time, duration,
+                                        share > 0.0 ? seconds_since(begin) * (1.0 - share) / share : 0.0));
+          return false;
+        },
+        from ? &*from : nullptr,
+        [&](const coupling::MotionState& state) {
+          progress_.state = state;
+          const auto known = static_cast<std::ptrdiff_t>(progress_.samples.size());
+          progress_.samples.insert(progress_.samples.end(), samples.begin() + known, samples.end());
+          if (seconds_since(written_) >= policy_.wall_time) write();
+        });
+    console_.end_progress();
+    const bool stopped = result.report.termination == numerics::Termination::interrupted;
+    if (!result.report.usable()) {
+      console_.complain(fmt::format("{}: {} (what was reached is kept{})", task.name, result.report.message,
+                                    stopped ? "; the same command goes on from the last checkpoint" : ""));
+    }
+    if (stopped) write();  // before the motion counts as finished: it goes on from its last checkpoint
+    progress_.finished.push_back({std::move(samples), std::move(result)});
+    if (stopped) return false;
+    progress_.samples.clear();
+    progress_.state.reset();
+    if (seconds_since(written_) >= policy_.wall_time) write();
+    return true;
+  }
+
+  void write() {
+    write_motion_checkpoint(policy_.file, policy_.input, progress_);
+    written_ = Clock::now();
+  }
+
+  const std::vector<MotionTask>& tasks_;
+  const CheckpointPolicy& policy_;
+  Console& console_;
+  MotionProgress progress_;
+  Clock::time_point written_;  // when a checkpoint was
+};
+
+}  // namespace
+
+std::vector<MotionRecord> run_motions(const std::vector<MotionTask>& tasks, const CheckpointPolicy& policy, Console& console) {
+  return Runs(tasks, policy, console).all();
+}
+
+ExitStatus status_of(const std::vector<MotionRecord>& records) {
+  const bool fine = std::all_of(records.begin(), records.end(), [](const MotionRecord& r) { return r.result.report.usable(); });
+  return fine ? ExitStatus::done : ExitStatus::solver_stopped;
+}
+
+}  // namespace snare::app
