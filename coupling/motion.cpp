@@ -71,6 +71,7 @@ class Run {
   void open(const Closed& point);
   void settle();
   void switch_friction(const Closed& point);
+  [[nodiscard]] bool rest_lost_minima();
   [[nodiscard]] bool leave_broken_modes(bool at_event);
   [[nodiscard]] MotionSample sample(const DaePoint& at, const VectorXd& integrals);
   [[nodiscard]] EnergyBalance stored(const DaePoint& at, MotionSample* into);
@@ -94,6 +95,8 @@ class Run {
   VectorXd y_, rate_;
   VectorXd integrals_;
   double time_ = 0.0;
+  double rested_ = -std::numeric_limits<double>::infinity();  // when points were last made to rest on the wire [s]
+  int trials_ = 0;                                            // of that, one soon after the other
   MotionSums sums_;
   std::optional<std::string> refused_;  // a touch that cannot be taken
 };
@@ -156,7 +159,7 @@ void Run::require_apart() {
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const MotionContact& c = motion_.contacts[k];
     const GapMinimum n = contacts_[k].nearest(y_);
-    for (const ContactPart& p : contacts_[k].points()) y_[p.coordinate_unknown()] = n.coordinate;
+    for (ContactPart& p : contacts_[k].points()) p.wait_at(n.coordinate, y_);
     // The start may touch, up to a small part of the wire's radius.
     if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
       problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate), "must be >= 0 m at the start"});
@@ -253,7 +256,7 @@ void Run::make_rates() {
         all[i].part->gap_rate_of(y_, held_rate) + all[i].part->gap_acceleration_at_rest(y_);
   }
   const Eigen::MatrixXd a = flexibility(all, true);
-  const VectorXd force = all.empty() ? VectorXd() : complementary_impulses(a, apart, options_.force_tolerance);
+  const VectorXd force = all.empty() ? VectorXd() : complementary_impulses(a, apart, VectorXd::Constant(a.rows(), options_.force_tolerance));
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double f = force[static_cast<Eigen::Index>(i)];
     y_[all[i].part->force_unknown()] = f;
@@ -292,6 +295,7 @@ std::optional<std::string> Run::close_touching() {
   struct Touch {
     Closed point;
     double approach = 0.0;
+    double gap = 0.0;
   };
   std::vector<Touch> touches;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -303,7 +307,7 @@ std::optional<std::string> Run::close_touching() {
       }
       ContactPart& part = contacts_[k].points()[*free];
       if (part.close(m.coordinate, y_)) system_->invalidate_pattern();
-      touches.push_back({{k, *free, &part}, -part.gap_rate(y_)});
+      touches.push_back({{k, *free, &part}, -part.gap_rate(y_), m.gap});
     }
   }
   const std::vector<Closed> all = constraints();
@@ -317,7 +321,9 @@ std::optional<std::string> Run::close_touching() {
       return fmt::format("{} touches the wire where its mount holds it, and neither gives way, at {:.9g} s",
                          motion_.contacts[all[i].contact].name, time_);
     }
-    const VectorXd impulse = complementary_impulses(a, apart, 0.0);
+    // What would part at a speed far below the tolerance stays closed: it would come back at once, and set off its neighbours.
+    const double parting = std::max(1e-9, 0.1 * options_.velocity_tolerance);  // [m/s]
+    const VectorXd impulse = complementary_impulses(a, apart, parting * a.diagonal().cwiseInverse());
     const VectorXd left = a * impulse + apart;
     const double before = stored({time_, y_, rate_}, nullptr).kinetic;
     const double worked = integrals_[integral::work];
@@ -333,15 +339,16 @@ std::optional<std::string> Run::close_touching() {
     y_ += change;
     sums_.impacts += before + integrals_[integral::work] - worked - stored({time_, y_, rate_}, nullptr).kinetic;
     // What the impulses drive apart is open again; round-off of the speeds does not.
-    constexpr double parting = 1e-9;  // [m/s]
+    constexpr double round_off = 1e-9;  // [m/s]
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      if (impulse[k] > 0.0 || left[k] <= parting) continue;
+      if (impulse[k] != 0.0 || left[k] <= round_off) continue;
       const auto own = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.point.part == all[i].part; });
       if (own == touches.end()) {
         open(all[i]);
       } else {
         integrals_[integral::dissipated] += contacts_[all[i].contact].open(all[i].point, y_);
+        contacts_[all[i].contact].leave_apart(own->gap);
         touches.erase(own);
       }
     }
@@ -368,6 +375,24 @@ bool Run::leave_broken_modes(bool at_event) {
     const bool ended = at_event && ida_->events_found()[first + k] < 0;
     if (!ended && all[k].part->friction_margin(y_) >= 0.0) continue;
     switch_friction(all[k]);
+    changed = true;
+  }
+  return changed;
+}
+
+// Beyond the end of a rounded edge a minimum of the gap may be lost at once, and no step, however small, finds it (G.9). Its point rests on
+// the wire from the last state on. False where that changes nothing, or was tried often without getting on.
+bool Run::rest_lost_minima() {
+  constexpr double same_time = 1e-9;  // [s]
+  constexpr int most_trials = 10;
+  if (time_ > rested_ + same_time) trials_ = 0;
+  rested_ = time_;
+  if (++trials_ > most_trials) return false;
+  bool changed = false;
+  for (const Closed& p : points()) {
+    const bool edges = motion_.contacts[p.contact].shape->smallest_radius() == 0.0;
+    if (!edges || !p.part->closed() || p.part->is_fixed_to_wire()) continue;
+    p.part->rest_on_wire();
     changed = true;
   }
   return changed;
@@ -576,7 +601,11 @@ MotionResult Run::go(double limit) {
   while (!stopped && !refused_ && !reached(time_, limit)) {
     const numerics::IdaAdvance advance = ida_->advance(std::min(limit, linkage_->limit()));
     report = ida_->report();
-    if (advance == numerics::IdaAdvance::failed) break;
+    if (advance == numerics::IdaAdvance::failed) {
+      if (!rest_lost_minima()) break;
+      settle();
+      continue;
+    }
     time_ = ida_->time();
     y_ = ida_->y();
     rate_ = ida_->rate();

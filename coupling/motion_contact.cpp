@@ -26,6 +26,9 @@ constexpr double no_tolerance = 1e6;
 // any shape that wires meet.
 constexpr double least_curvature = 1.0;
 
+// Of a wire that lies flat the gap differs by less than this between a point and the next vertex [m].
+constexpr double level_gap = 1e-9;
+
 // n.X' below this is round-off.
 constexpr double level_slope = 1e-9;
 
@@ -397,6 +400,11 @@ bool ContactPart::accept(const DaePoint& at) {
   return follow(at.y);
 }
 
+void ContactPart::rest_on_wire() {
+  fixed_ = true;
+  fixed_slope_ = 0.0;
+}
+
 double ContactPart::gap_curvature(const Geometry& g) const {
   Direction along;
   along.zeta = 1.0;
@@ -412,6 +420,17 @@ bool ContactPart::follow(const VectorView& y) {
   if (first >= window_ && first + 4 <= window_ + window_size) return false;
   window_ = std::clamp(first - (window_size - 4) / 2, 0, std::max(0, rod_.vertices() - window_size));
   return true;
+}
+
+std::optional<double> ContactPart::level_vertex(double coordinate, Eigen::VectorXd y) const {
+  y[first_] = coordinate;
+  if (is_at_an_end(coordinate) || gap_curvature(geometry(y)) >= least_curvature) return std::nullopt;
+  double nearest = rod_.coordinate(1);
+  for (int i = 2; i + 1 < rod_.vertices(); ++i) {
+    if (std::abs(rod_.coordinate(i) - coordinate) < std::abs(nearest - coordinate)) nearest = rod_.coordinate(i);
+  }
+  y[first_] = nearest;
+  return std::abs(geometry(y).gap) < level_gap ? std::optional(nearest) : std::nullopt;
 }
 
 bool ContactPart::close(double coordinate, Eigen::VectorXd& y) {

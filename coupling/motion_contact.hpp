@@ -4,6 +4,7 @@
 #include "coupling/motion_body.hpp"
 
 #include <array>
+#include <optional>
 
 namespace snare::coupling {
 
@@ -44,8 +45,14 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] bool has_law() const { return static_cast<bool>(contact_.law); }
   /// Whether zeta stays on its material point.
   [[nodiscard]] bool is_fixed_to_wire() const { return fixed_; }
+  /// Where an open contact keeps its material coordinate.
+  void wait_at(double coordinate, Eigen::VectorXd& y) { y[first_] = kept_coordinate_ = coordinate; }
+  /// Keeps a closed point on its material point until the minimum comes back.
+  void rest_on_wire();
   /// Closes at a material coordinate and sets the contact's own unknowns. True: the pattern changes.
   [[nodiscard]] bool close(double coordinate, Eigen::VectorXd& y);
+  /// Of a wire that lies flat at a material coordinate: that of a vertex beside it which lies there as well.
+  [[nodiscard]] std::optional<double> level_vertex(double coordinate, Eigen::VectorXd y) const;
   /// Returns the energy that the bristle still held and that is lost [J].
   [[nodiscard]] double open(Eigen::VectorXd& y);
   /// Of a closed point.

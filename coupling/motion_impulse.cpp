@@ -9,7 +9,7 @@ namespace snare::coupling {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd complementary_impulses(const MatrixXd& a, const VectorXd& b, double pull) {
+VectorXd complementary_impulses(const MatrixXd& a, const VectorXd& b, const VectorXd& pull) {
   const Eigen::Index n = b.size();
   std::vector<bool> pushes(static_cast<std::size_t>(n), true);
   VectorXd p = VectorXd::Zero(n);
@@ -30,7 +30,7 @@ VectorXd complementary_impulses(const MatrixXd& a, const VectorXd& b, double pul
     bool settled = true;
     for (Eigen::Index i = 0; i < n && settled; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (pushes[k] ? p[i] < -pull : w[i] < -slack) {
+      if (pushes[k] ? p[i] < -pull[i] : w[i] < -slack) {
         pushes[k] = !pushes[k];
         settled = false;
       }

@@ -44,8 +44,12 @@ std::optional<std::size_t> ContactPoints::free_point() const {
 }
 
 double ContactPoints::open(std::size_t point, VectorXd& y) {
-  touch_ = std::min(touch_, points_[point].gap(y) - touch_depth);
+  leave_apart(points_[point].gap(y));
   return points_[point].open(y);
+}
+
+void ContactPoints::leave_apart(double gap) {
+  touch_ = std::min(touch_, gap - touch_depth);
 }
 
 void ContactPoints::remember(std::vector<double>& memory) const {
@@ -72,8 +76,20 @@ std::optional<double> ContactPoints::first_touch(const ContactSearch::Step& step
   return found;
 }
 
+// Where the wire lies flat any place will do, and a free vertex is taken: points at vertices move one each, and stay independent however
+// many they are.
 std::vector<GapMinimum> ContactPoints::touching(const VectorView& y) const {
-  return search_.touching(y, held(), touch_ + together_);
+  std::vector<GapMinimum> found;
+  const auto at = [](double coordinate) { return [coordinate](const GapMinimum& m) { return m.coordinate == coordinate; }; };
+  for (GapMinimum m : search_.touching(y, held(), touch_ + together_)) {
+    const std::optional<double> vertex = points_.front().level_vertex(m.coordinate, y);
+    const bool taken = vertex && std::any_of(points_.begin(), points_.end(), [&](const ContactPart& p) {
+                         return p.closed() && y[p.coordinate_unknown()] == *vertex;
+                       });
+    if (vertex && !taken) m.coordinate = *vertex;
+    if (std::none_of(found.begin(), found.end(), at(m.coordinate))) found.push_back(m);
+  }
+  return found;
 }
 
 ContactSample ContactPoints::closed_sample(const DaePoint& at) const {

@@ -24,6 +24,8 @@ class ContactPoints {
   [[nodiscard]] std::optional<std::size_t> free_point() const;
   /// Opens a point; it touches again when it comes back from where it stands. Returns the energy that its bristle held [J].
   [[nodiscard]] double open(std::size_t point, Eigen::VectorXd& y);
+  /// What stands at this gap is open, and touches only when it is deeper [m].
+  void leave_apart(double gap);
   /// What is known beside the points' own states: see DaePart.
   void remember(std::vector<double>& memory) const;
   void recall(std::span<const double>& memory);

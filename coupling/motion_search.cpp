@@ -316,10 +316,32 @@ std::vector<GapMinimum> ContactSearch::open_minima(std::vector<GapMinimum> all, 
   return all;
 }
 
+// A stretch that lies flat has one minimum, and touches in all of its vertices at once.
+std::vector<GapMinimum> ContactSearch::flat_vertices(const VectorView& y, double touch) const {
+  double least = 0.0;
+  const Pose where = pose(y);
+  std::vector<GapMinimum> found;
+  for (const int e : near_elements(where, y, touch + skip_depth_, least)) {
+    if (e == 0) continue;
+    const Place vertex = place(where, curve_.control(e, y), e, 0.0);
+    if (vertex.gap <= touch && std::abs(vertex.slope) < level_slope) found.push_back({vertex.coordinate, vertex.gap});
+  }
+  return found;
+}
+
 std::vector<GapMinimum> ContactSearch::touching(const VectorView& y, const std::vector<Held>& held, double touch) const {
   // Above the touch too, since a closed contact's own minimum may stand at round-off above it.
   std::vector<GapMinimum> found = open_minima(minima(y, touch + skip_depth_), y, held);
   std::erase_if(found, [touch](const GapMinimum& m) { return m.gap > touch; });
+  if (found.empty()) return found;
+  const auto known = [&](double coordinate) {
+    const auto at = [&](double other) { return std::abs(coordinate - other) < resolution_; };
+    return std::any_of(held.begin(), held.end(), [&](const Held& h) { return at(y[h.unknown]); }) ||
+           std::any_of(found.begin(), found.end(), [&](const GapMinimum& m) { return at(m.coordinate); });
+  };
+  for (const GapMinimum& v : flat_vertices(y, touch)) {
+    if (!known(v.coordinate)) found.push_back(v);
+  }
   return found;
 }
 

@@ -96,6 +96,7 @@ class ContactSearch {
   void subdivide(const Pose& pose, int element, const WireCurve::Control& whole, const WireCurve::Control& part, const Place& from,
                  const Place& to, double reach, std::vector<Interval>& out) const;
   [[nodiscard]] std::vector<GapMinimum> minima_of(const std::vector<int>& elements, const numerics::VectorView& y, double reach) const;
+  [[nodiscard]] std::vector<GapMinimum> flat_vertices(const numerics::VectorView& y, double touch) const;
   [[nodiscard]] std::vector<GapMinimum> open_minima(std::vector<GapMinimum> all, const numerics::VectorView& y, const std::vector<Held>& held) const;
   [[nodiscard]] std::vector<int> met_within(double way, const numerics::VectorView& y);
   [[nodiscard]] double speed_bound(const Step& step) const;

@@ -45,7 +45,7 @@ TEST(ComplementaryImpulses, AreTheOneThatEveryChoiceOfContactsConfirms) {
     const MatrixXd a = root * root.transpose();
     VectorXd b(n);
     for (double& x : b) x = normal(random);
-    const VectorXd p = complementary_impulses(a, b, 0.0);
+    const VectorXd p = complementary_impulses(a, b, VectorXd::Zero(b.size()));
     // Enumeration: the only choice of pushing contacts that is right everywhere.
     int right = 0;
     for (int choice = 0; choice < (1 << n); ++choice) {
@@ -64,7 +64,7 @@ TEST(ComplementaryImpulses, AreTheOneThatEveryChoiceOfContactsConfirms) {
     EXPECT_EQ(right, 1);
   }
   // Two contacts at one place: each bears half.
-  const VectorXd shared = complementary_impulses(MatrixXd::Ones(2, 2), VectorXd::Constant(2, -3.0), 0.0);
+  const VectorXd shared = complementary_impulses(MatrixXd::Ones(2, 2), VectorXd::Constant(2, -3.0), VectorXd::Zero(2));
   EXPECT_LT((shared - VectorXd::Constant(2, 1.5)).norm(), 1e-12);
 }
 
