@@ -259,7 +259,7 @@ void Run::make_rates() {
   const VectorXd force = all.empty() ? VectorXd() : complementary_impulses(a, apart, VectorXd::Constant(a.rows(), options_.force_tolerance));
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double f = force[static_cast<Eigen::Index>(i)];
-    y_[all[i].part->force_unknown()] = f;
+    all[i].part->begin_force(f, y_);
     all[i].part->respond_with_friction(y_, f, rate_);
   }
   // Points that would pull let go.
@@ -381,7 +381,7 @@ bool Run::leave_broken_modes(bool at_event) {
 }
 
 // Beyond the end of a rounded edge a minimum of the gap may be lost at once, and no step, however small, finds it (G.9). Its point rests on
-// the wire from the last state on. False where that changes nothing, or was tried often without getting on.
+// the wire from the last state on. False where there is none, or that was tried often without getting on.
 bool Run::rest_lost_minima() {
   constexpr double same_time = 1e-9;  // [s]
   constexpr int most_trials = 10;
@@ -391,7 +391,7 @@ bool Run::rest_lost_minima() {
   bool changed = false;
   for (const Closed& p : points()) {
     const bool edges = motion_.contacts[p.contact].shape->smallest_radius() == 0.0;
-    if (!edges || !p.part->closed() || p.part->is_fixed_to_wire()) continue;
+    if (!edges || !p.part->closed()) continue;
     p.part->rest_on_wire();
     changed = true;
   }

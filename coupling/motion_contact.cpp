@@ -380,13 +380,14 @@ void ContactPart::events(const DaePoint& at, std::span<double> values) {
   if (!closed_)
     values[0] = 1.0;
   else
-    values[0] = has_law() ? -geometry(at.y).gap : at.y[force_unknown()];
+    values[0] = has_law() ? -geometry(at.y).gap : at.y[force_unknown()] - least_force_;
 }
 
 // A minimum that flattens out is followed no further: beyond it zeta would be a maximum, or jump. The wire still rests there, and
 // where it then dips beside it is found as another touch.                                          theory.md (G.9)
 bool ContactPart::accept(const DaePoint& at) {
   if (!closed_) return false;
+  if (at.y[force_unknown()] > 0.0) least_force_ = 0.0;
   const Geometry g = geometry(at.y);
   const double slope = g.normal.dot(g.slope);
   if (!fixed_) {
@@ -398,6 +399,11 @@ bool ContactPart::accept(const DaePoint& at) {
   // Along a flat face the slope is round-off of either sign, which says nothing.
   fixed_slope_ = std::abs(slope) > level_slope ? slope : 0.0;
   return follow(at.y);
+}
+
+void ContactPart::begin_force(double force, Eigen::VectorXd& y) {
+  y[force_unknown()] = force;
+  least_force_ = force > 0.0 ? 0.0 : force - options_.force_tolerance;
 }
 
 void ContactPart::rest_on_wire() {
@@ -569,7 +575,7 @@ Vector3d ContactPart::normal(const VectorView& y) const {
 
 void ContactPart::remember(std::vector<double>& memory) const {
   memory.insert(memory.end(), {closed_ ? 1.0 : 0.0, kept_coordinate_, static_cast<double>(window_), coupled_ ? 1.0 : 0.0,
-                                fixed_ ? 1.0 : 0.0, fixed_slope_, mode_ == FrictionMode::stick ? 1.0 : 0.0});
+                                fixed_ ? 1.0 : 0.0, fixed_slope_, least_force_, mode_ == FrictionMode::stick ? 1.0 : 0.0});
 }
 
 void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memory) {
@@ -579,6 +585,7 @@ void ContactPart::recall(const VectorView& /*y*/, std::span<const double>& memor
   coupled_ = numerics::take(memory) != 0.0;
   fixed_ = numerics::take(memory) != 0.0;
   fixed_slope_ = numerics::take(memory);
+  least_force_ = numerics::take(memory);
   mode_ = numerics::take(memory) != 0.0 ? FrictionMode::stick : FrictionMode::slip;
 }
 

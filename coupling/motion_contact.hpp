@@ -47,6 +47,9 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] bool is_fixed_to_wire() const { return fixed_; }
   /// Where an open contact keeps its material coordinate.
   void wait_at(double coordinate, Eigen::VectorXd& y) { y[first_] = kept_coordinate_ = coordinate; }
+  /// The normal force with which the integration begins anew; it may pull by the forces' tolerance, and lifts off when it pulls by as much
+  /// more.
+  void begin_force(double force, Eigen::VectorXd& y);
   /// Keeps a closed point on its material point until the minimum comes back.
   void rest_on_wire();
   /// Closes at a material coordinate and sets the contact's own unknowns. True: the pattern changes.
@@ -122,6 +125,7 @@ class ContactPart final : public numerics::DaePart {
   MotionOptions options_;
   bool closed_ = false;
   FrictionMode mode_ = FrictionMode::stick;
+  double least_force_ = 0.0;  // at which it lifts off, <= 0 [N]
   double kept_coordinate_ = 0.0;
   bool fixed_ = false;        // zeta to its material point
   double fixed_slope_ = 0.0;  // n.X' there at the last accepted state
