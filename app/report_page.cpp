@@ -261,16 +261,24 @@ void ReportPage::animation(const AnimationSpecification& animation) {
       throw std::invalid_argument(fmt::format("animation \"{}\": {} outlines, must be {}", animation.title, frame.outlines.size(),
                                               animation.names.size()));
     }
-    for (const std::vector<double>& outline : frame.outlines) {
-      for (std::size_t i = 0; i < outline.size(); ++i) {
-        if (!std::isfinite(outline[i])) {
-          throw std::invalid_argument(fmt::format("animation \"{}\": a coordinate is {}", animation.title, outline[i]));
+    json outlines = json::array();
+    for (const std::vector<AnimationFrame::Line>& outline : frame.outlines) {
+      json lines = json::array();
+      for (const AnimationFrame::Line& line : outline) {
+        json shortened = json::array();
+        for (std::size_t i = 0; i < line.size(); ++i) {
+          if (!std::isfinite(line[i])) {
+            throw std::invalid_argument(fmt::format("animation \"{}\": a coordinate is {}", animation.title, line[i]));
+          }
+          low[i % 2] = std::min(low[i % 2], line[i]);
+          high[i % 2] = std::max(high[i % 2], line[i]);
+          shortened.push_back(rounded(line[i], plotted_digits));
         }
-        low[i % 2] = std::min(low[i % 2], outline[i]);
-        high[i % 2] = std::max(high[i % 2], outline[i]);
+        lines.push_back(shortened);
       }
+      outlines.push_back(lines);
     }
-    frames.push_back({{"label", frame.label}, {"outlines", frame.outlines}});
+    frames.push_back({{"label", frame.label}, {"outlines", outlines}});
   }
   const double margin = 0.05 * std::max({high[0] - low[0], high[1] - low[1], 1e-9});
   const json data{{"names", animation.names},
@@ -280,7 +288,7 @@ void ReportPage::animation(const AnimationSpecification& animation) {
   body_ += fmt::format(
       "<figure class=\"animation\"><figcaption>{}</figcaption><svg style=\"width:100%;max-height:24rem\"></svg>"
       "<p><button type=\"button\">play</button> <input type=\"range\" min=\"0\" value=\"0\" style=\"width:60%\"> "
-      "<output></output></p>",
+      "<output></output></p><p class=\"animation-names\"></p>",
       escape_html(animation.title));
   if (!animation.note.empty()) body_ += fmt::format("<p class=\"note\">{}</p>", escape_html(animation.note));
   body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";

@@ -63,10 +63,11 @@ struct PlotSpecification {
   std::string note = {};  ///< printed under the plot; may be empty
 };
 
-/// Outlines that move, drawn to scale: one of x, y pairs for every name in every frame.
+/// Outlines that move, drawn to scale: one for every name in every frame.
 struct AnimationFrame {
-  std::string label;                          ///< "t = 0.120 s"
-  std::vector<std::vector<double>> outlines;  ///< x0, y0, x1, y1, ... in the unit of the plot
+  using Line = std::vector<double>;       ///< x0, y0, x1, y1, ... in the unit of the plot
+  std::string label;                      ///< "t = 0.120 s"
+  std::vector<std::vector<Line>> outlines;  ///< each of any number of lines
 };
 struct AnimationSpecification {
   std::string title;

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/motion_animation.hpp"
+#include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
@@ -218,11 +218,7 @@ ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonO
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
   if (scenario.contact.output.paraview) {
-    for (const ModelRun& run : runs) {
-      std::vector<ParaviewFrame> frames;
-      for (const MotionSample& s : run.samples) frames.push_back({s.time, s.wires});
-      write_paraview(options.out, run.name, frames);
-    }
+    for (const ModelRun& run : runs) write_paraview(options.out, run.name, paraview_frames(run.motion, run.samples));
   }
   if (options.json) {
     std::cout << summary.dump(1) << '\n';

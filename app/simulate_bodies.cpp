@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/motion_animation.hpp"
+#include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
@@ -178,11 +178,7 @@ ExitStatus simulate_bodies(const std::filesystem::path& file, const CommonOption
   write_history(options.out / "history.csv", scenario, samples);
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, samples, summary));
-  if (scenario.output.paraview) {
-    std::vector<ParaviewFrame> frames;
-    for (const MotionSample& s : samples) frames.push_back({s.time, s.wires});
-    write_paraview(options.out, "wires", frames);
-  }
+  if (scenario.output.paraview) write_paraview(options.out, "motion", paraview_frames(scenario.motion, samples));
   if (options.json) {
     std::cout << summary.dump(1) << '\n';
     return status;

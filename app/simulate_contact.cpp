@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/motion_animation.hpp"
+#include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
@@ -197,12 +197,6 @@ std::string report_of(const ContactScenario& scenario, const std::vector<ModelRu
   return page.html();
 }
 
-void write_shapes(const std::filesystem::path& out, const ModelRun& run) {
-  std::vector<ParaviewFrame> frames;
-  for (const MotionSample& s : run.samples) frames.push_back({s.time, s.wires});
-  write_paraview(out, run.model->name, frames);
-}
-
 }  // namespace
 
 ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options,
@@ -228,7 +222,8 @@ ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptio
   numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
   numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
   if (scenario.output.paraview) {
-    for (const ModelRun& run : runs) write_shapes(options.out, run);
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      write_paraview(options.out, runs[k].model->name, paraview_frames(tasks[k].motion, runs[k].samples));
   }
   if (options.json) {
     std::cout << summary.dump(1) << '\n';

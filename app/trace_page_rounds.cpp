@@ -38,7 +38,7 @@ void add_scores(ReportPage& page, const json& round) {
          text(candidate, "channel", absent),
          measured(number(candidate, "score_z")),
          shown(number(candidate, "score_p_holm"), 2),
-         measured(number(detectable, "size"), " " + name_and_unit(text(detectable, "key")).second)});
+         measured(number(detectable, "size"), fmt::format(" {}", name_and_unit(text(detectable, "key")).second))});
   }
   if (!table.rows.empty()) page.table(table);
 }

@@ -302,7 +302,7 @@ std::optional<std::string> Run::close_touching() {
     for (const GapMinimum& m : contacts_[k].touching(y_)) {
       const std::optional<std::size_t> free = contacts_[k].free_point();
       if (!free) {
-        return fmt::format("{}: the wire touches at more than {} points (at {:.6g} m along it too) at {:.9g} s",
+        return fmt::format("{}: the wire touches at more than {} points (at {:.6g} m along it too) at {:.9g} s; allow more",
                            motion_.contacts[k].name, contacts_[k].points().size(), m.coordinate, time_);
       }
       ContactPart& part = contacts_[k].points()[*free];

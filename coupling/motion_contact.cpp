@@ -27,7 +27,7 @@ constexpr double no_tolerance = 1e6;
 constexpr double least_curvature = 1.0;
 
 // Of a wire that lies flat the gap differs by less than this between a point and the next vertex [m].
-constexpr double level_gap = 1e-9;
+constexpr double level_gap = 1e-12;
 
 // n.X' below this is round-off.
 constexpr double level_slope = 1e-9;
@@ -430,13 +430,14 @@ bool ContactPart::follow(const VectorView& y) {
 
 std::optional<double> ContactPart::level_vertex(double coordinate, Eigen::VectorXd y) const {
   y[first_] = coordinate;
-  if (is_at_an_end(coordinate) || gap_curvature(geometry(y)) >= least_curvature) return std::nullopt;
+  const Geometry here = geometry(y);
+  if (is_at_an_end(coordinate) || gap_curvature(here) >= least_curvature) return std::nullopt;
   double nearest = rod_.coordinate(1);
   for (int i = 2; i + 1 < rod_.vertices(); ++i) {
     if (std::abs(rod_.coordinate(i) - coordinate) < std::abs(nearest - coordinate)) nearest = rod_.coordinate(i);
   }
   y[first_] = nearest;
-  return std::abs(geometry(y).gap) < level_gap ? std::optional(nearest) : std::nullopt;
+  return std::abs(geometry(y).gap - here.gap) < level_gap ? std::optional(nearest) : std::nullopt;
 }
 
 bool ContactPart::close(double coordinate, Eigen::VectorXd& y) {

@@ -17,6 +17,9 @@ namespace {
 // taken for open until it comes back.
 constexpr double touch_depth = 1e-11;
 
+// Beside a point that rests on the wire [m].
+constexpr double dip_depth = 1e-9;
+
 // Minima this near [m] when another touches do so at the same time: shapes that touch together differ by round-off. At most a hundredth
 // of the position tolerance.
 constexpr double touch_together = 1e-9;
@@ -61,11 +64,16 @@ void ContactPoints::recall(std::span<const double>& memory) {
 }
 
 // A point that follows its minimum stands at it, in the dense output too up to its error; one that is fixed to the wire holds no more than
-// its surroundings.
+// its surroundings, and what dips beside it by less than can matter: a second point there would share its masses.
 std::vector<ContactSearch::Held> ContactPoints::held() const {
   std::vector<ContactSearch::Held> list;
   for (const ContactPart& p : points_) {
-    if (p.closed()) list.push_back({p.coordinate_unknown(), (p.is_fixed_to_wire() ? 0.05 : 2.0) * search_.resolution()});
+    if (!p.closed()) continue;
+    if (p.is_fixed_to_wire()) {
+      list.push_back({p.coordinate_unknown(), 0.05 * search_.resolution(), search_.longest_element(), dip_depth});
+    } else {
+      list.push_back({p.coordinate_unknown(), 2.0 * search_.resolution(), 0.0, 0.0});
+    }
   }
   return list;
 }

@@ -117,6 +117,7 @@ ContactSearch::ContactSearch(const MotionContact& contact, const wire::RodPart& 
   const double radius = wire_radius_ + shape_->smallest_radius();
   resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, shortest)), shortest / most_pieces);
   skip_depth_ = std::max(1e-3 * wire_radius_, 10.0 * position_tolerance);
+  for (int e = 0; e < curve_.elements(); ++e) longest_element_ = std::max(longest_element_, curve_.length(e));
   free_until_.assign(static_cast<std::size_t>(curve_.elements()), 0.0);
 }
 
@@ -312,6 +313,7 @@ std::vector<GapMinimum> ContactSearch::open_minima(std::vector<GapMinimum> all, 
       return std::abs(a.coordinate - h) < std::abs(b.coordinate - h);
     });
     if (own != all.end() && std::abs(own->coordinate - h) < one.within) all.erase(own);
+    std::erase_if(all, [&](const GapMinimum& m) { return m.gap > -one.depth && std::abs(m.coordinate - h) < one.around; });
   }
   return all;
 }
@@ -334,13 +336,9 @@ std::vector<GapMinimum> ContactSearch::touching(const VectorView& y, const std::
   std::vector<GapMinimum> found = open_minima(minima(y, touch + skip_depth_), y, held);
   std::erase_if(found, [touch](const GapMinimum& m) { return m.gap > touch; });
   if (found.empty()) return found;
-  const auto known = [&](double coordinate) {
-    const auto at = [&](double other) { return std::abs(coordinate - other) < resolution_; };
-    return std::any_of(held.begin(), held.end(), [&](const Held& h) { return at(y[h.unknown]); }) ||
-           std::any_of(found.begin(), found.end(), [&](const GapMinimum& m) { return at(m.coordinate); });
-  };
-  for (const GapMinimum& v : flat_vertices(y, touch)) {
-    if (!known(v.coordinate)) found.push_back(v);
+  for (const GapMinimum& v : open_minima(flat_vertices(y, touch), y, held)) {
+    const auto beside = [&](const GapMinimum& m) { return std::abs(m.coordinate - v.coordinate) < resolution_; };
+    if (std::none_of(found.begin(), found.end(), beside)) found.push_back(v);
   }
   return found;
 }

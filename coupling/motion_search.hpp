@@ -62,10 +62,12 @@ class ContactSearch {
   [[nodiscard]] double clearance(const numerics::VectorView& y) const;
   [[nodiscard]] double resolution() const { return resolution_; }
 
-  /// A closed point: the unknown that is its material coordinate, and how far from there a minimum may stand to be its own [m].
+  /// A closed point: the unknown that is its material coordinate, how far from there a minimum may stand to be its own [m], and how deep
+  /// dips around it are no touches [m].
   struct Held {
     int unknown = 0;
     double within = 0.0;
+    double around = 0.0, depth = 0.0;
   };
   /// Of the integrator's last step, for all contacts.
   struct Step {
@@ -79,6 +81,8 @@ class ContactSearch {
   [[nodiscard]] std::optional<double> first_touch(const Step& step, double until, const std::vector<Held>& held, double touch);
   /// Those minima at a state whose gap is at most `touch`.
   [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held, double touch) const;
+  /// Of the wire [m].
+  [[nodiscard]] double longest_element() const { return longest_element_; }
   [[nodiscard]] double skip_depth() const { return skip_depth_; }
   /// The state is another than the end of the last step: what was found out there is forgotten.
   void forget();
@@ -111,6 +115,7 @@ class ContactSearch {
   WireCurve curve_;
   double resolution_ = 0.0;
   double skip_depth_ = 0.0;
+  double longest_element_ = 0.0;
   double passed_ = 0.0;             // way that anything can have gone since the start [m]
   std::vector<double> free_until_;  // of every element: what it cannot be touched before
   std::vector<int> asked_;          // elements whose distance was looked up in the last step

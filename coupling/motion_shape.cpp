@@ -1,6 +1,8 @@
 #include "coupling/motion_shape.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace snare::coupling {
 
@@ -17,7 +19,42 @@ DistanceField distance_along(const Vector3d& a, const Matrix3d& space, double ra
   return {r - radius, n, (space - n * n.transpose()) / r};
 }
 
+constexpr int chords = 36;  // of a drawn circle
+
+Eigen::Matrix3Xd exchanged(const Eigen::Matrix3Xd& line, int i, int j) {
+  Eigen::Matrix3Xd result = line;
+  result.row(i).swap(result.row(j));
+  return result;
+}
+
 }  // namespace
+
+Eigen::Matrix3Xd circle_drawing(double radius, double height, int count) {
+  Eigen::Matrix3Xd line(3, count + 1);
+  for (int k = 0; k <= count; ++k) {
+    const double a = 2.0 * std::numbers::pi * k / count;
+    line.col(k) << radius * std::cos(a), radius * std::sin(a), height;
+  }
+  return line;
+}
+
+std::vector<Eigen::Matrix3Xd> Ball::drawing() const {
+  const Eigen::Matrix3Xd circle = circle_drawing(radius_, 0.0, chords);
+  return {circle, exchanged(circle, 0, 2), exchanged(circle, 1, 2)};
+}
+
+std::vector<Eigen::Matrix3Xd> EndlessCylinder::drawing() const {
+  return {circle_drawing(radius_, 0.0, chords)};
+}
+
+// Both ends, and the cut along two planes through the axis.
+std::vector<Eigen::Matrix3Xd> Capsule::drawing() const {
+  Eigen::Matrix3Xd cut = exchanged(circle_drawing(radius_, 0.0, chords), 1, 2);
+  for (Eigen::Index k = 0; k < cut.cols(); ++k) cut(2, k) += 2 * k < chords ? half_length_ : -half_length_;
+  cut.conservativeResize(3, cut.cols() + 1);
+  cut.rightCols<1>() = cut.col(0);
+  return {cut, exchanged(cut, 0, 1), circle_drawing(radius_, -half_length_, chords), circle_drawing(radius_, half_length_, chords)};
+}
 
 DistanceField Ball::at(const Vector3d& p) const {
   return distance_along(p, Matrix3d::Identity(), radius_);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 #include <memory>
 
 namespace snare::coupling {
@@ -31,7 +33,12 @@ class ContactShape {
   /// Smallest radius of curvature where the surface is convex [m]: the Hessian's largest eigenvalue at a distance d outside is at most
   /// 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line would have no direction of contact.
   [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
+  /// Lines that show the shape, in its frame [m]; of an endless one a cut across it.
+  [[nodiscard]] virtual std::vector<Eigen::Matrix3Xd> drawing() const = 0;
 };
+
+/// A circle about the z axis in `chords` chords, closed [m].
+[[nodiscard]] Eigen::Matrix3Xd circle_drawing(double radius, double height, int chords);
 
 /// A ball about the origin; radius 0 is a point.
 class Ball final : public ContactShape {
@@ -39,6 +46,7 @@ class Ball final : public ContactShape {
   explicit Ball(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
   double radius_;
@@ -50,6 +58,7 @@ class EndlessCylinder final : public ContactShape {
   explicit EndlessCylinder(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
   double radius_;
@@ -63,6 +72,7 @@ class Capsule final : public ContactShape {
   Capsule(double radius, double length) : radius_(radius), half_length_(0.5 * length) {}
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
   double radius_;

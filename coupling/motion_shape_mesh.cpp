@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -275,6 +276,26 @@ DistanceField MeshShape::at(const Vector3d& p) const {
   if (near.feature == Near::Feature::edge) across -= near.along * near.along.transpose();
   field.hessian = across / field.distance;
   return field;
+}
+
+std::vector<Eigen::Matrix3Xd> MeshShape::drawing() const {
+  const double sharp = std::cos(std::numbers::pi / 9.0);  // 20 degrees between the faces' normals
+  constexpr std::size_t least = 6;
+  constexpr std::size_t most = 400;
+  const Mesh& m = surface_->mesh;
+  std::vector<Eigen::Matrix3Xd> all, edges;
+  for (const Mesh::Edge_index e : m.edges()) {
+    const Mesh::Halfedge_index h = m.halfedge(e);
+    Eigen::Matrix3Xd line(3, 2);
+    line << vector(m.point(m.source(h))), vector(m.point(m.target(h)));
+    all.push_back(line);
+    const Vector3d& on_this_side = surface_->face_normal[m.face(h).idx()];
+    if (on_this_side.dot(surface_->face_normal[m.face(m.opposite(h)).idx()]) < sharp) edges.push_back(line);
+  }
+  const std::vector<Eigen::Matrix3Xd>& chosen = edges.size() >= least ? edges : all;
+  std::vector<Eigen::Matrix3Xd> drawn;
+  for (std::size_t k = 0; k < chosen.size(); k += 1 + chosen.size() / most) drawn.push_back(chosen[k]);
+  return drawn;
 }
 
 bool MeshShape::contains(const Vector3d& p) const {

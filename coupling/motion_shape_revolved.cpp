@@ -106,6 +106,28 @@ Vector2d RevolvedShape::normal_at(const Piece& piece, const Vector2d& p) const {
   return std::copysign(1.0, piece.curvature) * (p - piece.centre).normalized();
 }
 
+// The cut along two planes through the axis, and the circles of the corners.
+std::vector<Eigen::Matrix3Xd> RevolvedShape::drawing() const {
+  constexpr int arc_chords = 8;
+  constexpr int circle_chords = 36;
+  const std::vector<Vector2d> profile = outline(arc_chords);
+  const auto n = static_cast<Eigen::Index>(profile.size());
+  std::vector<Eigen::Matrix3Xd> lines(2, Eigen::Matrix3Xd::Zero(3, 2 * n));
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector2d& p = profile[static_cast<std::size_t>(k)];
+    for (Eigen::Index plane = 0; plane < 2; ++plane) {
+      Eigen::Matrix3Xd& line = lines[static_cast<std::size_t>(plane)];
+      line(plane, k) = p.x();
+      line(plane, 2 * n - 1 - k) = -p.x();
+      line(2, k) = line(2, 2 * n - 1 - k) = p.y();
+    }
+  }
+  for (const Piece& piece : pieces_) {
+    if (piece.to.x() > 0.0) lines.push_back(circle_drawing(piece.to.x(), piece.to.y(), circle_chords));
+  }
+  return lines;
+}
+
 std::vector<Vector2d> RevolvedShape::outline(int divisions) const {
   std::vector<Vector2d> line{pieces_.front().from};
   for (const Piece& piece : pieces_) {

@@ -25,6 +25,7 @@ class RevolvedShape final : public ContactShape {
 
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const override;
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
   /// Points along the profile, arcs in `divisions` chords: for drawing.
   [[nodiscard]] std::vector<Eigen::Vector2d> outline(int divisions) const;
 

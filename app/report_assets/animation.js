@@ -8,23 +8,31 @@
     const slider = figure.querySelector("input");
     const label = figure.querySelector("output");
     const button = figure.querySelector("button");
+    const names = figure.querySelector(".animation-names");
     const box = data.box;  // x0, y0, width, height; y upwards
     svg.setAttribute("viewBox", [0, 0, box[2], box[3]].join(" "));
     const paths = data.names.map(function (name, i) {
       const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
       path.setAttribute("fill", "none");
       path.setAttribute("stroke", colours[i % colours.length]);
-      path.setAttribute("stroke-width", 0.006 * Math.max(box[2], box[3]));
+      path.setAttribute("stroke-width", 1.6);
+      path.setAttribute("vector-effect", "non-scaling-stroke");
       svg.appendChild(path);
+      const entry = document.createElement("span");
+      entry.textContent = "\u2014 " + name;
+      entry.style.color = colours[i % colours.length];
+      names.appendChild(entry);
       return path;
     });
     function show(k) {
       const frame = data.frames[k];
       frame.outlines.forEach(function (outline, i) {
         let d = "";
-        for (let j = 0; j < outline.length; j += 2) {
-          d += (j ? "L" : "M") + (outline[j] - box[0]) + " " + (box[1] + box[3] - outline[j + 1]);
-        }
+        outline.forEach(function (line) {
+          for (let j = 0; j < line.length; j += 2) {
+            d += (j ? "L" : "M") + (line[j] - box[0]) + " " + (box[1] + box[3] - line[j + 1]);
+          }
+        });
         paths[i].setAttribute("d", d);
       });
       label.textContent = frame.label;

@@ -160,6 +160,10 @@ TEST(MeshShapes, CuboidIsExact) {
   }
 }
 
+TEST(MeshShapes, AreDrawnBySharpEdges) {
+  EXPECT_EQ(MeshShape(cuboid(8e-3, 6e-3, 4e-3)).drawing().size(), 12u);  // not the diagonals
+}
+
 TEST(MeshShapes, DerivativesFollowFaceEdgeAndVertex) {
   const MeshShape shape(cuboid(0.8, 0.6, 0.4));
   const std::tuple<const char*, Vector3d, double> places[] = {{"face", {0.1, 0.05, 0.35}, 0.0},

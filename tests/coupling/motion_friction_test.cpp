@@ -212,6 +212,7 @@ class Underside final : public ContactShape {
   [[nodiscard]] DistanceField at(const Vector3d& p) const override {
     return {-p.y(), -Vector3d::UnitY(), Eigen::Matrix3d::Zero()};
   }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override { return {}; }
 };
 
 /// A block of 1 kg that does not turn, with a flat underside, on the top of a thick arch of steel wire that is bent by

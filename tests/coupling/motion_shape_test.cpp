@@ -154,6 +154,23 @@ TEST(ContactShapes, DistanceIsThatToTheSampledSurface) {
   }
 }
 
+TEST(ContactShapes, AreDrawnOnTheirSurface) {
+  for (const Sampled& shape : sampled_shapes()) {
+    const std::vector<Eigen::Matrix3Xd> lines = shape.shape->drawing();
+    ASSERT_FALSE(lines.empty()) << shape.name;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Matrix3Xd& line : lines) {
+      ASSERT_GE(line.cols(), 2) << shape.name;
+      for (const auto& p : line.colwise()) {
+        // Cuts run across flat ends too.
+        EXPECT_LT(shape.shape->distance(p), 1e-12) << shape.name;
+        box.extend(Vector3d(p));
+      }
+    }
+    EXPECT_GT(box.sizes().maxCoeff(), 0.1) << shape.name;
+  }
+}
+
 TEST(ContactShapes, DerivativesMatchDifferences) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-1.2, 1.2);

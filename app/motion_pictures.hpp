@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/paraview.hpp"
 #include "app/report_page.hpp"
 #include "coupling/contact_scenario.hpp"
 
@@ -18,8 +19,12 @@ enum class View {
 [[nodiscard]] AnimationSpecification animation_of(const coupling::ContactScenario& scenario, const std::string& model,
                                                   const std::vector<coupling::MotionSample>& samples);
 
-/// Wires, bodies (centres of mass) and arms (lines from joint to joint), to scale.
+/// Wires, bodies (centres of mass and shapes) and arms (lines from joint to joint), to scale.
 [[nodiscard]] AnimationSpecification animation_of(const coupling::Motion& motion,
                                                   const std::vector<coupling::MotionSample>& samples, View view);
+
+/// The wires, then the shapes of the bodies.
+[[nodiscard]] std::vector<ParaviewFrame> paraview_frames(const coupling::Motion& motion,
+                                                         const std::vector<coupling::MotionSample>& samples);
 
 }  // namespace snare::app
