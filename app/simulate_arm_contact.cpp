@@ -2,6 +2,7 @@
 #include "app/experiment_input.hpp"
 #include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
+#include "app/motion_report.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
@@ -119,51 +120,18 @@ json summary_of(const ModelRun& run) {
   return summary;
 }
 
-Curve curve_of(const std::string& name, const ModelRun& run, int colour,
-               const std::function<double(const MotionSample&)>& value) {
-  Curve curve{name, {}, {}, CurveStyle::line, colour};
-  for (const MotionSample& s : run.samples) {
-    curve.x.push_back(s.time);
-    curve.y.push_back(value(s));
-  }
-  return curve;
-}
-
 std::string report_of(const ArmContactScenario& scenario, const std::vector<ModelRun>& runs,
                       const json& summary) {
   ReportPage page(scenario.title, scenario.source);
   page.heading("Summary");
-  Table table{"",
-              {{"Model", ColumnKind::code},
-               {"Peak force [N]", ColumnKind::number},
-               {"Impulse along y [N s]", ColumnKind::number},
-               {"Velocity after, y [m/s]", ColumnKind::number},
-               {"Touches", ColumnKind::number},
-               {"Integrator's energy [J]", ColumnKind::number},
-               {"Steps", ColumnKind::number},
-               {"Real-time factor", ColumnKind::number}},
-              {}};
-  for (const json& m : summary["models"]) {
-    table.rows.push_back({m["model"].get<std::string>(), format_significant(m["peak_force_N"].get<double>()),
-                          format_significant(m["impulse_Ns"][1].get<double>()),
-                          format_significant(m["velocity_after_m_s"][1].get<double>()),
-                          std::to_string(m["touches"].get<int>()),
-                          format_significant(m["energy_J"]["integrator"].get<double>(), 2),
-                          std::to_string(m["steps"].get<long>()),
-                          format_significant(m["real_time_factor"].get<double>())});
-    if (!m["finished"].get<bool>())
-      page.callout(m["model"].get<std::string>() + ": " + m["message"].get<std::string>(), Tone::bad);
-  }
-  page.table(table);
+  add_models(summary["models"], page);
   page.heading("Time histories");
   PlotSpecification force{"Contact force", {"time", "s"}, {"force", "N"}};
   PlotSpecification velocity{"Body's velocity along the push", {"time", "s"}, {"velocity y", "m/s"}};
   int colour = 0;
   for (const ModelRun& run : runs) {
-    force.curves.push_back(curve_of(run.name, run, colour,
-                                    [](const MotionSample& s) { return s.contacts.front().normal_force; }));
-    velocity.curves.push_back(curve_of(run.name, run, colour++,
-                                       [](const MotionSample& s) { return s.bodies.front().velocity.y(); }));
+    force.curves.push_back(time_curve(run.name, colour, run.samples, [](const MotionSample& s) { return s.contacts.front().normal_force; }));
+    velocity.curves.push_back(time_curve(run.name, colour++, run.samples, [](const MotionSample& s) { return s.bodies.front().velocity.y(); }));
   }
   page.line_plot(force);
   page.line_plot(velocity);
@@ -173,10 +141,9 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
     const multibody::ElasticArm& arm = run.motion.arms.front().arm;
     for (int j = 0; j < arm.motors(); ++j) {
       const std::string& name = arm.joints[static_cast<std::size_t>(j)].name;
-      joints.curves.push_back(curve_of(
-          name, run, j, [&run, j](const MotionSample& s) { return deflection(run, s, j) / degree; }));
+      joints.curves.push_back(time_curve(name, j, run.samples, [&run, j](const MotionSample& s) { return deflection(run, s, j) / degree; }));
       const double start = run.samples.front().arms.front().state.motor[j];
-      motors.curves.push_back(curve_of(name, run, j, [j, start](const MotionSample& s) {
+      motors.curves.push_back(time_curve(name, j, run.samples, [j, start](const MotionSample& s) {
         return (s.arms.front().state.motor[j] - start) / degree;
       }));
     }

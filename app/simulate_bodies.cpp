@@ -2,6 +2,7 @@
 #include "app/experiment_input.hpp"
 #include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
+#include "app/motion_report.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
@@ -123,7 +124,7 @@ json summary_of(const MotionScenario& scenario, const MotionResult& r, const std
 std::string report_of(const MotionScenario& scenario, const std::vector<MotionSample>& samples, const json& summary) {
   ReportPage page(scenario.title, scenario.source);
   page.heading("Summary");
-  if (!summary["finished"].get<bool>()) page.callout(summary["message"].get<std::string>(), Tone::bad);
+  add_balance(summary, page);
   Table table{"",
               {{"Contact", ColumnKind::code},
                {"Peak force [N]", ColumnKind::number},
@@ -140,22 +141,14 @@ std::string report_of(const MotionScenario& scenario, const std::vector<MotionSa
   page.heading("Time histories");
   PlotSpecification forces{"Contact forces", {"time", "s"}, {"force", "N"}};
   for (std::size_t k = 0; k < scenario.motion.contacts.size(); ++k) {
-    Curve curve{scenario.motion.contacts[k].name, {}, {}, CurveStyle::line, static_cast<int>(k)};
-    for (const MotionSample& s : samples) {
-      curve.x.push_back(s.time);
-      curve.y.push_back(s.contacts[k].normal_force);
-    }
-    forces.curves.push_back(curve);
+    forces.curves.push_back(time_curve(scenario.motion.contacts[k].name, static_cast<int>(k), samples,
+                                       [k](const MotionSample& s) { return s.contacts[k].normal_force; }));
   }
   page.line_plot(forces);
   PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
   for (std::size_t k = 0; k < scenario.motion.bodies.size(); ++k) {
-    Curve curve{scenario.motion.bodies[k].name, {}, {}, CurveStyle::line, static_cast<int>(k)};
-    for (const MotionSample& s : samples) {
-      curve.x.push_back(s.time);
-      curve.y.push_back(s.bodies[k].velocity.norm());
-    }
-    speeds.curves.push_back(curve);
+    speeds.curves.push_back(time_curve(scenario.motion.bodies[k].name, static_cast<int>(k), samples,
+                                       [k](const MotionSample& s) { return s.bodies[k].velocity.norm(); }));
   }
   page.line_plot(speeds);
   page.heading("The motion");

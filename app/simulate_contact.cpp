@@ -2,6 +2,7 @@
 #include "app/experiment_input.hpp"
 #include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
+#include "app/motion_report.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
 #include "app/report_page.hpp"
@@ -126,42 +127,11 @@ json summary_of(const ContactScenario& scenario, const ModelRun& run) {
   return summary;
 }
 
-Curve curve_of(const ModelRun& run, int colour, const std::function<double(const MotionSample&)>& value) {
-  Curve curve{run.model->name, {}, {}, CurveStyle::line, colour};
-  for (const MotionSample& s : run.samples) {
-    curve.x.push_back(s.time);
-    curve.y.push_back(value(s));
-  }
-  return curve;
-}
-
 std::string report_of(const ContactScenario& scenario, const std::vector<ModelRun>& runs,
                       const json& summary) {
   ReportPage page(scenario.title, scenario.source);
   page.heading("Summary");
-  Table table{"",
-              {{"Model", ColumnKind::code},
-               {"Peak force [N]", ColumnKind::number},
-               {"Impulse [N s]", ColumnKind::number},
-               {"Velocity after [m/s]", ColumnKind::number},
-               {"Spin after [rad/s]", ColumnKind::number},
-               {"Touches", ColumnKind::number},
-               {"Integrator's energy [J]", ColumnKind::number},
-               {"Steps", ColumnKind::number},
-               {"Real-time factor", ColumnKind::number}},
-              {}};
-  for (const json& m : summary["models"]) {
-    table.rows.push_back(
-        {m["model"].get<std::string>(), format_significant(m["peak_force_N"].get<double>()),
-         format_significant(m["impulse_Ns"][1].get<double>()),
-         format_significant(m["velocity_after_m_s"][1].get<double>()),
-         format_significant(m["spin_after_rad_s"][2].get<double>()), std::to_string(m["touches"].get<int>()),
-         format_significant(m["energy_J"]["integrator"].get<double>(), 2),
-         std::to_string(m["steps"].get<long>()), format_significant(m["real_time_factor"].get<double>())});
-    if (!m["finished"].get<bool>())
-      page.callout(m["model"].get<std::string>() + ": " + m["message"].get<std::string>(), Tone::bad);
-  }
-  page.table(table);
+  add_models(summary["models"], page);
   page.heading("Time histories");
   struct Plot {
     const char* title;
@@ -187,7 +157,7 @@ std::string report_of(const ContactScenario& scenario, const std::vector<ModelRu
   for (const Plot& plot : plots) {
     PlotSpecification specification{plot.title, {"time", "s"}, plot.y};
     int colour = 0;
-    for (const ModelRun& run : runs) specification.curves.push_back(curve_of(run, colour++, plot.value));
+    for (const ModelRun& run : runs) specification.curves.push_back(time_curve(run.model->name, colour++, run.samples, plot.value));
     page.line_plot(specification);
   }
   page.heading("The contact");
