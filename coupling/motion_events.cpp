@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace snare::coupling {
 
@@ -135,6 +136,20 @@ std::optional<double> MotionRun::first_touch(double from, const numerics::Ida& i
   return first;
 }
 
+// Impulses by which closed points may pull when another one touches: what would part at a speed far below the tolerance, or would be pressed
+// together again before a wave has crossed an element, would only come back at once and set off its neighbours.
+VectorXd MotionRun::bearable_pulls(const std::vector<ContactHandle>& constraints, const VectorXd& flexibility) const {
+  const double parting = std::max(1e-9, 0.1 * options_.velocity_tolerance);  // [m/s]
+  VectorXd pulls = parting * flexibility.cwiseInverse();
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const wire::RodInMotion& rod = rods_[static_cast<std::size_t>(motion_.contacts[constraints[i].contact].wire)].constants();
+    const double crossing = rod.length / rod.elements * std::sqrt(rod.mass_per_length / rod.properties.axial_stiffness);
+    double& pull = pulls[static_cast<Eigen::Index>(i)];
+    pull = std::max(pull, 0.5 * crossing * y_[constraints[i].part->force_unknown()]);
+  }
+  return pulls;
+}
+
 // The wire's local masses take on the body's normal velocity at once (no restitution): the impulses that leave dg/dt >= 0 at all
 // closed points and pull nowhere. What is lost vanishes with the element's mass.                    theory.md (M.10)
 // A touch that cannot be taken is returned in words.
@@ -168,9 +183,7 @@ std::optional<std::string> MotionRun::close_touching() {
       return fmt::format("{} touches the wire where its mount holds it, and neither gives way, at {:.9g} s",
                          motion_.contacts[all[i].contact].name, time_);
     }
-    // What would part at a speed far below the tolerance stays closed: it would come back at once, and set off its neighbours.
-    const double parting = std::max(1e-9, 0.1 * options_.velocity_tolerance);  // [m/s]
-    const VectorXd impulse = complementary_impulses(a, apart, parting * a.diagonal().cwiseInverse());
+    const VectorXd impulse = complementary_impulses(a, apart, bearable_pulls(all, a.diagonal()));
     const VectorXd left = a * impulse + apart;
     const double before = stored({time_, y_, rate_}, nullptr).kinetic;
     const double worked = integrals_[integral::work];
@@ -227,8 +240,8 @@ bool MotionRun::leave_broken_modes(bool at_event) {
   return changed;
 }
 
-// Beyond the end of a rounded edge a minimum of the gap may be lost at once, and no step, however small, finds it (G.9). Its point rests on
-// the wire from the last state on. False where there is none, or that was tried often without getting on.
+// A minimum of the gap may be lost within a step, beyond the end of a rounded edge even at once, and no step, however small, finds it (G.9).
+// Its point rests on the wire from the last state on. False where there is none, or that was tried often without getting on.
 bool MotionRun::rest_lost_minima() {
   constexpr double same_time = 1e-9;  // [s]
   constexpr int most_trials = 10;
@@ -237,8 +250,7 @@ bool MotionRun::rest_lost_minima() {
   if (++trials_ > most_trials) return false;
   bool changed = false;
   for (const ContactHandle& p : points()) {
-    const bool edges = motion_.contacts[p.contact].shape->smallest_radius() == 0.0;
-    if (!edges || !p.part->closed()) continue;
+    if (!p.part->closed()) continue;
     p.part->rest_on_wire();
     changed = true;
   }

@@ -65,6 +65,7 @@ class MotionRun {
   void open(const ContactHandle& point);
   void make_rates();
   [[nodiscard]] std::optional<double> first_touch(double from, const numerics::Ida& ida);
+  [[nodiscard]] Eigen::VectorXd bearable_pulls(const std::vector<ContactHandle>& constraints, const Eigen::VectorXd& flexibility) const;
   [[nodiscard]] std::optional<std::string> close_touching();
   void switch_friction(const ContactHandle& point);
   [[nodiscard]] bool leave_broken_modes(bool at_event);
