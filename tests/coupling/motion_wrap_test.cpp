@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Drags, WrappedBall,
                          testing::Values(Drag{"AtTheMiddle", 0.1, 0.01, 1.0, 0.08, 60, 200.0},
                                          Drag{"BesideTheMiddle", 0.17, 0.014, 2.0, 0.03, 60, 200.0},
                                          Drag{"AtTheClamp", 0.19, 0.014, 0.5, 0.05, 40, 1.0}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& drag) { return std::string(drag.param.name); });
 
 }  // namespace
 }  // namespace snare::coupling
