@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
+#include "app/motion_pictures.hpp"
 #include "app/motion_report.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"

@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/motion_pictures.hpp"
 #include "app/motion_json.hpp"
+#include "app/motion_pictures.hpp"
 #include "app/motion_report.hpp"
 #include "app/motion_runs.hpp"
 #include "app/paraview.hpp"
@@ -36,7 +36,6 @@ struct ModelRun {
   const WireModel* model = nullptr;
   std::vector<MotionSample> samples;
   MotionResult result;
-  double side = 1.0;  // of the push along y
 };
 
 /// Angle about z [rad] of a body that turns mainly about it.
@@ -107,8 +106,9 @@ json summary_of(const ContactScenario& scenario, const ModelRun& run) {
     const multibody::RigidBodyState& b = s.bodies.front();
     return (b.position + b.orientation * scenario.probe).y();
   };
-  const double touch = place(run.samples.front()) - run.side * scenario.body.start.position.y();
-  for (const MotionSample& s : run.samples) deepest = std::max(deepest, run.side * (place(s) - touch));
+  const double side = scenario.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+  const double touch = place(run.samples.front()) - side * scenario.body.start.position.y();
+  for (const MotionSample& s : run.samples) deepest = std::max(deepest, side * (place(s) - touch));
   json summary{{"model", run.model->name},
                {"kind", run.model->kind},
                {"peak_force_N", r.peak_force.front()},
@@ -179,10 +179,8 @@ ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptio
       run_motions(tasks, {options.out / "checkpoint.bin", scenario.input, scenario.output.checkpoint_wall_time}, console);
   const ExitStatus status = status_of(records);
   std::vector<ModelRun> runs;
-  for (MotionRecord& record : records) {
-    const double side = scenario.push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
-    runs.push_back({&scenario.models[runs.size()], std::move(record.samples), std::move(record.result), side});
-  }
+  for (MotionRecord& record : records)
+    runs.push_back({&scenario.models[runs.size()], std::move(record.samples), std::move(record.result)});
   json summary{{"schema", "snare-summary/1"}, {"kind", "contact"},
                {"title", scenario.title},     {"source", scenario.source},
                {"version", version()},        {"duration_s", scenario.options.duration},

@@ -13,7 +13,6 @@ namespace snare::coupling {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using numerics::DaePoint;
 
 std::vector<ContactHandle> MotionRun::points() {
   std::vector<ContactHandle> list;

@@ -11,7 +11,6 @@
 
 namespace snare::coupling {
 
-using Eigen::Vector3d;
 using Eigen::VectorXd;
 using numerics::DaePoint;
 

@@ -5,14 +5,13 @@
 #include "coupling/motion_shape_revolved.hpp"
 #include "coupling/push_test_reader.hpp"
 #include "numerics/archive.hpp"
-#include "numerics/files.hpp"
 #include "numerics/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -203,9 +202,13 @@ std::shared_ptr<const ContactShape> read_shape(const TomlTable& table, const std
       const auto unit = table.choice("unit", units);
       if (name.empty() || !unit) return nullptr;
       return made(table, "file", [&] {
-        const TriangleMesh mesh = read_triangle_mesh(folder / name, *unit);
-        const std::string text = numerics::read_text(folder / name, std::numeric_limits<std::size_t>::max());
-        input += fmt::format("{:x};", numerics::fingerprint(text));
+        TriangleMesh mesh = read_triangle_mesh(folder / name, *unit);
+        numerics::ByteWriter bytes;
+        bytes(mesh.points);
+        for (std::array<int, 3>& triangle : mesh.triangles) {
+          for (int& corner : triangle) bytes(corner);
+        }
+        input += fmt::format("{:x};", numerics::fingerprint(bytes.bytes()));
         return std::make_shared<MeshShape>(mesh);
       });
     }

@@ -2,9 +2,8 @@
 
 #include <Eigen/Core>
 
-#include <vector>
-
 #include <memory>
+#include <vector>
 
 namespace snare::coupling {
 

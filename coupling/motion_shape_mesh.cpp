@@ -31,7 +31,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-// Which triangle is nearest is asked in plain double precision: four times as fast, and a triangle that is no farther than another to
+// Which triangle is nearest is asked in plain double precision: three times as fast, and a triangle that is no farther than another to
 // round-off is as good.
 using FastKernel = CGAL::Simple_cartesian<double>;
 using FastMesh = CGAL::Surface_mesh<FastKernel::Point_3>;

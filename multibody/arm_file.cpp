@@ -1,6 +1,5 @@
 #include "multibody/arm_file.hpp"
 
-#include "numerics/files.hpp"
 #include "numerics/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +46,7 @@ std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable
   if (name.empty()) return std::nullopt;
   try {
     const RobotDescription robot = read_urdf(folder / name);
-    input += numerics::read_text(folder / name);
+    input += robot.text;
     return robot;
   } catch (const InputError& error) {
     for (const numerics::InputProblem& problem : error.problems()) document.add(problem);
@@ -198,7 +197,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const std::string urdf = root.text("urdf");
   if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
   const std::optional<RobotDescription> robot = read_urdf(folder / urdf);
-  description.input += numerics::read_text(folder / urdf) + document.canonical();
+  description.input += robot->text + document.canonical();
   const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
   if (whole) {
     for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;

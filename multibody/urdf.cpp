@@ -110,6 +110,7 @@ RobotDescription parse_urdf(const std::string& file, const std::string& text) {
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!model) throw InputError({file, 0, "", "", "is refused by urdfdom: " + listener.heard()});
   RobotDescription robot;
+  robot.text = text;
   robot.name = model->getName();
   robot.root = model->getRoot()->name;
   append(*model, *model->getRoot(), robot);

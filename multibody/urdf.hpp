@@ -32,6 +32,7 @@ struct RobotJoint {
 
 /// A tree of links as told by a URDF file.
 struct RobotDescription {
+  std::string text;  ///< of the URDF
   std::string name, root;
   std::vector<RobotLink> links;    ///< parents before children, the root first
   std::vector<RobotJoint> joints;  ///< joint i carries link i + 1

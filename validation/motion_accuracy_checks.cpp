@@ -69,11 +69,7 @@ double value_of(const MotionResult& result, double value) {
   return result.report.usable() ? value : std::nan("");
 }
 
-}  // namespace
-
-namespace {
-
-const std::string conserved = "conservation";
+constexpr const char* conserved = "conservation";
 
 /// At tolerances that resolve the waves.
 Row resolved_impact_row(const std::string& what, double damping) {

@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
         Killed{"Bodies", "grapple_shaft.toml",
                {"duration_s=0.13", "wires[lower].elements=12", "wires[right].elements=12", "wires[left].elements=12",
                 "output.checkpoint_interval_s=0.01", "output.checkpoint_wall_time_s=0"}},
-        // Beyond the first touch; the joints pass their jumps.
+        // Beyond the first touch.
         Killed{"Arm", "jemrms_capture.toml",
                {"duration_s=0.3", "contact.solver.elements=12", "contact.output.checkpoint_interval_s=0.03",
                 "contact.output.checkpoint_wall_time_s=0"}}),
