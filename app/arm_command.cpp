@@ -1,8 +1,8 @@
 #include "app/arm_command.hpp"
 
 #include "app/experiment_input.hpp"
-#include "multibody/arm_file.hpp"
-#include "numerics/toml_reader.hpp"
+#include "multibody/arm/arm_file.hpp"
+#include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,7 +53,7 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
   if (!sound || found != count) {
     std::string names;
     for (const multibody::ArmPose& known : arm.poses) names += (names.empty() ? "" : ", ") + known.name;
-    throw numerics::InputError({"", 0, "--pose", pose,
+    throw base::InputError({"", 0, "--pose", pose,
                                 fmt::format("must be {} angles in degrees separated by commas{}", count,
                                             names.empty() ? "" : ", or one of: " + names)});
   }
@@ -126,7 +126,7 @@ std::string listed(const nlohmann::json& values) {
 
 ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose,
                         const CommonOptions& options, Console&) {
-  const std::vector<numerics::Override> overrides = overrides_of(options);
+  const std::vector<base::Override> overrides = overrides_of(options);
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const nlohmann::json result = describe(arm, angles_of(pose, arm));
   if (options.json) {

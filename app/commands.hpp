@@ -8,7 +8,7 @@
 namespace snare::app {
 
 /// The verbs. Each reads its input, computes, writes its files into options.out, and returns the exit status.
-/// Wrong input is thrown as numerics::InputError before anything is written.
+/// Wrong input is thrown as base::InputError before anything is written.
 
 /// Force-displacement curves of the declared model: curves.csv.
 [[nodiscard]] ExitStatus run_push(const std::filesystem::path& experiment, const CommonOptions& options,

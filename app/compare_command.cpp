@@ -1,10 +1,10 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/compare_report.hpp"
-#include "identification/experiment.hpp"
-#include "identification/prediction.hpp"
-#include "numerics/files.hpp"
-#include "numerics/toml_tree.hpp"
+#include "app/report/compare_report.hpp"
+#include "identification/fitting/experiment.hpp"
+#include "identification/fitting/prediction.hpp"
+#include "base/files.hpp"
+#include "base/toml_tree.hpp"
 #include "reduction/compare.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 using reduction::CaseComparison;
 using reduction::StaticCase;
 
-using Overrides = std::vector<numerics::Override>;
+using Overrides = std::vector<base::Override>;
 
 /// What is compared, from one kind of file.
 struct Comparison {
@@ -89,14 +89,14 @@ struct Kind {
 constexpr std::array<Kind, 2> kinds{{{"snare-experiment/1", from_experiment}, {"snare-wire/1", from_wire}}};
 
 Comparison read(const std::filesystem::path& file, const Overrides& overrides) {
-  const numerics::TomlNode root = numerics::parse_toml(file.string(), numerics::read_text(file));
-  const numerics::TomlNode* schema = root.find("schema");
+  const base::TomlNode root = base::parse_toml(file.string(), base::read_text(file));
+  const base::TomlNode* schema = root.find("schema");
   std::string allowed;
   for (const Kind& kind : kinds) {
     if (schema != nullptr && schema->text == kind.schema) return kind.read(file, overrides);
     allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " or ", kind.schema);
   }
-  throw numerics::InputError(numerics::InputProblem{
+  throw base::InputError(base::InputProblem{
       file.string(), schema != nullptr ? schema->line : 0, "schema", schema != nullptr ? schema->written : "",
       (schema != nullptr ? "must be " : "missing, must be ") + allowed});
 }
@@ -155,8 +155,8 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
                       {"kind", "static"},
                       {"cases", nlohmann::json::array()}};
   for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
-  numerics::write_text(options.out / "compare.json", json.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
+  base::write_text(options.out / "compare.json", json.dump(1) + "\n");
+  base::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
   if (options.json) {
     std::cout << json.dump(1) << '\n';
     return status;

@@ -1,6 +1,6 @@
 #include "app/curves_csv.hpp"
 
-#include "numerics/csv.hpp"
+#include "base/csv.hpp"
 
 namespace snare::app {
 
@@ -13,18 +13,18 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
       "transverse_force_N", "wrapped_mm",   "in_contact",       "slipping",       "unstable_modes",   "out_of_plane_modes", "axial_force_N",
       "energy_J",        "dissipated_J",    "imbalance_N"};
   for (const CurveColumn& column : more) columns.push_back(column.name);
-  numerics::CsvWriter csv(file, columns);
+  base::CsvWriter csv(file, columns);
   for (std::size_t k = 0; k < series.size(); ++k) {
     const identification::Prediction& prediction = predictions[k];
     const std::vector<double>& displacement = identification::measured_displacement(series[k]);
-    const auto add_more = [&](std::vector<numerics::CsvCell>& row, std::size_t reading, bool asked) {
+    const auto add_more = [&](std::vector<base::CsvCell>& row, std::size_t reading, bool asked) {
       for (const CurveColumn& column : more) {
         const bool has = asked && reading < column.values[k].size();
-        row.push_back(has ? numerics::CsvCell(column.values[k][reading]) : numerics::CsvCell());
+        row.push_back(has ? base::CsvCell(column.values[k][reading]) : base::CsvCell());
       }
     };
     for (std::size_t i = 0; i < prediction.before_touch; ++i) {
-      std::vector<numerics::CsvCell> row(columns.size() - more.size());
+      std::vector<base::CsvCell> row(columns.size() - more.size());
       row[0] = series[k].name;
       row[1] = displacement[i] / mm;
       row[2] = 0.0;
@@ -39,7 +39,7 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
     for (std::size_t i = 0; i < prediction.curve.curve.points.size(); ++i) {
       const coupling::PushPoint& p = prediction.curve.curve.points[i];
       const bool asked = reading < displacement.size() && p.travel == displacement[reading] - offset;
-      std::vector<numerics::CsvCell> row{std::string_view(series[k].name),
+      std::vector<base::CsvCell> row{std::string_view(series[k].name),
                                          asked ? displacement[reading] / mm : (p.travel + offset) / mm,
                                          p.force,
                                          p.tension_left,

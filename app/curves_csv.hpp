@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/prediction.hpp"
+#include "identification/fitting/prediction.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,13 +1,13 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/distil_report.hpp"
+#include "app/report/distil_report.hpp"
 #include "app/law_json.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 #include "reduction/law_export.hpp"
+#include "base/parallel.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 #include <nlohmann/json.hpp>
 
 #include <iostream>
@@ -18,7 +18,7 @@ namespace {
 
 /// Every node of every table: places and forces, in SI-based units and in dimensionless groups.
 void write_table(const std::filesystem::path& file, const reduction::Distillation& distillation) {
-  numerics::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m",
+  base::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m",
                                  "unloading_N", "d_over_L", "s_over_L", "slack_over_L", "F_L2_over_EI",
                                  "EA_L2_over_EI", "R_over_L", "friction"});
   for (std::size_t c = 0; c < distillation.cases.size(); ++c) {
@@ -30,7 +30,7 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
       for (const double s : t.axes()[1]) {
         for (const double d : t.axes()[0]) {
           const double* numbers = &t.nodes()[reduction::ForceTable::numbers_a_node * node];
-          numerics::CsvCell back;
+          base::CsvCell back;
           if (one.table.unloading)
             back =
                 t.force_scale() * one.table.unloading->nodes()[reduction::ForceTable::numbers_a_node * node];
@@ -48,19 +48,19 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
 void write_exports(const std::filesystem::path& out, const reduction::WireFile& file,
                    const reduction::DistilledCase& one) {
   const std::string title = file.title.empty() ? file.file.filename().string() : file.title;
-  numerics::write_text(out / "law.hpp", reduction::cpp_header(one, title));
-  numerics::write_text(out / "law.c", reduction::c_source(one, title));
-  numerics::write_text(out / "law.py", reduction::python_module(one, title));
-  numerics::write_text(out / "law_mujoco.xml", reduction::mujoco_snippet(one, title));
-  numerics::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
+  base::write_text(out / "law.hpp", reduction::cpp_header(one, title));
+  base::write_text(out / "law.c", reduction::c_source(one, title));
+  base::write_text(out / "law.py", reduction::python_module(one, title));
+  base::write_text(out / "law_mujoco.xml", reduction::mujoco_snippet(one, title));
+  base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
 }
 
 }  // namespace
 
 ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  const std::vector<numerics::Override> overrides = overrides_of(options);
+  const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  if (options.threads > 0) base::set_thread_count(options.threads);
 
   const std::filesystem::path journal = options.out / "distil.journal";
   const reduction::Distillation result =
@@ -75,12 +75,12 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
     return ExitStatus::solver_stopped;
   }
   const nlohmann::json json = law_json(wire, result);
-  numerics::write_text(options.out / "law.json", json.dump(1) + "\n");
+  base::write_text(options.out / "law.json", json.dump(1) + "\n");
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
     write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c]);
   }
-  numerics::write_text(options.out / "report.html", distil_report_html(wire, result));
+  base::write_text(options.out / "report.html", distil_report_html(wire, result));
   std::filesystem::remove(journal);
   if (options.json) {
     std::cout << json.dump(1) << '\n';

@@ -34,7 +34,7 @@ json error_json(const LawError& e) {
 
 json law_entry(const FittedLaw& law) {
   json parameters = json::object();
-  const std::vector<LawParameter> names = law.form->parameters();
+  const std::vector<coupling::LawParameter> names = law.form->parameters();
   json covariance = json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);

@@ -1,6 +1,6 @@
 #include "app/arm_command.hpp"
 #include "app/commands.hpp"
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -73,7 +73,7 @@ ExitStatus guarded(const CommonOptions& options, const Run& run) {
   Console console(options.quiet);
   try {
     return run(console);
-  } catch (const snare::numerics::InputError& error) {
+  } catch (const snare::base::InputError& error) {
     console.complain(error.what());
     return ExitStatus::wrong_input;
   } catch (const std::bad_alloc&) {

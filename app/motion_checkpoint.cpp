@@ -1,8 +1,8 @@
 #include "app/motion_checkpoint.hpp"
 
 #include "app/commands.hpp"
-#include "numerics/archive.hpp"
-#include "numerics/files.hpp"
+#include "base/archive.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ void fields(Archive& a, IdaStatistics& s) {
 }
 template <class Archive>
 void fields(Archive& a, IdaReport& r) {
-  a(r.termination)(r.iterations)(r.residual_norm)(r.message)(r.time)(r.step)(r.culprits);
+  a(r.termination)(r.iterations)(r.residual_norm)(r.message)(r.time)(r.step)(r.worst_unknowns);
 }
 }  // namespace snare::numerics
 
@@ -110,20 +110,20 @@ constexpr std::string_view mark = "snare motion checkpoint 2\n";
 
 /// Of the input and of the program that is to go on with it.
 std::uint64_t key_of(const std::string& input) {
-  return numerics::fingerprint(version() + '\n' + input);
+  return base::fingerprint(version() + '\n' + input);
 }
 
 }  // namespace
 
 // The mark, the key, the fingerprint of the content, the content.
 void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input, MotionProgress& progress) {
-  numerics::ByteWriter content;
+  base::ByteWriter content;
   content(progress);
-  numerics::ByteWriter head;
+  base::ByteWriter head;
   std::uint64_t key = key_of(input);
-  std::uint64_t sum = numerics::fingerprint(content.bytes());
+  std::uint64_t sum = base::fingerprint(content.bytes());
   head(key)(sum);
-  numerics::AtomicFile out(file);
+  base::AtomicFile out(file);
   out.write(mark);
   out.write(head.bytes());
   out.write(content.bytes());
@@ -137,20 +137,20 @@ LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file, const
     return LoadedCheckpoint{std::nullopt, fmt::format("{}: {}; begins anew", file.string(), why)};
   };
   try {
-    const std::string text = numerics::read_text(file, std::numeric_limits<std::size_t>::max());
+    const std::string text = base::read_text(file, std::numeric_limits<std::size_t>::max());
     std::string_view rest = text;
     if (rest.substr(0, mark.size()) != mark) return refused("is no checkpoint of this program");
     rest.remove_prefix(mark.size());
     std::uint64_t key = 0;
     std::uint64_t sum = 0;
-    numerics::ByteReader head(rest);
+    base::ByteReader head(rest);
     head(key)(sum);
     rest.remove_prefix(sizeof key + sizeof sum);
     if (key != key_of(input)) return refused("the checkpoint is of other input or of another version");
-    if (sum != numerics::fingerprint(rest)) return refused("the checkpoint is damaged");
+    if (sum != base::fingerprint(rest)) return refused("the checkpoint is damaged");
     LoadedCheckpoint loaded;
     loaded.progress.emplace();
-    numerics::ByteReader content(rest);
+    base::ByteReader content(rest);
     content(*loaded.progress);
     return loaded;
   } catch (const std::exception& error) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/motion_runs.hpp"
-#include "coupling/motion.hpp"
+#include "coupling/dynamics/motion.hpp"
 
 #include <filesystem>
 #include <optional>

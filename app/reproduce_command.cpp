@@ -1,10 +1,10 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
-#include "app/reproduce_report.hpp"
+#include "app/report/reproduce_report.hpp"
 #include "app/trace_json.hpp"
-#include "identification/trace.hpp"
-#include "numerics/files.hpp"
+#include "identification/tracing/trace.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -139,7 +139,7 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
     result.push_back("The range of displacement of the fits is not printed; assumed (" + ranges +
                      "). It changes the errors: see the key law.to_mm.");
   }
-  const coupling::PushTest& test = experiment.series.front().test;
+  const coupling::PushProblem& test = experiment.series.front().test;
   result.push_back(fmt::format("The pusher is a cylinder of {:g} mm radius that pushes {} without friction{}.",
                                1e3 * test.pusher.radius,
                                test.pusher.direction == coupling::PushDirection::outward ? "with the bulge"
@@ -274,7 +274,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
       file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, options);
   for (const Series& series : experiment.series) {
     if (identification::measured_force(series).empty()) {
-      throw numerics::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
+      throw base::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
                                   "must have readings or a law to reproduce"});
     }
   }
@@ -340,7 +340,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   }
   console.end_progress();
 
-  const coupling::PushTest& test = experiment.series.front().test;
+  const coupling::PushProblem& test = experiment.series.front().test;
   json result{{"schema", "snare-reproduce/1"},
               {"title", experiment.title},
               {"source", experiment.source},
@@ -376,8 +376,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     columns[2].values.push_back(models.back().predictions[k].force);
   }
   write_curves(options.out / "curves.csv", experiment.series, models.front().predictions, columns);
-  numerics::write_text(options.out / "reproduce.json", result.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", reproduce_report_html(result));
+  base::write_text(options.out / "reproduce.json", result.dump(1) + "\n");
+  base::write_text(options.out / "report.html", reproduce_report_html(result));
   if (options.json) {
     std::cout << result.dump(1) << '\n';
   } else {

@@ -1,9 +1,9 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/report_page.hpp"
-#include "identification/ring_down_file.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "app/report/report_page.hpp"
+#include "identification/ring_down/ring_down_file.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -145,8 +145,8 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);
-  numerics::write_text(options.out / "ringdown.json", result.dump(1) + "\n");
-  numerics::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});
+  base::write_text(options.out / "ringdown.json", result.dump(1) + "\n");
+  base::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});
   for (std::size_t s = 0; s < fits.size(); ++s) {
     const identification::RingDown& data = file.series[s].data;
     for (Eigen::Index i = 0; i < data.time.size(); ++i) {
@@ -155,7 +155,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
     }
   }
   csv.commit();
-  numerics::write_text(options.out / "report.html", report_of(file, fits, split));
+  base::write_text(options.out / "report.html", report_of(file, fits, split));
   if (options.json) {
     std::cout << result.dump(1) << '\n';
     return status;

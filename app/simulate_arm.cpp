@@ -1,10 +1,10 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/report_page.hpp"
+#include "app/report/report_page.hpp"
 #include "app/simulate_kinds.hpp"
-#include "multibody/arm_scenario_file.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "scenario/arm_scenario_file.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 using multibody::ArmHistory;
 using multibody::ArmSample;
-using multibody::ArmScenarioFile;
+using scenario::ArmScenarioFile;
 using nlohmann::json;
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -34,9 +34,9 @@ void write_history(const std::filesystem::path& file, const ArmScenarioFile& ask
   for (const char* what : {"energy_J", "work_drives_J", "work_loads_J", "lost_J", "momentum_x_Ns",
                            "momentum_y_Ns", "momentum_z_Ns"})
     columns.emplace_back(what);
-  numerics::CsvWriter csv(file, columns);
+  base::CsvWriter csv(file, columns);
   for (const ArmSample& s : history.samples) {
-    std::vector<numerics::CsvCell> row{s.time};
+    std::vector<base::CsvCell> row{s.time};
     for (Eigen::Index j = 0; j < s.deflection.size(); ++j) {
       for (const double v :
            {s.state.motor[j] / degree, s.deflection[j] / degree, s.joint_torque[j], s.drive_torque[j]})
@@ -53,7 +53,7 @@ void write_history(const std::filesystem::path& file, const ArmScenarioFile& ask
 json swings_json(const ArmScenarioFile& asked, const ArmHistory& history) {
   json result = json::array();
   if (asked.joint < 0) return result;
-  for (const multibody::Swing& s : multibody::swings(history, asked.scenario.arm, asked.joint)) {
+  for (const scenario::Swing& s : scenario::swings(history, asked.scenario.arm, asked.joint)) {
     result.push_back({{"begin_s", s.begin},
                       {"end_s", s.end},
                       {"peak_deg", s.peak / degree},
@@ -115,7 +115,7 @@ std::string report_of(const ArmScenarioFile& asked, const ArmHistory& history, c
 }  // namespace
 
 ExitStatus simulate_arm(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  ArmScenarioFile asked = multibody::read_arm_scenario(file, overrides_of(options));
+  ArmScenarioFile asked = scenario::read_arm_scenario(file, overrides_of(options));
   const double end = asked.scenario.end;
   asked.scenario.progress = [&console, end](double time) {
     console.progress(fmt::format("{:.2f} of {:.2f} s", time, end));
@@ -153,8 +153,8 @@ ExitStatus simulate_arm(const std::filesystem::path& file, const CommonOptions& 
                {"swings", swings_json(asked, history)}};
   summary["real_time_factor"] = wall > 0.0 ? summary["time_s"].get<double>() / wall : 0.0;
   write_history(options.out / "history.csv", asked, history);
-  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", report_of(asked, history, summary));
+  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  base::write_text(options.out / "report.html", report_of(asked, history, summary));
   if (options.json) std::cout << summary.dump(1) << '\n';
   if (!history.report.usable()) {
     console.complain(history.report.message + " (what was reached is kept)");

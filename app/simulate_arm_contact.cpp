@@ -1,15 +1,15 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/motion_json.hpp"
-#include "app/motion_pictures.hpp"
-#include "app/motion_report.hpp"
+#include "app/report/motion_pictures.hpp"
+#include "app/report/motion_report.hpp"
 #include "app/motion_runs.hpp"
-#include "app/paraview.hpp"
-#include "app/report_page.hpp"
+#include "app/report/paraview.hpp"
+#include "app/report/report_page.hpp"
 #include "app/simulate_kinds.hpp"
-#include "coupling/arm_contact_scenario.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "scenario/arm_contact_scenario.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,7 +22,7 @@ namespace snare::app {
 
 namespace {
 
-using coupling::ArmContactScenario;
+using scenario::ArmContactScenario;
 using coupling::MotionResult;
 using coupling::MotionSample;
 using Eigen::Vector3d;
@@ -63,13 +63,13 @@ void write_history(const std::filesystem::path& file, const std::vector<ModelRun
   for (const char* what :
        {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"})
     columns.emplace_back(what);
-  numerics::CsvWriter csv(file, columns);
+  base::CsvWriter csv(file, columns);
   for (const ModelRun& run : runs) {
     for (const MotionSample& s : run.samples) {
       const coupling::ContactSample& c = s.contacts.front();
       const multibody::RigidBodyState& b = s.bodies.front();
       const Vector3d carried = carried_force(run, s);
-      std::vector<numerics::CsvCell> row{std::string_view(run.name), s.time, c.normal_force, -1e3 * c.gap,
+      std::vector<base::CsvCell> row{std::string_view(run.name), s.time, c.normal_force, -1e3 * c.gap,
                                          1e3 * c.arc};
       for (const double x : {b.position.x(), b.position.y(), b.position.z()}) row.emplace_back(1e3 * x);
       for (const Vector3d* v : {&b.velocity, &b.spin, &carried}) {
@@ -164,10 +164,10 @@ std::string report_of(const ArmContactScenario& scenario, const std::vector<Mode
 
 ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonOptions& options,
                                 Console& console) {
-  const ArmContactScenario scenario = coupling::read_arm_contact_scenario(file, overrides_of(options));
+  const ArmContactScenario scenario = scenario::read_arm_contact_scenario(file, overrides_of(options));
   std::vector<MotionTask> tasks;
-  for (const coupling::WireModel& model : scenario.contact.models)
-    tasks.push_back({model.name, coupling::motion_of(scenario, model), coupling::options_of(scenario.contact, model)});
+  for (const scenario::WireModel& model : scenario.contact.models)
+    tasks.push_back({model.name, scenario::motion_of(scenario, model), scenario::options_of(scenario.contact, model)});
   std::vector<MotionRecord> records = run_motions(
       tasks, {options.out / "checkpoint.bin", scenario.input, scenario.contact.output.checkpoint_wall_time}, console);
   const ExitStatus status = status_of(records);
@@ -182,8 +182,8 @@ ExitStatus simulate_arm_contact(const std::filesystem::path& file, const CommonO
                {"models", json::array()}};
   for (const ModelRun& run : runs) summary["models"].push_back(summary_of(run));
   write_history(options.out / "history.csv", runs);
-  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
+  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  base::write_text(options.out / "report.html", report_of(scenario, runs, summary));
   if (scenario.contact.output.paraview) {
     for (const ModelRun& run : runs) write_paraview(options.out, run.name, paraview_frames(run.motion, run.samples));
   }

@@ -1,15 +1,15 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/motion_json.hpp"
-#include "app/motion_pictures.hpp"
-#include "app/motion_report.hpp"
+#include "app/report/motion_pictures.hpp"
+#include "app/report/motion_report.hpp"
 #include "app/motion_runs.hpp"
-#include "app/paraview.hpp"
-#include "app/report_page.hpp"
+#include "app/report/paraview.hpp"
+#include "app/report/report_page.hpp"
 #include "app/simulate_kinds.hpp"
-#include "coupling/motion_scenario.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "scenario/bodies_scenario.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ using coupling::ContactSample;
 using coupling::MotionEvent;
 using coupling::MotionResult;
 using coupling::MotionSample;
-using coupling::MotionScenario;
+using scenario::MotionScenario;
 using Eigen::Vector3d;
 using nlohmann::json;
 
@@ -39,9 +39,9 @@ void write_history(const std::filesystem::path& file, const MotionScenario& scen
     for (const char* of : {"points", "gap_mm", "arc_mm", "normal_N", "fx_N", "fy_N", "fz_N"}) columns.push_back(fmt::format("{} {}", c.name, of));
   }
   for (const char* of : {"kinetic_J", "strain_J", "potential_J", "dissipated_J", "impacts_J", "work_J", "integrator_J"}) columns.emplace_back(of);
-  numerics::CsvWriter csv(file, columns);
+  base::CsvWriter csv(file, columns);
   for (const MotionSample& s : samples) {
-    std::vector<numerics::CsvCell> row{s.time};
+    std::vector<base::CsvCell> row{s.time};
     for (const multibody::RigidBodyState& b : s.bodies) {
       for (const double x : b.position) row.emplace_back(1e3 * x);
       for (const double x : {b.orientation.w(), b.orientation.x(), b.orientation.y(), b.orientation.z()}) row.emplace_back(x);
@@ -160,7 +160,7 @@ std::string report_of(const MotionScenario& scenario, const std::vector<MotionSa
 }  // namespace
 
 ExitStatus simulate_bodies(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  const MotionScenario scenario = coupling::read_motion_scenario(file, overrides_of(options));
+  const MotionScenario scenario = scenario::read_motion_scenario(file, overrides_of(options));
   const std::vector<MotionRecord> records =
       run_motions({{scenario.title, scenario.motion, scenario.options}},
                   {options.out / "checkpoint.bin", scenario.input, scenario.output.checkpoint_wall_time}, console);
@@ -169,8 +169,8 @@ ExitStatus simulate_bodies(const std::filesystem::path& file, const CommonOption
   const MotionResult& result = records.front().result;
   const json summary = summary_of(scenario, result, samples);
   write_history(options.out / "history.csv", scenario, samples);
-  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", report_of(scenario, samples, summary));
+  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  base::write_text(options.out / "report.html", report_of(scenario, samples, summary));
   if (scenario.output.paraview) write_paraview(options.out, "motion", paraview_frames(scenario.motion, samples));
   if (options.json) {
     std::cout << summary.dump(1) << '\n';

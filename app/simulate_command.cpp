@@ -1,13 +1,13 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/simulate_kinds.hpp"
-#include "coupling/contact_scenario.hpp"
-#include "coupling/motion_scenario.hpp"
-#include "numerics/errors.hpp"
+#include "scenario/contact_scenario.hpp"
+#include "scenario/bodies_scenario.hpp"
+#include "base/errors.hpp"
+#include "base/parallel.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 
 #include <string>
 #include <vector>
@@ -31,19 +31,19 @@ constexpr Kind kinds[] = {{"contact", simulate_contact},
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   // Keys of another file that the scenario names are that file's matter.
-  std::vector<numerics::Override> own;
-  for (const numerics::Override& one : overrides_of(options)) {
+  std::vector<base::Override> own;
+  for (const base::Override& one : overrides_of(options)) {
     if (!one.key.starts_with("contact.")) own.push_back(one);
   }
-  const std::string asked = coupling::scenario_kind(file, own);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const std::string asked = scenario::scenario_kind(file, own);
+  if (options.threads > 0) base::set_thread_count(options.threads);
   std::string known;
-  if (asked == "contact" && coupling::lists_bodies(file, overrides_of(options))) return simulate_bodies(file, options, console);
+  if (asked == "contact" && scenario::lists_bodies(file, overrides_of(options))) return simulate_bodies(file, options, console);
   for (const Kind& kind : kinds) {
     if (asked == kind.name) return kind.run(file, options, console);
     known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
   }
-  throw numerics::InputError(
+  throw base::InputError(
       {file.string(), 0, "kind", fmt::format("\"{}\"", asked), "must be one of " + known});
 }
 

@@ -1,15 +1,15 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/motion_json.hpp"
-#include "app/motion_pictures.hpp"
-#include "app/motion_report.hpp"
+#include "app/report/motion_pictures.hpp"
+#include "app/report/motion_report.hpp"
 #include "app/motion_runs.hpp"
-#include "app/paraview.hpp"
-#include "app/report_page.hpp"
+#include "app/report/paraview.hpp"
+#include "app/report/report_page.hpp"
 #include "app/simulate_kinds.hpp"
-#include "coupling/contact_scenario.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/files.hpp"
+#include "scenario/contact_scenario.hpp"
+#include "base/csv.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,10 +24,10 @@ namespace snare::app {
 
 namespace {
 
-using coupling::ContactScenario;
+using scenario::ContactScenario;
 using coupling::MotionResult;
 using coupling::MotionSample;
-using coupling::WireModel;
+using scenario::WireModel;
 using Eigen::Vector3d;
 using nlohmann::json;
 
@@ -45,7 +45,7 @@ double angle(const multibody::RigidBodyState& s) {
 }
 
 void write_history(const std::filesystem::path& file, const std::vector<ModelRun>& runs) {
-  numerics::CsvWriter csv(
+  base::CsvWriter csv(
       file, {"model",           "time_s",         "force_N",        "penetration_mm",  "contact_arc_mm",
              "body_x_mm",       "body_y_mm",      "body_angle_deg", "body_vx_m_s",     "body_vy_m_s",
              "body_spin_rad_s", "mount_left_x_N", "mount_left_y_N", "mount_right_x_N", "mount_right_y_N",
@@ -171,10 +171,10 @@ std::string report_of(const ContactScenario& scenario, const std::vector<ModelRu
 
 ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptions& options,
                             Console& console) {
-  const ContactScenario scenario = coupling::read_contact_scenario(file, overrides_of(options));
+  const ContactScenario scenario = scenario::read_contact_scenario(file, overrides_of(options));
   std::vector<MotionTask> tasks;
   for (const WireModel& model : scenario.models)
-    tasks.push_back({model.name, coupling::motion_of(scenario, model), coupling::options_of(scenario, model)});
+    tasks.push_back({model.name, scenario::motion_of(scenario, model), scenario::options_of(scenario, model)});
   std::vector<MotionRecord> records =
       run_motions(tasks, {options.out / "checkpoint.bin", scenario.input, scenario.output.checkpoint_wall_time}, console);
   const ExitStatus status = status_of(records);
@@ -187,8 +187,8 @@ ExitStatus simulate_contact(const std::filesystem::path& file, const CommonOptio
                {"models", json::array()}};
   for (const ModelRun& run : runs) summary["models"].push_back(summary_of(scenario, run));
   write_history(options.out / "history.csv", runs);
-  numerics::write_text(options.out / "summary.json", summary.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", report_of(scenario, runs, summary));
+  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  base::write_text(options.out / "report.html", report_of(scenario, runs, summary));
   if (scenario.output.paraview) {
     for (std::size_t k = 0; k < runs.size(); ++k)
       write_paraview(options.out, runs[k].model->name, paraview_frames(tasks[k].motion, runs[k].samples));

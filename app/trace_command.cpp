@@ -2,9 +2,9 @@
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
 #include "app/trace_json.hpp"
-#include "app/trace_report.hpp"
-#include "identification/trace.hpp"
-#include "numerics/files.hpp"
+#include "app/report/trace_report.hpp"
+#include "identification/tracing/trace.hpp"
+#include "base/files.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -56,8 +56,8 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
   }
   const nlohmann::json result = trace_json(experiment, trace);
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  numerics::write_text(options.out / "trace.json", result.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", trace_report_html(result));
+  base::write_text(options.out / "trace.json", result.dump(1) + "\n");
+  base::write_text(options.out / "report.html", trace_report_html(result));
   if (options.json) {
     std::cout << result.dump(1) << '\n';
   } else {
@@ -97,7 +97,7 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   result["fit"] = whole["final"];
   result["residual"] = {{"acceptable", trace.base_tests.acceptable()}, {"tests", whole["residual"]["tests"]}};
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  numerics::write_text(options.out / "fit.json", result.dump(1) + "\n");
+  base::write_text(options.out / "fit.json", result.dump(1) + "\n");
   if (options.json) {
     std::cout << result.dump(1) << '\n';
   } else {

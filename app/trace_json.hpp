@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/trace.hpp"
+#include "identification/tracing/trace.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "app/report_page.hpp"
-#include "numerics/files.hpp"
+#include "app/report/report_page.hpp"
+#include "base/files.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
 #include "validation/distil_checks.hpp"
@@ -11,10 +11,10 @@
 #include "validation/motion_checks.hpp"
 #include "validation/suite.hpp"
 #include "validation/trace_checks.hpp"
+#include "base/parallel.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <omp.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -62,7 +62,7 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
 }  // namespace
 
 ExitStatus run_validate(const CommonOptions& options, Console& console) {
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  if (options.threads > 0) base::set_thread_count(options.threads);
   std::vector<validation::Check> checks = validation::static_wire_checks();
   for (validation::Check& check : validation::distil_checks()) checks.push_back(std::move(check));
   for (validation::Check& check : validation::motion_checks()) checks.push_back(std::move(check));
@@ -103,8 +103,8 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   console.end_progress();
   nlohmann::json result{{"schema", "snare-validation/1"}, {"version", version()}, {"rows", nlohmann::json::array()}, {"skipped", skipped}};
   for (const validation::Row& row : rows) result["rows"].push_back(row_json(row));
-  numerics::write_text(options.out / "validation.json", result.dump(1) + "\n");
-  numerics::write_text(options.out / "report.html", page(rows, skipped));
+  base::write_text(options.out / "validation.json", result.dump(1) + "\n");
+  base::write_text(options.out / "report.html", page(rows, skipped));
   if (options.json) std::cout << result.dump(1) << '\n';
   std::string group;
   for (const validation::Row& row : rows) {

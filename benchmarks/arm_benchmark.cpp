@@ -1,7 +1,7 @@
 // Rigid dynamics of the seven-joint arm by us, orocos-KDL and DART in one run, and the elastic arm against the clock.
 
-#include "multibody/arm_file.hpp"
-#include "multibody/arm_scenarios.hpp"
+#include "multibody/arm/arm_file.hpp"
+#include "scenario/arm_scenarios.hpp"
 #include "multibody/dynamics.hpp"
 #include "multibody/dynamics_derivatives.hpp"
 
@@ -204,7 +204,7 @@ void InverseDynamicsDerivativesOwn(benchmark::State& state) {
 /// The seven-joint elastic arm pushed at its tip, and 60 s of its swinging.
 void ElasticArmAgainstTheClock(benchmark::State& state) {
   const multibody::ArmDescription arm = multibody::read_arm(arms() / "ssrms_like.toml");
-  multibody::ArmScenario run = multibody::tip_impulse(arm, arm.poses[1].angles, multibody::Hold::as_described,
+  multibody::ArmScenario run = scenario::tip_impulse(arm, arm.poses[1].angles, scenario::Hold::as_described,
                                                       {0.0, 200.0, 0.0}, 0.5, 60.0);
   run.sample = 0.5;
   run.ida.relative_tolerance = 1e-4;

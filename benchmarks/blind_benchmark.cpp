@@ -4,8 +4,8 @@
 // --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended. It belongs to one
 // build: another one starts with a new file.
 
-#include "identification/trace.hpp"
-#include "numerics/files.hpp"
+#include "identification/tracing/trace.hpp"
+#include "base/files.hpp"
 #include "validation/blind_set.hpp"
 
 #include <CLI/CLI.hpp>
@@ -267,7 +267,7 @@ int main(int argc, char** argv) {
     fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
                c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
-    if (!out.empty()) numerics::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
+    if (!out.empty()) base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }
 
   const nlohmann::json result = summary(cases, outcomes);

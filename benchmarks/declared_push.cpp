@@ -1,7 +1,7 @@
 #include "benchmarks/declared_push.hpp"
 
-#include "coupling/contact_switch.hpp"
-#include "coupling/push_setup.hpp"
+#include "coupling/statics/contact_switch.hpp"
+#include "coupling/statics/push_setup.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ double shape_amplitude(double ratio) {
 
 }  // namespace
 
-coupling::PushTest declared_push() {
-  coupling::PushTest test = validation::declared_wire(87.5 * mm, 0.0);
+coupling::PushProblem declared_push() {
+  coupling::PushProblem test = validation::declared_wire(87.5 * mm, 0.0);
   for (int i = 1; i <= 20; ++i) test.travel.push_back(1.5 * mm * i / 20);
   return test;
 }
@@ -58,7 +58,7 @@ PressedWire pressed_wire(int elements, double travel) {
 }
 
 PressedWire buckled_shape(int elements) {
-  const coupling::PushTest test = declared_push();
+  const coupling::PushProblem test = declared_push();
   const double length = test.wire.length;
   const wire::Controls controls{0.0, 0.5 * length, length};
   wire::PlanarRodProperties properties;
@@ -79,7 +79,7 @@ PressedWire buckled_shape(int elements) {
         wire.point.band.segment<2>(2 * e) +
         mesh.rest_length(e, controls) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }
-  coupling::GuidedContact pusher;
+  coupling::SlidingContact pusher;
   pusher.node = mesh.contact_vertex();
   pusher.motion = Eigen::Vector2d::UnitY();
   pusher.centre = wire.point.band.segment<2>(2 * pusher.node);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/push_system.hpp"
-#include "coupling/push_test.hpp"
+#include "coupling/statics/push_system.hpp"
+#include "coupling/statics/push_problem.hpp"
 #include "numerics/path.hpp"
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace snare::benchmarks {
 
 /// The wire that all timings are made on: solid SUS-304, 1.5 mm, 180 mm between clamps 175 mm apart, a knife edge at
 /// mid-span pushing outward to 1.5 mm in 20 equal steps.
-[[nodiscard]] coupling::PushTest declared_push();
+[[nodiscard]] coupling::PushProblem declared_push();
 
 /// Force on that pusher at 1.5 mm [N]: planar extensible elastica by multiple shooting (snare::validation), which
 /// shares no code with the rod.

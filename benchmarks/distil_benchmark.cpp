@@ -1,6 +1,6 @@
 // What a distilled law costs beside the solve that it replaces, and what the default table costs.
 
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "reduction/distil.hpp"
 
 #include <law.hpp>  // generated: see CMakeLists.txt
@@ -76,7 +76,7 @@ BENCHMARK(ExportedTableForce);
 
 /// The solve that an evaluation replaces: one travel from the straight wire, extrapolated from three meshes.
 void FullWireForce(benchmark::State& state) {
-  coupling::PushTest test = wire_file().cases.front().test;
+  coupling::PushProblem test = wire_file().cases.front().test;
   test.contact_position = 0.065;
   test.travel = {3e-3};
   for (auto _ : state)

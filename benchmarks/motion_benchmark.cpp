@@ -1,8 +1,8 @@
 // A body of 8.9 kg at 0.1 m/s meets the declared wire: real-time factor with 60 elements, where the time goes, error against
 // cost, time a step against the number of elements, ten runs at once on one and two threads.
 
-#include "coupling/motion.hpp"
-#include "coupling/motion_shape_mesh.hpp"
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/contact/mesh_shape.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <benchmark/benchmark.h>

@@ -2,7 +2,7 @@
 // Newton iteration against the number of elements.
 
 #include "benchmarks/declared_push.hpp"
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "numerics/bordered_pattern.hpp"
 #include "numerics/kinsol.hpp"
 #include "wire/equilibrium.hpp"
@@ -45,7 +45,7 @@ void report(benchmark::State& state, const coupling::PushCurve& curve, int meshe
 
 /// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes, extrapolated.
 void OutwardCurveExtrapolated(benchmark::State& state) {
-  const coupling::PushTest test = declared_push();
+  const coupling::PushProblem test = declared_push();
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
   coupling::ExtrapolatedCurve result;
@@ -58,7 +58,7 @@ void OutwardCurveExtrapolated(benchmark::State& state) {
 
 /// The same on one mesh.
 void OutwardCurve(benchmark::State& state) {
-  const coupling::PushTest test = declared_push();
+  const coupling::PushProblem test = declared_push();
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
   coupling::PushCurve curve;

@@ -1,6 +1,6 @@
 // A whole trace: six series of 39 readings, load and unload, every effect of the catalogue, and where its time goes.
 
-#include "identification/trace.hpp"
+#include "identification/tracing/trace.hpp"
 #include "validation/blind_set.hpp"
 
 #include <benchmark/benchmark.h>

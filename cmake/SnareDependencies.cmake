@@ -14,6 +14,6 @@ find_package(nlohmann_json REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(urdfdom REQUIRED)
-# Headers of one source file (coupling/motion_shape_mesh.cpp); users of the installed package need GMP and MPFR only.
+# Headers of one source file (coupling/contact/mesh_shape.cpp); users of the installed package need GMP and MPFR only.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED)

@@ -1,3 +1,15 @@
+# snare_use_precompiled_headers(<target>): the target's sources get cmake/precompiled.hpp, compiled once for all targets.
+function(snare_use_precompiled_headers target)
+  if(NOT TARGET snare_precompiled)
+    add_library(snare_precompiled OBJECT "${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp")
+    target_link_libraries(snare_precompiled PRIVATE Eigen3::Eigen fmt::fmt snare_build_settings)
+    target_compile_features(snare_precompiled PRIVATE cxx_std_20)
+    target_compile_definitions(snare_precompiled PRIVATE EIGEN_DONT_PARALLELIZE)
+    target_precompile_headers(snare_precompiled PRIVATE "${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp")
+  endif()
+  target_precompile_headers(${target} REUSE_FROM snare_precompiled)
+endfunction()
+
 # snare_add_module(<name> [PUBLIC <targets>...] [PRIVATE <targets>...] [EXCLUDE <files>...])
 #
 # Makes the target snare_<name> (alias snare::<name>) of the *.cpp beside the calling CMakeLists.txt. New
@@ -17,6 +29,7 @@ function(snare_add_module name)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
                                            $<BUILD_INTERFACE:snare_build_settings>)
+    snare_use_precompiled_headers(${target})
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -30,4 +43,14 @@ function(snare_add_module name)
                  BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers})
   install(TARGETS ${target} EXPORT snareTargets
           FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/snare")
+endfunction()
+
+# snare_add_module_group(<name> <modules>...): snare::<name> stands for all modules of a folder.
+function(snare_add_module_group name)
+  add_library(snare_${name} INTERFACE)
+  add_library(snare::${name} ALIAS snare_${name})
+  list(TRANSFORM ARGN PREPEND "snare::" OUTPUT_VARIABLE modules)
+  target_link_libraries(snare_${name} INTERFACE ${modules})
+  set_target_properties(snare_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS snare_${name} EXPORT snareTargets)
 endfunction()

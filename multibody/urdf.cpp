@@ -11,8 +11,8 @@ namespace snare::multibody {
 
 namespace {
 
-using numerics::InputError;
-using numerics::InputProblem;
+using base::InputError;
+using base::InputProblem;
 
 /// Keeps what urdfdom would print.
 class Listener : public console_bridge::OutputHandler {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "multibody/tree.hpp"
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 
 #include <filesystem>
 #include <limits>
@@ -46,7 +46,7 @@ struct RobotDescription {
 [[nodiscard]] RobotDescription parse_urdf(const std::string& file, const std::string& text);
 
 /// What is wrong with the text, in the order of the lines. Empty: urdfdom may read it.
-[[nodiscard]] std::vector<numerics::InputProblem> check_urdf(const std::string& file,
+[[nodiscard]] std::vector<base::InputProblem> check_urdf(const std::string& file,
                                                              const std::string& text);
 
 /// How the root link is joined to the frame that it is put on.

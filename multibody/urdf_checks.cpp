@@ -1,5 +1,5 @@
 #include "multibody/urdf.hpp"
-#include "numerics/toml_reader.hpp"
+#include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <tinyxml.h>
@@ -16,7 +16,7 @@ namespace snare::multibody {
 
 namespace {
 
-using numerics::InputProblem;
+using base::InputProblem;
 
 /// Offsets beyond this are taken for millimetres [m].
 constexpr double largest_offset = 1000.0;
@@ -254,7 +254,7 @@ class Checker {
     if (links_.count(link) == 0) {
       std::vector<std::string> names;
       for (const auto& [name, line] : links_) names.push_back(name);
-      const std::string nearest = numerics::nearest_word(link, names);
+      const std::string nearest = base::nearest_word(link, names);
       add(e->Row(), key + "." + which, fmt::format("\"{}\"", link),
           "must be a link of this file" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
       return {};

@@ -1,6 +1,6 @@
 #include "numerics/cholmod.hpp"
 
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 
 #include <cholmod.h>
 
@@ -62,7 +62,7 @@ Cholmod::Cholmod(const SparseMatrix& lower, Ordering ordering) : handles_(std::m
   h.common.postorder = ordering == Ordering::natural ? 0 : 1;
   cholmod_sparse m = view(lower);
   h.factor = cholmod_analyze(&m, &h.common);
-  if (h.factor == nullptr) throw LibraryError("cholmod_analyze", h.common.status, "the pattern is invalid");
+  if (h.factor == nullptr) throw base::LibraryError("cholmod_analyze", h.common.status, "the pattern is invalid");
 }
 
 Cholmod::~Cholmod() = default;

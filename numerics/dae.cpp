@@ -1,6 +1,6 @@
 #include "numerics/dae.hpp"
 
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 
 #include <fmt/format.h>
 
@@ -40,9 +40,9 @@ DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
 
 void DaeSystem::make_pattern_anew() {
   std::vector<std::pair<int, int>> entries;
-  for (const DaePart* part : parts_) part->couple(entries);
+  for (const DaePart* part : parts_) part->sparsity(entries);
   matrix_ = make_pattern(size(), std::move(entries));
-  for (DaePart* part : parts_) part->bind(matrix_);
+  for (DaePart* part : parts_) part->attach_pattern(matrix_);
   ++pattern_version_;
   stale_pattern_ = false;
 }
@@ -75,7 +75,7 @@ void DaeSystem::accept(const DaePoint& at) {
 }
 
 double take(std::span<const double>& memory) {
-  if (memory.empty()) throw InputError({"", 0, "state", "", "must be that of the same motion: it is too short"});
+  if (memory.empty()) throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too short"});
   const double first = memory.front();
   memory = memory.subspan(1);
   return first;
@@ -83,13 +83,13 @@ double take(std::span<const double>& memory) {
 
 std::vector<double> DaeSystem::memory() const {
   std::vector<double> memory;
-  for (const DaePart* part : parts_) part->remember(memory);
+  for (const DaePart* part : parts_) part->save_state(memory);
   return memory;
 }
 
-void DaeSystem::recall(const VectorView& y, std::span<const double> memory) {
-  for (DaePart* part : parts_) part->recall(y, memory);
-  if (!memory.empty()) throw InputError({"", 0, "state", "", "must be that of the same motion: it is too long"});
+void DaeSystem::restore_state(const VectorView& y, std::span<const double> memory) {
+  for (DaePart* part : parts_) part->restore_state(y, memory);
+  if (!memory.empty()) throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too long"});
   stale_pattern_ = true;
 }
 

@@ -51,7 +51,7 @@ struct DaePoint {
 
 /// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
 ///
-/// Order of calls: `declare` once, then `couple` and `bind` whenever the pattern is made, then the rest. A part may
+/// Order of calls: `declare` once, then `sparsity` and `attach_pattern` whenever the pattern is made, then the rest. A part may
 /// keep workspace; one part serves one integration at a time.
 class DaePart {
  public:
@@ -63,9 +63,9 @@ class DaePart {
   /// Appends the part's own blocks.
   virtual void declare(DaeLayout& layout) = 0;
   /// Appends the entries (row, column) of dF/dy and dF/dy' to which the part adds; repeated ones are fine.
-  virtual void couple(std::vector<std::pair<int, int>>& entries) const = 0;
+  virtual void sparsity(std::vector<std::pair<int, int>>& entries) const = 0;
   /// Told the pattern, to look up its slots in it.
-  virtual void bind(const SparseMatrix& pattern) = 0;
+  virtual void attach_pattern(const SparseMatrix& pattern) = 0;
   /// Adds to the rows of F.
   virtual void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) = 0;
   /// Adds dF/dy + c dF/dy' to the values of the bound pattern.
@@ -75,11 +75,11 @@ class DaePart {
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
   /// Told every accepted step. True: `couple` has changed (no restart is needed for that).
   virtual bool accept(const DaePoint& /*at*/) { return false; }
-  /// Appends what the part remembers beside its unknowns, so that `recall` puts another part of the same making into
+  /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the same making into
   /// the same state, bit by bit.
-  virtual void remember(std::vector<double>& /*memory*/) const {}
-  /// Takes back what `remember` has appended, from the front of `memory`, at the unknowns `y` that belong to it.
-  virtual void recall(const VectorView& /*y*/, std::span<const double>& /*memory*/) {}
+  virtual void save_state(std::vector<double>& /*memory*/) const {}
+  /// Takes back what `save_state` has appended, from the front of `memory`, at the unknowns `y` that belong to it.
+  virtual void restore_state(const VectorView& /*y*/, std::span<const double>& /*memory*/) {}
 };
 
 /// Takes the first number off a memory. Throws InputError when there is none.
@@ -107,7 +107,7 @@ class DaeSystem {
   /// What all parts remember beside their unknowns.
   [[nodiscard]] std::vector<double> memory() const;
   /// Puts the parts into a remembered state. Throws InputError when `memory` is not of these parts.
-  void recall(const VectorView& y, std::span<const double> memory);
+  void restore_state(const VectorView& y, std::span<const double> memory);
   /// How many times the pattern was made.
   [[nodiscard]] int pattern_version() const noexcept { return pattern_version_; }
   /// The pattern is made anew before the next Jacobian.

@@ -379,11 +379,11 @@ void Ida::Memory::fail(int code, const std::string& function) {
   if (callbacks.failure) std::rethrow_exception(std::exchange(callbacks.failure, nullptr));
   if (code == IDA_ILL_INPUT || code == IDA_MEM_NULL || code == IDA_NO_MALLOC) check(code, function);
   report.termination = meaning(code);
-  report.culprits = worst_unknowns();
+  report.worst_unknowns = worst_unknowns();
   report.time = time;
   if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS) report.step = 0.0;
   report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function,
-                               name_of(code), time, report.step, fmt::join(report.culprits, "; "));
+                               name_of(code), time, report.step, fmt::join(report.worst_unknowns, "; "));
 }
 
 Ida::Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals)

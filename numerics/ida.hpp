@@ -72,7 +72,7 @@ struct IdaIntegrals {
 struct [[nodiscard]] IdaReport : SolveReport {
   double time = 0.0;                  ///< reached [s]
   double step = 0.0;                  ///< last tried [s]
-  std::vector<std::string> culprits;  ///< unknowns with the largest weighted errors, worst first
+  std::vector<std::string> worst_unknowns;  ///< unknowns with the largest weighted errors, worst first
 };
 
 /// What one call of `advance` did.

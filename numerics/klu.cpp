@@ -1,6 +1,6 @@
 #include "numerics/klu.hpp"
 
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 
 #include <klu.h>
 
@@ -30,7 +30,7 @@ Klu::Klu(const SparseMatrix& pattern) : handles_(std::make_unique<Handles>()) {
   handles_->symbolic = klu_analyze(pattern.order, const_cast<int*>(pattern.column_start.data()),
                                    const_cast<int*>(pattern.row.data()), &handles_->common);
   if (handles_->symbolic == nullptr && handles_->common.status != KLU_SINGULAR) {
-    throw LibraryError("klu_analyze", handles_->common.status, "the pattern is invalid, or memory has run out");
+    throw base::LibraryError("klu_analyze", handles_->common.status, "the pattern is invalid, or memory has run out");
   }
 }
 
@@ -55,7 +55,7 @@ bool Klu::factorize(const SparseMatrix& matrix) {
   }
   h.numeric = klu_factor(start, row, value, h.symbolic, &h.common);
   if (h.numeric == nullptr && h.common.status < 0) {
-    throw LibraryError("klu_factor", h.common.status, "the matrix is invalid, or memory has run out");
+    throw base::LibraryError("klu_factor", h.common.status, "the matrix is invalid, or memory has run out");
   }
   return h.numeric != nullptr && h.common.status == KLU_OK;
 }

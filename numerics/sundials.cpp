@@ -7,7 +7,7 @@
 namespace snare::numerics {
 
 void check(int code, const std::string& function) {
-  if (code < 0) throw LibraryError(function, code, "the library refused its input or could not be set up");
+  if (code < 0) throw base::LibraryError(function, code, "the library refused its input or could not be set up");
 }
 
 SunVector view(Eigen::VectorXd& v, SUNContext context) {

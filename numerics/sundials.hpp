@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 #include "numerics/sparse_matrix.hpp"
 
 #include <nvector/nvector_serial.h>
@@ -34,7 +34,7 @@ void check(int code, const std::string& function);
 /// Throws LibraryError when a SUNDIALS object was not made.
 template <class Pointer>
 Pointer made(Pointer object, const std::string& function) {
-  if (object == nullptr) throw LibraryError(function, 0, "the object could not be made");
+  if (object == nullptr) throw base::LibraryError(function, 0, "the object could not be made");
   return object;
 }
 

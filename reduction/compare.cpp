@@ -1,6 +1,6 @@
 #include "reduction/compare.hpp"
 
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -66,7 +66,7 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   result.measured = one.measured;
 
   // The full wire over the very travels of the case.
-  coupling::PushTest test = one.wire.test;
+  coupling::PushProblem test = one.wire.test;
   test.contact_position = one.wire.law_positions.front();
   for (const double d : one.travel) {
     if (d >= 0.0) test.travel.push_back(d);
@@ -131,7 +131,7 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     values.push_back(place.full.value(knots.back()));
     slopes.push_back(place.full.slope(knots.back()));
   }
-  const HermiteCurve spline(knots, values, monotone_slopes(knots, values, slopes));
+  const numerics::HermiteCurve spline(knots, values, numerics::monotone_slopes(knots, values, slopes));
   add("spline_table", 2 * static_cast<int>(knots.size()), one.wire.travel,
       [&](double d) { return spline.value(d); });
   if (place.load_unload) {
@@ -144,11 +144,11 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     add(law.form->name(), static_cast<int>(law.values.size()), law.range, law.form->with(law.values));
   }
   // Honda et al., Table 4: the stiffness of half a wire that they started from; it counts from where the wire is taut.
-  const coupling::PushTest& t = one.wire.test;
-  const LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
+  const coupling::PushProblem& t = one.wire.test;
+  const coupling::LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
   Eigen::VectorXd published(2);
   published << honda_half_wire_stiffness * 0.5 * t.wire.length, 0.0;
-  add("stretched_wire_published", 1, one.wire.travel, stretched_wire_law(where)->with(published));
+  add("stretched_wire_published", 1, one.wire.travel, coupling::stretched_wire_law(where)->with(published));
   for (const GivenLaw& law : one.given) add(law.name, law.parameters, law.range, law.force);
   return result;
 }

@@ -1,17 +1,18 @@
 #include "reduction/curve_store.hpp"
 
-#include "coupling/push_solver.hpp"
-#include "numerics/files.hpp"
+#include "coupling/statics/push_solver.hpp"
+#include "base/files.hpp"
+#include "base/parallel.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <string_view>
 #include <system_error>
 
@@ -29,7 +30,7 @@ std::uint64_t fnv1a(std::string_view text) {
 /// Everything that a curve depends on but its place, as text.
 std::string identity(const WireCase& wire, const DistilSettings& settings,
                      const std::vector<double>& travel) {
-  const coupling::PushTest& t = wire.test;
+  const coupling::PushProblem& t = wire.test;
   std::string text = fmt::format(
       "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} "
       "g {} {} {} "
@@ -115,7 +116,7 @@ double CurveStore::folded(double position) const noexcept {
 }
 
 void CurveStore::read_journal() {
-  const std::string text = numerics::read_text(journal_, std::size_t{1} << 30u);
+  const std::string text = base::read_text(journal_, std::size_t{1} << 30u);
   std::string_view rest = text;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
@@ -143,7 +144,7 @@ void CurveStore::read_journal() {
 }
 
 WireCurve CurveStore::solve(const CurvePlace& place) const {
-  coupling::PushTest test = wire_.test;
+  coupling::PushProblem test = wire_.test;
   test.contact_position = place.position;
   test.wire.length = test.mount.span + place.slack;
   test.travel = travel_;
@@ -199,7 +200,7 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
     if (curves_.contains(place) && curves_.at(place).complete) continue;
     if (std::find(wanted.begin(), wanted.end(), place) == wanted.end()) wanted.push_back(place);
   }
-  numerics::FileHandle journal;
+  base::FileHandle journal;
   if (!journal_.empty() && !wanted.empty()) {
     if (journal_.has_parent_path()) std::filesystem::create_directories(journal_.parent_path());
     journal.reset(std::fopen(journal_.c_str(), "ab"));
@@ -208,33 +209,21 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
   }
   std::vector<WireCurve> results(wanted.size());
   std::atomic<bool> stop{false};
-  std::exception_ptr failure;
   std::size_t finished = 0;
-  const auto count = static_cast<std::ptrdiff_t>(wanted.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (stop) continue;
-    const auto k = static_cast<std::size_t>(i);
-    try {
-      WireCurve curve = solve(wanted[k]);
-#pragma omp critical(snare_curve_store)
-      {
-        ++finished;
-        if (journal && curve.complete) {
-          const std::string line = journal_line(identity_, wanted[k], curve);
-          std::fwrite(line.data(), 1, line.size(), journal.get());
-          std::fflush(journal.get());
-        }
-        results[k] = std::move(curve);
-        if (observer && !observer(finished, wanted.size())) stop = true;
-      }
-    } catch (...) {
-#pragma omp critical(snare_curve_store)
-      failure = std::current_exception();
-      stop = true;
+  std::mutex finishing;  // journal, results and observer take one curve at a time
+  base::parallel_for(wanted.size(), [&](std::size_t k) {
+    if (stop) return;
+    WireCurve curve = solve(wanted[k]);
+    const std::lock_guard lock(finishing);
+    ++finished;
+    if (journal && curve.complete) {
+      const std::string line = journal_line(identity_, wanted[k], curve);
+      std::fwrite(line.data(), 1, line.size(), journal.get());
+      std::fflush(journal.get());
     }
-  }
-  if (failure) std::rethrow_exception(failure);
+    results[k] = std::move(curve);
+    if (observer && !observer(finished, wanted.size())) stop = true;
+  });
   numerics::SolveReport report;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     if (results[k].loading.empty() && results[k].stopped.empty()) continue;  // not begun

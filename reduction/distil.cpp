@@ -11,11 +11,11 @@ constexpr int stiffness_points = 40;
 constexpr int map_slacks = 17;
 constexpr int map_travels = 60;
 
-RecordedLaw record(const HermiteCurve& full, double offset, const std::vector<std::size_t>& fit_at) {
+RecordedLaw record(const numerics::HermiteCurve& full, double offset, const std::vector<std::size_t>& fit_at) {
   std::vector<double> force;
   for (const double d : full.knots()) force.push_back(d > offset ? full.value(d - offset) : 0.0);
-  const HermiteCurve recorded(full.knots(), force);
-  return {offset, fit_law(quadratic_law(), recorded, fit_at), stiffness_curve(recorded, stiffness_points)};
+  const numerics::HermiteCurve recorded(full.knots(), force);
+  return {offset, fit_law(coupling::quadratic_law(), recorded, fit_at), stiffness_curve(recorded, stiffness_points)};
 }
 
 }  // namespace
@@ -31,10 +31,10 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   for (std::size_t i = 0; i < store.travel().size(); i += fit_every) fit_at.push_back(i);
   for (const double s : wire.law_positions) {
     const WireCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
-    DistilledPlace place{s, HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}, {}};
-    const LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length,
+    DistilledPlace place{s, numerics::HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}, {}};
+    const coupling::LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length,
                             wire.test.wire.bending_stiffness()};
-    for (const LawFormPointer& form : law_forms(geometry)) {
+    for (const coupling::LawFormPointer& form : coupling::law_forms(geometry)) {
       FittedLaw law = fit_law(form, place.full, fit_at);
       if (law.values.size() > 0) place.laws.push_back(std::move(law));
     }
@@ -42,7 +42,7 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
     if (!wire.law_offsets.empty())
       place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
     if (!curve.unloading.empty()) {
-      const HermiteCurve back(store.travel(), curve.unloading);
+      const numerics::HermiteCurve back(store.travel(), curve.unloading);
       place.dissipation = dissipation(place.full, back);
       place.load_unload = fit_load_unload(place.full, back);
     }
@@ -60,7 +60,7 @@ numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings&
   const std::size_t wanted = places.size() * impacts.speeds.size();
   std::size_t finished = 0;
   for (DistilledPlace& place : places) {
-    coupling::PushTest test = wire.test;
+    coupling::PushProblem test = wire.test;
     test.contact_position = place.position;
     for (const double speed : impacts.speeds) {
       place.impacts.push_back(distil_impact(test, impacts, speed, place.full, report));

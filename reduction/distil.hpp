@@ -22,7 +22,7 @@ struct RecordedLaw {
 /// The simple laws at one position, at the nominal slack.
 struct DistilledPlace {
   double position = 0.0;  ///< [m]
-  HermiteCurve full;      ///< the full wire, loading
+  numerics::HermiteCurve full;      ///< the full wire, loading
   std::vector<FittedLaw> laws;
   StiffnessCurve stiffness;
   std::optional<RecordedLaw> recorded;     ///< where an offset is given

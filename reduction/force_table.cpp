@@ -62,7 +62,7 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
     lookup.low = knots.front();
     lookup.steps_per_unit = static_cast<double>(steps) / (knots.back() - knots.front());
     for (std::size_t i = 0; i <= steps; ++i) {
-      lookup.guide.push_back(static_cast<unsigned>(find_cell(
+      lookup.guide.push_back(static_cast<unsigned>(numerics::find_cell(
           knots.data(), knots.size(), lookup.low + static_cast<double>(i) / lookup.steps_per_unit)));
     }
     for (std::size_t i = 0; i + 1 < knots.size(); ++i)
@@ -70,8 +70,8 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
   }
   // Along the position, then along the slack: every number gets its slope.
   const bool level = mirrored_ && std::abs(axes_[1].back() - 0.5) < 1e-12;
-  const Eigen::MatrixXd by_s = spline_slopes(axes_[1], level ? SplineEnd::level : SplineEnd::not_a_knot);
-  const Eigen::MatrixXd by_e = spline_slopes(axes_[2]);
+  const Eigen::MatrixXd by_s = numerics::spline_slopes(axes_[1], level ? numerics::SplineEnd::level : numerics::SplineEnd::not_a_knot);
+  const Eigen::MatrixXd by_e = numerics::spline_slopes(axes_[2]);
   const auto index = [&](std::size_t k, std::size_t i, std::size_t j) {
     return numbers_a_node * (k + nd * (i + ns * j));
   };
@@ -193,7 +193,7 @@ LawValue ForceTable::at(double travel, double position, double slack, Outside ou
   return result;
 }
 
-HermiteCurve ForceTable::curve(double position, double slack) const {
+numerics::HermiteCurve ForceTable::curve(double position, double slack) const {
   const std::size_t nd = axes_[0].size();
   std::vector<double> travel, value, slope;
   for (std::size_t k = 0; k < nd; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reduction/cubic_spline.hpp"
+#include "numerics/cubic_spline.hpp"
 #include "reduction/wire_file.hpp"
 
 #include <array>
@@ -43,7 +43,7 @@ class ForceTable {
   [[nodiscard]] double force(double travel, double position, double slack) const noexcept;
 
   /// The force along the travel at one place, with its energy (integral).
-  [[nodiscard]] HermiteCurve curve(double position, double slack) const;
+  [[nodiscard]] numerics::HermiteCurve curve(double position, double slack) const;
 
   /// Whether dF/dd >= 0 in the whole range: proven where all Bernstein coefficients of dF/dd are.
   [[nodiscard]] bool proven_monotone() const;

@@ -1,6 +1,6 @@
 #include "reduction/impact_damping.hpp"
 
-#include "coupling/contact_scenario.hpp"
+#include "scenario/contact_scenario.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr int samples_a_half_period = 200;
 
 /// Half a period of the mass on the secant stiffness at the travel where the law has taken up its energy, the longest
 /// that counts [s].
-double half_period(const HermiteCurve& law, double mass, double speed) {
+double half_period(const numerics::HermiteCurve& law, double mass, double speed) {
   const double energy = 0.5 * mass * speed * speed;
   const double end = law.knots().back();
   double travel = end;
@@ -33,7 +33,7 @@ double half_period(const HermiteCurve& law, double mass, double speed) {
 
 }  // namespace
 
-LawRebound rebound(const HermiteCurve& law, double damping, double mass, double speed) {
+LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass, double speed) {
   const double end = law.knots().back();
   const auto force = [&](double d, double rate) {
     if (d < 0.0 || (d == 0.0 && rate <= 0.0)) return 0.0;
@@ -69,7 +69,7 @@ LawRebound rebound(const HermiteCurve& law, double damping, double mass, double 
   return result;  // creeps back without end
 }
 
-double damping_of_restitution(const HermiteCurve& law, double restitution, double mass, double speed) {
+double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass, double speed) {
   if (rebound(law, 0.0, mass, speed).restitution <= restitution) return 0.0;
   double high = 1e-3 * mass / half_period(law, mass, speed);
   double low = 0.0;
@@ -107,10 +107,10 @@ void add_mirror_image(coupling::Motion& motion, double position) {
 
 }  // namespace
 
-ImpactDamping distil_impact(const coupling::PushTest& test, const ImpactSettings& settings, double speed,
-                            const HermiteCurve& loading, numerics::SolveReport& report) {
+ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
+                            const numerics::HermiteCurve& loading, numerics::SolveReport& report) {
   const double side = test.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
-  coupling::ContactScenario scenario;
+  scenario::ContactScenario scenario;
   scenario.push = test;
   scenario.damping = settings.damping;
   scenario.elements = settings.elements;
@@ -129,7 +129,7 @@ ImpactDamping distil_impact(const coupling::PushTest& test, const ImpactSettings
   options.velocity_tolerance = 1e-6;
   options.max_step = 0.2 * (test.pusher.radius + 0.5 * test.wire.diameter) / speed;
 
-  coupling::Motion motion = coupling::motion_of(scenario, {"wire", "wire", {}});
+  coupling::Motion motion = scenario::motion_of(scenario, {"wire", "wire", {}});
   add_mirror_image(motion, test.contact_position);
   const double start = motion.bodies.front().start.position.y();
   ImpactDamping result;

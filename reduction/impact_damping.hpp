@@ -1,8 +1,8 @@
 #pragma once
 
-#include "coupling/push_test.hpp"
+#include "coupling/statics/push_problem.hpp"
 #include "numerics/report.hpp"
-#include "reduction/cubic_spline.hpp"
+#include "numerics/cubic_spline.hpp"
 #include "wire/rod_dynamics.hpp"
 
 #include <functional>
@@ -42,15 +42,15 @@ struct LawRebound {
 
 /// m d'' = -max(0, L(d) + c d') from d = 0 at the given speed until d = 0 again. Classical Runge-Kutta, some thousand
 /// steps. mass > 0 [kg], speed > 0 [m/s], damping >= 0 [N s/m]. Beyond its last knot L goes on as there.
-[[nodiscard]] LawRebound rebound(const HermiteCurve& law, double damping, double mass, double speed);
+[[nodiscard]] LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass, double speed);
 
 /// The c of which `rebound` has the restitution asked, by bisection to 1e-10 of itself; 0 where no c loses as little.
-[[nodiscard]] double damping_of_restitution(const HermiteCurve& law, double restitution, double mass, double speed);
+[[nodiscard]] double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass, double speed);
 
 /// Simulates the impact at one speed and finds the dashpot of it for the law `loading` of the same position.
 /// `test`: wire, mounts, pusher and position; its friction acts. The wire must be elastic and naturally straight
 /// between rigid clamps or pins. A failure of the integration is in `report`.
-[[nodiscard]] ImpactDamping distil_impact(const coupling::PushTest& test, const ImpactSettings& settings, double speed,
-                                          const HermiteCurve& loading, numerics::SolveReport& report);
+[[nodiscard]] ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
+                                          const numerics::HermiteCurve& loading, numerics::SolveReport& report);
 
 }  // namespace snare::reduction

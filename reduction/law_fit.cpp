@@ -20,14 +20,14 @@ struct Points {
   std::vector<double> travel, force;
 };
 
-VectorXd misfit(const LawForm& form, const VectorXd& p, const Points& points) {
+VectorXd misfit(const coupling::LawForm& form, const VectorXd& p, const Points& points) {
   VectorXd r(static_cast<Eigen::Index>(points.travel.size()));
   for (std::size_t i = 0; i < points.travel.size(); ++i)
     r[static_cast<Eigen::Index>(i)] = form.force(p, points.travel[i]) - points.force[i];
   return r;
 }
 
-MatrixXd jacobian(const LawForm& form, const VectorXd& p, const Points& points) {
+MatrixXd jacobian(const coupling::LawForm& form, const VectorXd& p, const Points& points) {
   MatrixXd j(static_cast<Eigen::Index>(points.travel.size()), p.size());
   for (std::size_t i = 0; i < points.travel.size(); ++i)
     j.row(static_cast<Eigen::Index>(i)) = form.by_parameters(p, points.travel[i]).transpose();
@@ -35,7 +35,7 @@ MatrixXd jacobian(const LawForm& form, const VectorXd& p, const Points& points) 
 }
 
 /// Levenberg and Marquardt with Marquardt's scaling. Linear forms arrive in two steps.
-bool minimise(const LawForm& form, const Points& points, VectorXd& p) {
+bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) {
   double damping = 1e-6;
   VectorXd r = misfit(form, p, points);
   for (int iteration = 0; iteration < 200; ++iteration) {
@@ -90,7 +90,7 @@ double FittedLaw::energy(double travel) const {
   return travel <= 0.0 ? 0.0 : form->energy(values, travel);
 }
 
-LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law) {
+LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law) {
   LawError e;
   Interval force, stiffness, energy;
   bool first = true;
@@ -128,7 +128,7 @@ LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at,
   return e;
 }
 
-FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve,
+FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteCurve& curve,
                   const std::vector<std::size_t>& fit_at) {
   FittedLaw law;
   law.form = form;
@@ -167,7 +167,7 @@ FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve,
   return law;
 }
 
-StiffnessCurve stiffness_curve(const HermiteCurve& curve, int points) {
+StiffnessCurve stiffness_curve(const numerics::HermiteCurve& curve, int points) {
   StiffnessCurve result;
   const double end = curve.knots().back();
   for (int i = 1; i <= points; ++i) {

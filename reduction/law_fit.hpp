@@ -1,8 +1,8 @@
 #pragma once
 
-#include "reduction/cubic_spline.hpp"
+#include "numerics/cubic_spline.hpp"
 #include "reduction/force_table.hpp"
-#include "reduction/law_form.hpp"
+#include "coupling/contact/law_form.hpp"
 
 #include <Eigen/Core>
 
@@ -22,7 +22,7 @@ struct LawError {
 
 /// A law with its numbers, their covariance, its range and its error.
 struct FittedLaw {
-  LawFormPointer form;
+  coupling::LawFormPointer form;
   Eigen::VectorXd values;
   /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers
   /// of a form that
@@ -40,11 +40,11 @@ struct FittedLaw {
 /// Least squares of a form through points (travel ascending, >= 0) by Levenberg and Marquardt from the best guess. The
 /// error is taken at all other travels of `curve`, the full wire's.
 /// fit_at: indices of the travels to fit.
-[[nodiscard]] FittedLaw fit_law(const LawFormPointer& form, const HermiteCurve& curve,
+[[nodiscard]] FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteCurve& curve,
                                 const std::vector<std::size_t>& fit_at);
 
 /// Error of a law against the full wire at some of its travels.
-[[nodiscard]] LawError error_of(const HermiteCurve& curve, const std::vector<std::size_t>& at,
+[[nodiscard]] LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::size_t>& at,
                                 const FittedLaw& law);
 
 /// The spring of the linear spring-dashpot law against the travel it is used over: k(d) = F/d.       Abiko et
@@ -54,6 +54,6 @@ struct StiffnessCurve {
   std::vector<double> secant;   ///< F/d [N/m]
   std::vector<double> tangent;  ///< dF/dd [N/m]
 };
-[[nodiscard]] StiffnessCurve stiffness_curve(const HermiteCurve& curve, int points);
+[[nodiscard]] StiffnessCurve stiffness_curve(const numerics::HermiteCurve& curve, int points);
 
 }  // namespace snare::reduction

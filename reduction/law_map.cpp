@@ -1,12 +1,12 @@
 #include "reduction/law_map.hpp"
 
-#include "coupling/push_solver.hpp"
-#include "reduction/law_form.hpp"
-#include "reduction/tensioned_wire.hpp"
+#include "coupling/statics/push_solver.hpp"
+#include "coupling/contact/law_form.hpp"
+#include "coupling/contact/tensioned_wire.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 
 namespace snare::reduction {
 
@@ -16,7 +16,7 @@ constexpr double pretension_strain = 1e-3;
 constexpr double reach =
     3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
 
-LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double>& travel,
+LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<double>& travel,
                  const DistilSettings& settings) {
   LawMapRow row;
   row.slack = slack;
@@ -30,15 +30,15 @@ LawMapRow row_at(coupling::PushTest test, double slack, const std::vector<double
     if (row.full.size() < travel.size() && p.travel == travel[row.full.size()]) row.full.push_back(p.force);
   }
   const double ea = test.wire.axial_stiffness();
-  const LawPlace place{test.mount.span, test.contact_position, test.wire.length,
+  const coupling::LawPlace place{test.mount.span, test.contact_position, test.wire.length,
                        test.wire.bending_stiffness()};
-  const LawFormPointer stretched = stretched_wire_law(place);
+  const coupling::LawFormPointer stretched = coupling::stretched_wire_law(place);
   // The wire stands off by its natural height; it is taut at the height of its two straight pieces.
   const double taut = 0.5 * std::sqrt(std::max(0.0, place.length * place.length - place.span * place.span));
   Eigen::VectorXd numbers(2);
   numbers << ea, taut - row.natural_height;
   const double tension = std::max(0.0, -slack / place.length * ea);
-  const double k = tensioned_stiffness(place.bending_stiffness, tension, place.span, place.position).value;
+  const double k = coupling::tensioned_stiffness(place.bending_stiffness, tension, place.span, place.position).value;
   for (const double d : travel) {
     row.stretched.push_back(stretched->force(numbers, d));
     row.tensioned.push_back(k * d);
@@ -64,7 +64,7 @@ std::optional<Interval> LawMap::within(const LawMapRow& row, const std::vector<d
 
 LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks, int travels) {
   LawMap map;
-  coupling::PushTest test = wire.test;
+  coupling::PushProblem test = wire.test;
   test.contact_position = map.position = 0.5 * test.mount.span;
   test.pusher.friction = 0.0;
   test.wire.strand_friction.reset();
@@ -75,18 +75,9 @@ LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks
   const double low = -pretension_strain * test.mount.span;
   const double high = std::max(wire.slack.high, -low);
   map.rows.resize(static_cast<std::size_t>(slacks));
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < slacks; ++i) {
-    try {
-      map.rows[static_cast<std::size_t>(i)] =
-          row_at(test, low + (high - low) * i / (slacks - 1), map.travel, settings);
-    } catch (...) {
-#pragma omp critical(snare_law_map)
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  base::parallel_for(map.rows.size(), [&](std::size_t i) {
+    map.rows[i] = row_at(test, low + (high - low) * static_cast<int>(i) / (slacks - 1), map.travel, settings);
+  });
   return map;
 }
 

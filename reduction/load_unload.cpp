@@ -8,7 +8,7 @@
 
 namespace snare::reduction {
 
-LoadUnloadLaw::LoadUnloadLaw(HermiteCurve loading, double returned, double turn)
+LoadUnloadLaw::LoadUnloadLaw(numerics::HermiteCurve loading, double returned, double turn)
     : loading_(std::move(loading)), returned_(returned), turn_(turn) {}
 
 double LoadUnloadLaw::move(LoadUnloadState& state, double travel) const {
@@ -21,7 +21,7 @@ double LoadUnloadLaw::move(LoadUnloadState& state, double travel) const {
   return loading_.value(travel) * 0.5 * ((1.0 + returned_) + state.branch * (1.0 - returned_));
 }
 
-Dissipation dissipation(const HermiteCurve& loading, const HermiteCurve& unloading) {
+Dissipation dissipation(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading) {
   Dissipation result;
   const double end = loading.knots().back();
   result.absorbed = loading.integral(end);
@@ -32,7 +32,7 @@ Dissipation dissipation(const HermiteCurve& loading, const HermiteCurve& unloadi
   return result;
 }
 
-LoadUnloadFit fit_load_unload(const HermiteCurve& loading, const HermiteCurve& unloading) {
+LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading) {
   const std::vector<double>& travel = loading.knots();
   const double end = travel.back();
   double product = 0.0;
@@ -73,7 +73,7 @@ LoadUnloadFit fit_load_unload(const HermiteCurve& loading, const HermiteCurve& u
   LoadUnloadState state{1.0, end};
   std::vector<double> back(travel.size());
   for (std::size_t i = travel.size(); i-- > 0;) back[i] = fit.law.move(state, travel[i]);
-  fit.loop = loading.integral(end) - HermiteCurve(travel, back).integral(end);
+  fit.loop = loading.integral(end) - numerics::HermiteCurve(travel, back).integral(end);
   return fit;
 }
 

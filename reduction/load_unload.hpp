@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reduction/cubic_spline.hpp"
+#include "numerics/cubic_spline.hpp"
 
 #include <optional>
 
@@ -19,16 +19,16 @@ struct LoadUnloadState {
 /// turn takes.
 class LoadUnloadLaw {
  public:
-  LoadUnloadLaw(HermiteCurve loading, double returned, double turn);
+  LoadUnloadLaw(numerics::HermiteCurve loading, double returned, double turn);
 
   /// Brings the memory to a travel and gives the force there [N].
   [[nodiscard]] double move(LoadUnloadState& state, double travel) const;
   [[nodiscard]] double returned() const noexcept { return returned_; }  ///< r [-]
   [[nodiscard]] double turn() const noexcept { return turn_; }          ///< lambda [m]
-  [[nodiscard]] const HermiteCurve& loading() const noexcept { return loading_; }
+  [[nodiscard]] const numerics::HermiteCurve& loading() const noexcept { return loading_; }
 
  private:
-  HermiteCurve loading_;
+  numerics::HermiteCurve loading_;
   double returned_;
   double turn_;
 };
@@ -43,7 +43,7 @@ struct Dissipation {
   /// not know the rate: the damping c follows only for a stated angular rate w.
   double damping_times_rate = 0.0;
 };
-[[nodiscard]] Dissipation dissipation(const HermiteCurve& loading, const HermiteCurve& unloading);
+[[nodiscard]] Dissipation dissipation(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading);
 
 /// Two numbers fitted to one unloading from the end of the travel: r to its first 80 %, lambda to all of it.
 struct LoadUnloadFit {
@@ -52,6 +52,6 @@ struct LoadUnloadFit {
   double rms_error = 0.0;      ///< [N]
   double loop = 0.0;           ///< of the law over the same way [J]
 };
-[[nodiscard]] LoadUnloadFit fit_load_unload(const HermiteCurve& loading, const HermiteCurve& unloading);
+[[nodiscard]] LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading);
 
 }  // namespace snare::reduction

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/snared_shaft.hpp"
+#include "coupling/statics/snared_shaft.hpp"
 
 #include <array>
 #include <vector>

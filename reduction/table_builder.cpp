@@ -129,9 +129,9 @@ std::unique_ptr<ForceTable> TableBuilder::tabulate(Branch branch) const {
   for (const double e : slack_) {
     for (const double s : position_) {
       const std::vector<double>& force = store_.at({store_.folded(s), e}).*branch;
-      const HermiteCurve dense(store_.travel(), force);  // through all travels: slopes nearly exact
+      const numerics::HermiteCurve dense(store_.travel(), force);  // through all travels: slopes nearly exact
       const std::vector<double> at_knots = pick(force, travel_);
-      const std::vector<double> m = monotone_slopes(knots, at_knots, pick(dense.slopes(), travel_));
+      const std::vector<double> m = numerics::monotone_slopes(knots, at_knots, pick(dense.slopes(), travel_));
       values.insert(values.end(), at_knots.begin(), at_knots.end());
       slopes.insert(slopes.end(), m.begin(), m.end());
     }
@@ -157,8 +157,8 @@ TableError TableBuilder::check(const ForceTable& table, Branch branch) {
     for (std::size_t j = 0; j < slacks.size(); ++j) {
       const WireCurve& curve = store_.at({store_.folded(positions[i]), slacks[j]});
       const std::vector<double>& force = curve.*branch;
-      const HermiteCurve dense(travel, force);
-      const HermiteCurve tabled = table.curve(positions[i], slacks[j]);
+      const numerics::HermiteCurve dense(travel, force);
+      const numerics::HermiteCurve tabled = table.curve(positions[i], slacks[j]);
       error.discretisation = std::max(error.discretisation, curve.discretisation_error);
       for (std::size_t k = 0; k < travel.size(); ++k) {
         least = std::min(least, force[k]);
@@ -279,14 +279,14 @@ std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
   if (n > 2) chosen.insert(chosen.begin() + 1, n / 2);
   while (chosen.size() < std::min(count, n)) {
     const std::vector<double> knots = pick(candidates, chosen);
-    const Eigen::MatrixXd by = spline_slopes(knots);
+    const Eigen::MatrixXd by = numerics::spline_slopes(knots);
     std::vector<double> worst(chosen.size() - 1, 0.0);
     std::vector<std::size_t> where(chosen.size() - 1, 0);
     for (const std::vector<double>& line : lines) {
       const std::vector<double> values = pick(line, chosen);
       const Eigen::VectorXd m =
           by * Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-      const HermiteCurve spline(knots, values, std::vector<double>(m.begin(), m.end()));
+      const numerics::HermiteCurve spline(knots, values, std::vector<double>(m.begin(), m.end()));
       for (std::size_t c = 0; c + 1 < chosen.size(); ++c) {
         for (std::size_t i = chosen[c] + 1; i < chosen[c + 1]; ++i)
           worst[c] = std::max(worst[c], std::abs(spline.value(candidates[i]) - line[i]));

@@ -1,9 +1,9 @@
 #include "reduction/wire_file.hpp"
 
-#include "coupling/motion_reader.hpp"
-#include "coupling/push_test_reader.hpp"
-#include "coupling/spatial_push.hpp"
-#include "numerics/toml_reader.hpp"
+#include "scenario/motion_reader.hpp"
+#include "scenario/push_reader.hpp"
+#include "coupling/statics/spatial_push.hpp"
+#include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -16,15 +16,15 @@ namespace snare::reduction {
 
 namespace {
 
-using numerics::Range;
-using numerics::TomlDocument;
-using numerics::TomlTable;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
 
 constexpr double mm = 1e-3;                    // [m]
 constexpr double proof_strain = 0.002;         // [-]
 constexpr double default_low_position = 0.2;   // of the span
 constexpr double default_slack_spread = 0.25;  // of the nominal slack, either way
-constexpr double shortest_length = 0.99;       // of the span: as read_push_test asks of the nominal wire
+constexpr double shortest_length = 0.99;       // of the span: as read_push_problem asks of the nominal wire
 constexpr std::size_t most_values = 16;        // of a listed quantity
 constexpr std::size_t most_cases = 256;
 constexpr std::size_t most_law_positions = 32;
@@ -46,16 +46,16 @@ struct ListedQuantity {
   const char* key;
   Range range;
   double unit;
-  void (*set)(coupling::PushTest&, double);
+  void (*set)(coupling::PushProblem&, double);
 };
 
 const std::array<ListedQuantity, 4> listed_quantities{{
-    {"radius_mm", Range::from(0.0, 100.0), mm, [](coupling::PushTest& t, double v) { t.pusher.radius = v; }},
-    {"friction", Range::from(0.0, 2.0), 1.0, [](coupling::PushTest& t, double v) { t.pusher.friction = v; }},
+    {"radius_mm", Range::from(0.0, 100.0), mm, [](coupling::PushProblem& t, double v) { t.pusher.radius = v; }},
+    {"friction", Range::from(0.0, 2.0), 1.0, [](coupling::PushProblem& t, double v) { t.pusher.friction = v; }},
     {"bending_stiffness_Nm2", Range::from(1e-15, 1e9), 1.0,
-     [](coupling::PushTest& t, double v) { t.wire.bending_stiffness_override = v; }},
+     [](coupling::PushProblem& t, double v) { t.wire.bending_stiffness_override = v; }},
     {"axial_stiffness_N", Range::above(0.0, 1e15), 1.0,
-     [](coupling::PushTest& t, double v) { t.wire.axial_stiffness_override = v; }},
+     [](coupling::PushProblem& t, double v) { t.wire.axial_stiffness_override = v; }},
 }};
 
 void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
@@ -71,7 +71,7 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   if (const auto asked = read_interval(table, "position_mm", Range::above(0.0, 1e5))) {
     nominal.position = *asked;
     for (const double end : {asked->low, asked->high}) {
-      if (const auto problem = coupling::position_problem(end, span)) table.fail("position_mm", *problem);
+      if (const auto problem = scenario::position_problem(end, span)) table.fail("position_mm", *problem);
     }
     if (symmetric && asked->low <= 0.5 * span && asked->high > 0.5 * span) {
       // Both halves are the same: the half that reaches farther.
@@ -157,7 +157,7 @@ void read_law_positions(const TomlTable& table, WireCase& nominal) {
   if (!table.has("positions_mm")) return;
   nominal.law_positions = table.numbers("positions_mm", 1, most_law_positions, Range::above(0.0, 1e5), mm);
   for (std::size_t i = 0; i < nominal.law_positions.size(); ++i) {
-    if (const auto problem = coupling::position_problem(nominal.law_positions[i], nominal.test.mount.span)) {
+    if (const auto problem = scenario::position_problem(nominal.law_positions[i], nominal.test.mount.span)) {
       table.fail_element("positions_mm", i, *problem);
     }
   }
@@ -180,31 +180,31 @@ void read_law_offsets(const TomlTable& table, WireCase& nominal) {
 }
 
 /// `[damping]`: impacts on the wire in motion, which is elastic, naturally straight and held by rigid mounts.
-std::optional<ImpactSettings> read_impacts(const TomlTable& root, const coupling::PushTables& tables,
-                                           const coupling::PushTest& nominal) {
+std::optional<ImpactSettings> read_impacts(const TomlTable& root, const scenario::PushTables& tables,
+                                           const coupling::PushProblem& nominal) {
   if (!root.has("damping")) return std::nullopt;
   const TomlTable table = root.table("damping");
   ImpactSettings impacts;
-  impacts.damping = coupling::read_damping(table);
+  impacts.damping = scenario::read_damping(table);
   impacts.mass = table.number("impact_mass_kg", Range::above(0.0, 1e7));
   impacts.speeds = table.numbers("impact_speeds_m_s", 1, most_values, Range::above(0.0, 100.0));
   impacts.elements = table.integer_or("elements", 60, 8, 20000);
-  coupling::require_simple_motion(tables, nominal);
+  scenario::require_simple_motion(tables, nominal);
   return impacts;
 }
 
 WireFile read_document(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable root = document.root();
-  static constexpr numerics::Choice<bool> schemas[] = {{"snare-wire/1", true}};
+  static constexpr base::Choice<bool> schemas[] = {{"snare-wire/1", true}};
   static_cast<void>(root.choice("schema", schemas));
   WireFile result;
   result.file = file;
   result.title = root.text_or("title", "");
   result.source = root.text_or("source", "");
   result.settings = read_settings(root);
-  const coupling::PushTables tables = coupling::push_tables(root);
+  const scenario::PushTables tables = scenario::push_tables(root);
   WireCase nominal;
-  nominal.test = coupling::read_push_test(tables);
+  nominal.test = scenario::read_push_problem(tables);
   if (coupling::needs_space(nominal.test)) {
     (nominal.test.pusher.tilt != 0.0 ? tables.pusher : tables.gravity)
         .fail(nominal.test.pusher.tilt != 0.0 ? "tilt_deg" : "vector_m_s2",
@@ -234,7 +234,7 @@ bool WireCase::dissipates() const noexcept {
          test.wire.strand_friction;
 }
 
-double default_travel(const coupling::PushTest& test) {
+double default_travel(const coupling::PushProblem& test) {
   const double span = test.mount.span;
   const double slack = test.wire.length - span;
   // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode: its
@@ -249,13 +249,13 @@ double default_travel(const coupling::PushTest& test) {
   return inward && slack > 0.0 ? 0.25 * bulge : std::max(stretched - bulge, 0.01 * span);
 }
 
-WireFile read_wire_file(const std::filesystem::path& file, const std::vector<numerics::Override>& overrides) {
+WireFile read_wire_file(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
   TomlDocument document(file, overrides);
   return read_document(document, file);
 }
 
 WireFile parse_wire_file(const std::filesystem::path& file, std::string_view text,
-                         const std::vector<numerics::Override>& overrides) {
+                         const std::vector<base::Override>& overrides) {
   TomlDocument document(file.string(), text, overrides);
   return read_document(document, file);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/push_test.hpp"
-#include "numerics/toml_tree.hpp"
+#include "coupling/statics/push_problem.hpp"
+#include "base/toml_tree.hpp"
 #include "reduction/impact_damping.hpp"
 
 #include <array>
@@ -25,7 +25,7 @@ struct Interval {
 
 /// One wire with its pusher, and the ranges over which its force is asked. SI units.
 struct WireCase {
-  coupling::PushTest test;            ///< nominal; position, length and travel are set by the sampling
+  coupling::PushProblem test;            ///< nominal; position, length and travel are set by the sampling
   Interval travel;                    ///< from first touch; low is 0 [m]
   Interval position;                  ///< s, of the pusher along the chord from the left mount [m]
   Interval slack;                     ///< length less span [m]
@@ -63,14 +63,14 @@ struct WireFile {
 
 /// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the strain that
 /// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].  theory.md (R.1)
-[[nodiscard]] double default_travel(const coupling::PushTest& test);
+[[nodiscard]] double default_travel(const coupling::PushProblem& test);
 
 /// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws
-/// numerics::InputError with
+/// base::InputError with
 /// every problem found (file, line, key, value, what is allowed).
 [[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file,
-                                      const std::vector<numerics::Override>& overrides = {});
+                                      const std::vector<base::Override>& overrides = {});
 [[nodiscard]] WireFile parse_wire_file(const std::filesystem::path& file, std::string_view text,
-                                       const std::vector<numerics::Override>& overrides = {});
+                                       const std::vector<base::Override>& overrides = {});
 
 }  // namespace snare::reduction

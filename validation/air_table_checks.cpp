@@ -1,6 +1,6 @@
 #include "validation/air_table_checks.hpp"
 
-#include "coupling/contact_scenario.hpp"
+#include "scenario/contact_scenario.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@ namespace snare::validation {
 
 namespace {
 
-using coupling::ContactScenario;
+using scenario::ContactScenario;
 using coupling::MotionResult;
 using Eigen::Vector3d;
 
@@ -51,7 +51,7 @@ std::vector<Row> quadratic_law_rows() {
     s.options.body_velocity_tolerance = 1e-8;
     s.options.max_step = 1e-3;  // no step may leap from where the law is zero over its first 0.35 mm
     s.options.duration = 1.0;
-    const MotionResult r = coupling::simulate(coupling::motion_of(s, s.models[1]), s.options);
+    const MotionResult r = coupling::simulate(scenario::motion_of(s, s.models[1]), s.options);
     double low = 0.0;
     double high = 50.0 * mm;
     for (int k = 0; k < 60; ++k) {
@@ -73,8 +73,8 @@ std::vector<Row> law_beside_wire_rows() {
   for (const double speed : {0.05, 0.1, 0.2}) {
     for (const double offset : {0.0, 50.0 * mm, 100.0 * mm}) {
       const ContactScenario s = meeting(speed, offset);
-      const MotionResult wire = coupling::simulate(coupling::motion_of(s, s.models[0]), s.options);
-      const MotionResult law = coupling::simulate(coupling::motion_of(s, s.models[1]), s.options);
+      const MotionResult wire = coupling::simulate(scenario::motion_of(s, s.models[0]), s.options);
+      const MotionResult law = coupling::simulate(scenario::motion_of(s, s.models[1]), s.options);
       const std::string at = fmt::format("{:g} m/s, probe {:g} mm off the centre of mass", speed, offset / mm);
       rows.push_back({"air table", "impulse of law over full wire, " + at, "", "Abiko et al., section 4.3: almost the same", 1.0,
                       law.impulse[0].y() / wire.impulse[0].y(), ErrorKind::absolute, 0.1});

@@ -1,6 +1,6 @@
 #include "validation/arm_checks.hpp"
 
-#include "multibody/arm_scenarios.hpp"
+#include "scenario/arm_scenarios.hpp"
 #include "multibody/dynamics.hpp"
 #include "validation/planar_arm.hpp"
 
@@ -57,7 +57,7 @@ ElasticArm spatial_arm(bool floating, double stiffness) {
 
 /// The mean period of the swings of the first joint, over whole periods [s].
 double mean_period(const ArmHistory& history, const ElasticArm& arm) {
-  const auto swings = multibody::swings(history, arm, 0);
+  const auto swings = scenario::swings(history, arm, 0);
   const std::size_t n = swings.size() / 2 * 2;
   if (!history.report.usable() || n < 2) return nan;
   return 2.0 * (swings[n - 1].end - swings[0].begin) / static_cast<double>(n);
@@ -353,10 +353,10 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
     multibody::ArmDescription stiff = arm;
     for (std::size_t k = 1; k < stiff.arm.joints.size(); ++k)
       stiff.arm.joints[k].spring = DeflectionLaw::linear(1e9, 1e6);
-    auto run = multibody::joint_step(stiff, pose, 0, 0.5 * degree, 60.0);
+    auto run = scenario::joint_step(stiff, pose, 0, 0.5 * degree, 60.0);
     run.ida.relative_tolerance = 1e-8;
     const ArmHistory history = multibody::simulate(run);
-    const auto found = multibody::swings(history, stiff.arm, 0);
+    const auto found = scenario::swings(history, stiff.arm, 0);
     multibody::DynamicsWorkspace workspace(stiff.arm.tree);
     const double inertia = multibody::mass_matrix(stiff.arm.tree, run.initial.q, workspace)(0, 0);
     const auto expected = swing_on_table2(inertia, -0.5, 60.0, false).swings;
@@ -381,7 +381,7 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
   for (multibody::ElasticJoint& joint : arm.arm.joints)
     joint.spring = table2_law(1.0, StiffnessReading::literal, 4e-4 * degree);
   for (std::size_t k = 0; k < 3; ++k) {
-    auto run = multibody::joint_step(arm, arm.poses.back().angles, static_cast<int>(k), 0.5 * degree, 60.0);
+    auto run = scenario::joint_step(arm, arm.poses.back().angles, static_cast<int>(k), 0.5 * degree, 60.0);
     run.ida.relative_tolerance = 1e-6;
     run.tolerances.motion = 1e-8;
     const ArmHistory history = multibody::simulate(run);
@@ -406,18 +406,18 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
   const VectorXd pose = arm.poses[1].angles;
   const int n = arm.arm.motors();
   // Held by its servos it comes back; with the brakes off it drifts away.
-  for (const auto hold : {multibody::Hold::as_described, multibody::Hold::limp}) {
-    auto run = multibody::tip_impulse(arm, pose, hold, {0.0, 200.0, 0.0}, 0.5, 60.0);
+  for (const auto hold : {scenario::Hold::as_described, scenario::Hold::limp}) {
+    auto run = scenario::tip_impulse(arm, pose, hold, {0.0, 200.0, 0.0}, 0.5, 60.0);
     run.sample = 0.1;
     const ArmHistory history = multibody::simulate(run);
     const double usable = history.report.usable() ? 0.0 : nan;
     const double away = (history.samples.back().state.q - history.samples.front().state.q).norm() + usable;
-    if (hold == multibody::Hold::as_described) {
+    if (hold == scenario::Hold::as_described) {
       rows.push_back(row("SSRMS held by its servos, 60 s after 200 N s at the tip: joints away", "rad",
                          "comes back", 0.0, away, ErrorKind::absolute, 1e-3));
     }
     rows.push_back(row(fmt::format("SSRMS {} after 200 N s at the tip: energy balance",
-                                   hold == multibody::Hold::limp ? "limp" : "held"),
+                                   hold == scenario::Hold::limp ? "limp" : "held"),
                        "", "conservation", 0.0, history.energy_error + usable, ErrorKind::absolute, 1e-4));
   }
   // Limp without friction. A push much shorter than the gears' periods moves the links alone: E = p H^-1 p/2, p = J^T P;
@@ -427,7 +427,7 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     joint.back_drive = 0.0;
   }
   const Vector3d impulse(0.0, 0.5, 0.3);
-  auto run = multibody::tip_impulse(arm, pose, multibody::Hold::limp, impulse, 1e-5, 30.0);
+  auto run = scenario::tip_impulse(arm, pose, scenario::Hold::limp, impulse, 1e-5, 30.0);
   run.ida.relative_tolerance = 1e-9;
   run.tolerances = {1e-13, 1e-13};
   const ArmHistory history = multibody::simulate(run);

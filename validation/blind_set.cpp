@@ -217,7 +217,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   for (const Push& p : pushes) {
     identification::Series series;
     series.name = fmt::format("p{}", ++number);
-    coupling::PushTest& t = series.test;
+    coupling::PushProblem& t = series.test;
     t.wire.construction = wire::Construction::strand;
     t.wire.diameter = diameter;
     t.wire.length = length;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/experiment.hpp"
+#include "identification/fitting/experiment.hpp"
 #include "validation/blind_wire.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "validation/contact_law_checks.hpp"
 
-#include "coupling/motion.hpp"
+#include "coupling/dynamics/motion.hpp"
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ Strike strike(const coupling::ContactLaw& law, double speed, double expected_dur
   body.start.position = {0.0, -0.05 * speed * expected_duration, 0.0};
   body.start.velocity = {0.0, speed, 0.0};
   motion.bodies.push_back(body);
-  coupling::MotionSpring spring;
+  coupling::PointContactLaw spring;
   spring.law = law;
   motion.springs.push_back(spring);
   coupling::MotionOptions options;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/push_test.hpp"
+#include "coupling/statics/push_problem.hpp"
 
 #include <array>
 
@@ -18,8 +18,8 @@ namespace snare::validation {
 }
 
 /// The same between clamps 175 mm apart, pushed outward at `position` by a cylinder of `radius` (0: a knife edge). [m]
-[[nodiscard]] inline coupling::PushTest declared_wire(double position, double radius) {
-  coupling::PushTest test;
+[[nodiscard]] inline coupling::PushProblem declared_wire(double position, double radius) {
+  coupling::PushProblem test;
   test.wire = declared_specification();
   test.mount.span = 0.175;
   test.contact_position = position;

@@ -1,10 +1,10 @@
 #include "validation/distil_checks.hpp"
 
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "reduction/law_fit.hpp"
 #include "reduction/snare_joint.hpp"
 #include "reduction/table_builder.hpp"
-#include "reduction/tensioned_wire.hpp"
+#include "coupling/contact/tensioned_wire.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/declared_wire.hpp"
 
@@ -25,8 +25,8 @@ constexpr double recorded_range = 4e-3;  // [m], assumed: the papers do not prin
 constexpr int recorded_points = 41;
 
 /// The one wire that the tracing of the published tests ends with.
-coupling::PushTest traced_wire() {
-  coupling::PushTest test = declared_wire(87.5e-3, 6e-3);
+coupling::PushProblem traced_wire() {
+  coupling::PushProblem test = declared_wire(87.5e-3, 6e-3);
   test.wire.bending_stiffness_override = 0.0094;
   test.wire.axial_stiffness_override = 19300.0;
   test.wire.length = 175.49e-3;
@@ -35,7 +35,7 @@ coupling::PushTest traced_wire() {
 
 /// Force of the traced wire at the recorded displacements.
 std::vector<double> recorded(const PublishedLaw& law, std::vector<double>& displacement) {
-  coupling::PushTest test = traced_wire();
+  coupling::PushProblem test = traced_wire();
   test.contact_position = law.position;
   std::vector<double> force;
   for (int i = 0; i < recorded_points; ++i) {
@@ -62,7 +62,7 @@ std::vector<Row> published_rows() {
     std::vector<std::size_t> all(d.size());
     std::iota(all.begin(), all.end(), 0);
     const reduction::FittedLaw fit =
-        reduction::fit_law(reduction::quadratic_law(), reduction::HermiteCurve(d, force), all);
+        reduction::fit_law(coupling::quadratic_law(), numerics::HermiteCurve(d, force), all);
     // Scatter of the lost readings about the published law, from its R^2 and its variance over the range.
     double mean = 0.0;
     for (const double x : d) mean += law.force(x) / recorded_points;
@@ -112,7 +112,7 @@ std::vector<Row> table_rows() {
   constexpr int places = 200;
   double worst = 0.0;
   for (int i = 0; i < places; ++i) {
-    coupling::PushTest test = wire.test;
+    coupling::PushProblem test = wire.test;
     test.contact_position = wire.position.low + (wire.position.high - wire.position.low) * u(random);
     const double slack = wire.slack.low + (wire.slack.high - wire.slack.low) * u(random);
     test.wire.length = test.mount.span + slack;
@@ -134,11 +134,11 @@ std::vector<Row> table_rows() {
 
 std::vector<Row> closed_form_rows() {
   std::vector<Row> rows;
-  const reduction::LawPlace middle{0.175, 0.0875, 0.180, 0.01};
+  const coupling::LawPlace middle{0.175, 0.0875, 0.180, 0.01};
   Eigen::VectorXd p(2);
   p << 5.55e5 * 0.09, 0.0;
-  const auto exact = reduction::stretched_wire_law(middle);
-  const auto linear = reduction::stretched_wire_linearised(middle);
+  const auto exact = coupling::stretched_wire_law(middle);
+  const auto linear = coupling::stretched_wire_linearised(middle);
   const std::string honda = "Honda et al., eqs 1 and 2, evaluated by hand";
   rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, 60810.0,
                   linear->stiffness(p, 1e-3), ErrorKind::relative, 1e-4});  // printed to four digits
@@ -150,7 +150,7 @@ std::vector<Row> closed_form_rows() {
     rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s),
                     "N/m", "w'''' - m^2 w'' = 0 on both sides, solved by itself",
                     tensioned_clamped_stiffness(0.04796, 50.0, 0.175, s),
-                    reduction::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative,
+                    coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative,
                     1e-9});
   }
   return rows;

@@ -1,7 +1,7 @@
 #include "validation/friction_checks.hpp"
 
-#include "coupling/motion.hpp"
-#include "coupling/push_solver.hpp"
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
@@ -111,7 +111,7 @@ std::vector<Row> incline_rows() {
                   std::abs(rest.late - rest.early), ErrorKind::absolute, 1e-9});
   // The smooth law carries mu_static cos(a) m g only while it slides at static_speed x, x (3 - x^2)/2 = tan(a)/mu_s.
   {
-    motion.contacts[0].friction.law = coupling::FrictionLaw::smooth;
+    motion.contacts[0].friction.law = coupling::ContactFriction::smooth;
     double x = 0.5;
     for (int k = 0; k < 50; ++k)
       x -= (0.5 * x * (3.0 - x * x) - std::tan(0.9 * friction_angle) / 0.3) / (1.5 * (1.0 - x * x));
@@ -193,7 +193,7 @@ std::vector<Row> stick_slip_rows() {
   constexpr double sliding = 0.2;
   motion.contacts[0].friction = two_coefficients(fixed, sliding);
   motion.contacts[0].friction.bristle_displacement = 1e-8;  // 1e-5 of the swing
-  coupling::MotionSpring spring;
+  coupling::PointContactLaw spring;
   spring.direction = Vector3d::UnitZ();
   spring.origin = motion.bodies[0].start.position;
   spring.origin_speed = belt;
@@ -248,7 +248,7 @@ namespace {
 
 /// The pusher goes 2 mm in and comes back, slowly; the static wire does the same on the same mesh. Friction of one
 /// coefficient, or strands.
-std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name,
+std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& name,
                                const std::vector<double>& stations) {
   constexpr double depth = 2.0 * mm;
   constexpr int elements = 200;
@@ -328,14 +328,14 @@ std::vector<Row> reversed_push(coupling::PushTest test, const std::string& name,
 }  // namespace
 
 std::vector<Row> reversed_push_rows() {
-  coupling::PushTest test = declared_wire(65.0 * mm, 6.0 * mm);
+  coupling::PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
   test.pusher.friction = 0.2;
   return reversed_push(test, "friction on the pusher", {0.5 * mm, 1.0 * mm, 1.5 * mm, 1.9 * mm});
 }
 
 // A straight wire, so that both begin without a moment; soft in tension, so that it bends.
 std::vector<Row> strand_push_rows() {
-  coupling::PushTest test = declared_wire(87.5 * mm, 6.0 * mm);
+  coupling::PushProblem test = declared_wire(87.5 * mm, 6.0 * mm);
   test.wire.length = test.mount.span;
   test.wire.bending_stiffness_override = 5e-3;
   test.wire.axial_stiffness_override = 1e3;

@@ -1,6 +1,6 @@
 #include "validation/linked_motion_checks.hpp"
 
-#include "coupling/arm_contact_scenario.hpp"
+#include "scenario/arm_contact_scenario.hpp"
 
 #include <fmt/format.h>
 
@@ -137,11 +137,11 @@ std::vector<Row> capture_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   constexpr double energy = 0.5 * 500.0 * 0.01 * 0.01;
   for (const char* name : {"jemrms_capture", "jemrms_payload_on_wire"}) {
-    const coupling::ArmContactScenario s =
-        coupling::read_arm_contact_scenario(data / "scenarios" / (std::string(name) + ".toml"));
+    const scenario::ArmContactScenario s =
+        scenario::read_arm_contact_scenario(data / "scenarios" / (std::string(name) + ".toml"));
     MotionOptions options = s.contact.options;
     options.duration = 1.0;
-    const MotionResult result = coupling::simulate(coupling::motion_of(s, s.contact.models.front()), options);
+    const MotionResult result = coupling::simulate(scenario::motion_of(s, s.contact.models.front()), options);
     const double usable = result.report.usable() ? 0.0 : nan;
     rows.push_back(row(fmt::format("{}: integrator's energy over that of the impact", name), "",
                        "conservation", 0.0, result.energy.integrator / energy + usable, ErrorKind::absolute,

@@ -1,7 +1,7 @@
 #include "validation/motion_accuracy_checks.hpp"
 
-#include "coupling/motion.hpp"
-#include "coupling/push_solver.hpp"
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
@@ -158,7 +158,7 @@ namespace {
 /// A driven cylinder at a place along the chord and the static push that it follows.
 struct SlowPush {
   Motion motion;
-  coupling::PushTest test;
+  coupling::PushProblem test;
   coupling::PushOptions options;
 };
 

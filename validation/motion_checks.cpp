@@ -1,7 +1,7 @@
 #include "validation/motion_checks.hpp"
 
-#include "coupling/motion.hpp"
-#include "coupling/push_solver.hpp"
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 
 #include <fmt/format.h>
@@ -248,7 +248,7 @@ std::vector<Row> slow_push_rows() {
   // a cylinder of the same radius on the same mesh.
   const wire::WireSpecification w = declared_specification();
   constexpr double radius = 6.0 * mm;
-  coupling::PushTest test;
+  coupling::PushProblem test;
   test.wire = w;
   test.mount.span = 175.0 * mm;
   test.contact_position = 87.5 * mm;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "multibody/arm_run.hpp"
+#include "multibody/arm/arm_run.hpp"
 
 #include <Eigen/Core>
 

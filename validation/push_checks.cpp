@@ -1,6 +1,6 @@
 #include "validation/push_checks.hpp"
 
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/elastica.hpp"
@@ -16,18 +16,18 @@ namespace snare::validation {
 
 namespace {
 
-using coupling::PushTest;
+using coupling::PushProblem;
 
 constexpr double mm = 1e-3;
 const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
 
 /// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.
-PushTest stiffened(PushTest test) {
+PushProblem stiffened(PushProblem test) {
   test.wire.axial_stiffness_override = 1e3 * test.wire.axial_stiffness();
   return test;
 }
 
-ElasticaPush elastica_of(const PushTest& test) {
+ElasticaPush elastica_of(const PushProblem& test) {
   ElasticaPush e;
   e.wire = {test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(), 0.0};
   e.span = test.mount.span;
@@ -42,7 +42,7 @@ coupling::PushOptions fine(int elements = 256) {
   return options;
 }
 
-double force_at(PushTest test, double travel, int elements = 256) {
+double force_at(PushProblem test, double travel, int elements = 256) {
   test.travel = {travel};
   const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine(elements));
   return result.curve.points.empty() ? std::nan("") : result.curve.points.back().force;
@@ -55,7 +55,7 @@ struct Normalised {
 };
 
 /// delta is the end shortening of the wire's stretched length, so that the little it stretches does not count.
-Normalised normalise(const PushTest& test, const coupling::PushPoint& p, double height) {
+Normalised normalise(const PushProblem& test, const coupling::PushPoint& p, double height) {
   const double l = test.mount.span;
   const double tension = 0.5 * (p.tension_left + p.tension_right);
   const double stretched = test.wire.length * (1.0 + tension / test.wire.axial_stiffness());
@@ -65,8 +65,8 @@ Normalised normalise(const PushTest& test, const coupling::PushPoint& p, double 
 
 /// A shallow wire whose strain stays below a hundredth of its slack up to compressions or tensions of
 /// `largest` EI/l^2: stiffer, round-off would show.
-PushTest shallow_test(double position, double slack, double largest) {
-  PushTest test = declared_wire(position, 0.0);
+PushProblem shallow_test(double position, double slack, double largest) {
+  PushProblem test = declared_wire(position, 0.0);
   const double l = test.mount.span;
   test.wire.length = l * (1.0 + slack);
   test.wire.axial_stiffness_override = 100.0 * largest * test.wire.bending_stiffness() / (l * l) / slack;
@@ -75,7 +75,7 @@ PushTest shallow_test(double position, double slack, double largest) {
 
 /// Normalised force at a normalised deflection of the shallow wire, by bisection in travel.
 double shallow_force(double position, double slack, double deflection, double largest) {
-  PushTest test = shallow_test(position * 175.0 * mm, slack, largest);
+  PushProblem test = shallow_test(position * 175.0 * mm, slack, largest);
   const double root = std::sqrt(slack) * test.mount.span;
   const double natural = (1.0 - std::cos(2.0 * 3.14159265358979323846 * position)) / 3.14159265358979323846;
   double low = 0.0;
@@ -96,7 +96,7 @@ double shallow_force(double position, double slack, double deflection, double la
 
 std::vector<Row> buckled_shape_rows() {
   const char* group = "Buckled shape before the push";
-  PushTest test = stiffened(declared_wire(87.5 * mm, 0.0));
+  PushProblem test = stiffened(declared_wire(87.5 * mm, 0.0));
   test.travel = {0.0};
   const coupling::ExtrapolatedCurve stiff = coupling::solve_push_extrapolated(test, fine());
   const BuckledElastica reference = clamped_elastica(test.wire.bending_stiffness(), test.wire.length, test.mount.span);
@@ -135,7 +135,7 @@ std::vector<Row> elastica_rows() {
   std::vector<Row> rows;
   for (const double radius : {0.0, 6.0}) {
     for (const double position : {40.0, 65.0, 90.0}) {
-      PushTest test = declared_wire(position * mm, radius * mm);
+      PushProblem test = declared_wire(position * mm, radius * mm);
       test.travel = {0.2 * mm, 1.0 * mm, 2.0 * mm, 3.0 * mm, 4.0 * mm};
       const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
       const std::vector<ElasticaState> reference = push_path(elastica_of(test), test.travel);
@@ -156,7 +156,7 @@ std::vector<Row> wrapped_rows() {
   const char* group = "Soft wire (EI 5e-4 N m2, EA 114 kN) that wraps the pusher";
   std::vector<Row> rows;
   for (const double position : {87.5, 65.0}) {
-    PushTest test = declared_wire(position * mm, 6.0 * mm);
+    PushProblem test = declared_wire(position * mm, 6.0 * mm);
     test.wire.bending_stiffness_override = 5e-4;
     test.wire.axial_stiffness_override = 114e3;
     for (int i = 1; i <= 6; ++i) test.travel.push_back(i * mm);
@@ -206,7 +206,7 @@ std::vector<Row> shallow_inward_rows() {
   };
   constexpr double slack = 1e-4;
   for (const Entry& e : {Entry{0.5, 129.530}, Entry{0.45, 85.977}, Entry{0.4, 75.573}}) {
-    PushTest test = shallow_test(e.position * 175.0 * mm, slack, 100.0);
+    PushProblem test = shallow_test(e.position * 175.0 * mm, slack, 100.0);
     test.pusher.direction = coupling::PushDirection::inward;
     const double root = std::sqrt(slack) * test.mount.span;
     // The largest force lies within the first third of the way; at mid-span it is where the path branches.
@@ -257,13 +257,13 @@ std::vector<Row> taut_rows() {
   const double position[] = {40.0, 65.0, 90.0};
   const double digest[] = {7407.2, 3638.9, 3083.8};
   for (int k = 0; k < 3; ++k) {
-    PushTest test = declared_wire(position[k] * mm, 0.0);
+    PushProblem test = declared_wire(position[k] * mm, 0.0);
     test.wire.length = test.mount.span / (1.0 + 50.0 / test.wire.axial_stiffness());
     const double travel = 1e-4 * mm;
     rows.push_back({group, fmt::format("stiffness at {:g} mm under 50 N, clamped", position[k]), "N/m",
                     "w'''' - (T/EI) w'' = 0, closed form", digest[k], force_at(test, travel) / travel, ErrorKind::relative, 1e-4});
   }
-  PushTest test = declared_wire(65.0 * mm, 0.0);
+  PushProblem test = declared_wire(65.0 * mm, 0.0);
   test.wire.length = test.mount.span;
   test.wire.bending_stiffness_override = 1e-9;
   const double travel = 1.0 * mm;
@@ -275,7 +275,7 @@ std::vector<Row> taut_rows() {
 
 std::vector<Row> friction_rows() {
   const char* group = "Coulomb friction on the pusher";
-  PushTest test = declared_wire(40.0 * mm, 6.0 * mm);
+  PushProblem test = declared_wire(40.0 * mm, 6.0 * mm);
   test.pusher.friction = 0.2;
   constexpr int points = 400;
   for (int i = 0; i <= points; ++i) test.travel.push_back(2.0 * mm * i / points);
@@ -312,7 +312,7 @@ std::vector<Row> friction_rows() {
 
 std::vector<Row> support_rows() {
   const char* group = "Three-point bending on two supports";
-  PushTest test = declared_wire(20.0 * mm, 0.0);
+  PushProblem test = declared_wire(20.0 * mm, 0.0);
   test.mount.kind = wire::MountKind::supports;
   test.mount.span = 40.0 * mm;
   test.wire.length = 60.0 * mm;

@@ -1,6 +1,6 @@
 #include "validation/trace_checks.hpp"
 
-#include "identification/trace.hpp"
+#include "identification/tracing/trace.hpp"
 #include "validation/blind_set.hpp"
 
 #include <fmt/format.h>

@@ -237,7 +237,7 @@ bool is_angle(int band) {
 
 }  // namespace
 
-void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
+void RodPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   const int bands = rod_.unknowns();
   const bool damped = bends_with_loss() || constants_.damping.axial_time > 0.0;
   for (int i = 0; constants_.strands.act() && i < vertices(); ++i) {
@@ -274,7 +274,7 @@ void RodPart::couple(std::vector<std::pair<int, int>>& entries) const {
   }
 }
 
-void RodPart::bind(const numerics::SparseMatrix& pattern) {
+void RodPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   pattern_ = &pattern;
   const int bands = rod_.unknowns();
   band_slots_.assign(static_cast<std::size_t>(bands * width), -1);
@@ -698,7 +698,7 @@ bool RodPart::accept(const DaePoint& at) {
   return false;
 }
 
-void RodPart::remember(std::vector<double>& memory) const {
+void RodPart::save_state(std::vector<double>& memory) const {
   for (const Frame& f : base_.frames) {
     for (int k = 0; k < 3; ++k) memory.push_back(f.tangent[k]);
     for (int k = 0; k < 3; ++k) memory.push_back(f.director[k]);
@@ -706,7 +706,7 @@ void RodPart::remember(std::vector<double>& memory) const {
   memory.insert(memory.end(), base_.reference_twist.begin(), base_.reference_twist.end());
 }
 
-void RodPart::recall(const numerics::VectorView& y, std::span<const double>& memory) {
+void RodPart::restore_state(const numerics::VectorView& y, std::span<const double>& memory) {
   take_unknowns(y);
   base_ = rod_.make_state(band_, controls_);
   for (Frame& f : base_.frames) {

@@ -70,14 +70,14 @@ class RodPart final : public numerics::DaePart {
   RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
 
   void declare(numerics::DaeLayout& layout) override;
-  void couple(std::vector<std::pair<int, int>>& entries) const override;
-  void bind(const numerics::SparseMatrix& pattern) override;
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override;
+  void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Carries the reference frames along.
   bool accept(const numerics::DaePoint& at) override;
-  void remember(std::vector<double>& memory) const override;
-  void recall(const numerics::VectorView& y, std::span<const double>& memory) override;
+  void save_state(std::vector<double>& memory) const override;
+  void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
   /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);

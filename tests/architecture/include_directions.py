@@ -10,21 +10,52 @@ import pathlib
 import re
 import sys
 
-# Every module with the modules it may include beside itself.
-BELOW = {
-    "numerics": set(),
-    "wire": {"numerics"},
-    "multibody": {"numerics"},
-    "coupling": {"numerics", "wire", "multibody"},
-    "reduction": {"numerics", "wire", "multibody", "coupling"},
-    "identification": {"numerics", "wire", "multibody", "coupling", "reduction"},
+# Every room with the rooms it may include beside itself and what these include: the lowest first. The room of a file is
+# the longest of these paths that leads to it.
+USES = {
+    "base": [],
+    "numerics": ["base"],
+    "wire": ["numerics"],
+    "multibody": ["numerics"],
+    "multibody/arm": ["multibody"],
+    "coupling/contact": ["wire", "multibody"],
+    "coupling/statics": ["coupling/contact"],
+    "coupling/dynamics": ["coupling/contact", "multibody/arm"],
+    "scenario": ["coupling/statics", "coupling/dynamics"],
+    "reduction": ["scenario"],
+    "identification/fitting": ["scenario"],
+    "identification/effects": ["identification/fitting"],
+    "identification/tracing": ["identification/effects"],
+    "identification/ring_down": ["identification/fitting"],
+    "validation": ["reduction", "identification/tracing", "identification/ring_down"],
+    "app/report": ["validation"],
+    "app": ["app/report"],
+    "benchmarks": ["validation"],
+    "examples": ["validation"],
+    "python": ["validation"],
 }
-LIBRARY = set(BELOW)
-BELOW["validation"] = LIBRARY
-BELOW["app"] = LIBRARY | {"validation"}
-BELOW["benchmarks"] = LIBRARY | {"validation"}
-BELOW["python"] = LIBRARY
-FOLDERS = set(BELOW) | {"tests"}  # what an include of ours may begin with
+# Folders that hold rooms and no files of their own.
+FOLDERS = {path.split("/")[0] for path in USES} | {"tests"}  # what an include of ours may begin with
+
+
+def below(room: str) -> set[str]:
+    """All rooms that a room may include beside itself."""
+    found = set()
+    for one in USES[room]:
+        found |= {one} | below(one)
+    return found
+
+
+BELOW = {room: below(room) for room in USES}
+
+
+def room_of(path: str) -> str:
+    """The room of a file, or "" where it is in none."""
+    folder = path.rpartition("/")[0]
+    while folder and folder not in USES:
+        folder = folder.rpartition("/")[0]
+    return folder
+
 
 SUFFIXES = {".hpp", ".h", ".cpp", ".cc", ".ipp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
@@ -32,30 +63,65 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 
 def violations(root: pathlib.Path) -> list[str]:
     found = []
-    for module in sorted(BELOW):
-        for path in sorted((root / module).rglob("*")):
+    files = {}  # every file of a room with those of ours that it includes
+    for folder in sorted(FOLDERS - {"tests"}):
+        for path in sorted((root / folder).rglob("*")):
             if path.suffix in SUFFIXES and path.is_file():
-                found += violations_of_file(root, module, path)
-    return found
+                name = path.relative_to(root).as_posix()
+                if not room_of(name):
+                    found.append(f"{name}:1: {folder}/ holds rooms and no files of its own")
+                    continue
+                found += violations_of_file(path, name, files)
+    return found + circles(files)
 
 
-def violations_of_file(root: pathlib.Path, module: str, path: pathlib.Path) -> list[str]:
+def violations_of_file(path: pathlib.Path, file: str, files: dict[str, list[str]]) -> list[str]:
     found = []
+    room = room_of(file)
+    files[file] = []
     lines = path.read_text(encoding="utf-8").splitlines()
     for number, line in enumerate(lines, start=1):
         match = INCLUDE.match(line)
         if not match:
             continue
         bracket, name = match.groups()
-        where = f"{path.relative_to(root)}:{number}"
-        folder = name.split("/")[0] if "/" in name else ""
-        if folder in FOLDERS:
-            if folder != module and folder not in BELOW[module]:
-                allowed = ", ".join(sorted(BELOW[module])) or "no other module"
-                found.append(f'{where}: {module} must not include "{name}"; it may include {allowed}')
+        where = f"{file}:{number}"
+        if name.split("/")[0] in FOLDERS and "/" in name:
+            files[file].append(name)
+            other = room_of(name)
+            if other != room and other not in BELOW[room]:
+                allowed = ", ".join(sorted(BELOW[room])) or "no other room"
+                found.append(f'{where}: {room} must not include "{name}"; it may include {allowed}')
         elif bracket == '"':
-            found.append(f'{where}: include "{name}" is not rooted at the top: write "{module}/..." '
+            found.append(f'{where}: include "{name}" is not rooted at the top: write "{room}/..." '
                          "or use <> for a library")
+    return found
+
+
+def circles(files: dict[str, list[str]]) -> list[str]:
+    """One line for every circle of subjects: a header with its source counts as one."""
+    def subject(file: str) -> str:
+        return file.rpartition(".")[0]
+
+    uses = {}
+    for file, included in files.items():
+        uses.setdefault(subject(file), set()).update(subject(name) for name in included)
+    found, done, way = [], set(), []
+
+    def visit(one: str) -> None:
+        if one in way:
+            found.append(f"{one}: includes itself by way of " + ", ".join(way[way.index(one) + 1:]))
+            return
+        if one in done:
+            return
+        way.append(one)
+        for other in sorted(uses.get(one, set()) - {one}):
+            visit(other)
+        way.pop()
+        done.add(one)
+
+    for one in sorted(uses):
+        visit(one)
     return found
 
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "identification/experiment.hpp"
-#include "numerics/csv.hpp"
-#include "numerics/errors.hpp"
+#include "identification/fitting/experiment.hpp"
+#include "base/csv.hpp"
+#include "base/errors.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -14,18 +14,18 @@ namespace snare::fuzz {
 /// Gives arbitrary bytes to the CSV reader. It must return finite numbers or throw InputError; whatever else
 /// leaves here is a defect.
 inline void read_bytes_as_csv(std::string_view bytes) {
-  const std::vector<numerics::CsvColumn> columns{
-      {"displacement_mm", numerics::CsvColumn::Presence::required, numerics::Range::from(-1000.0, 1000.0),
+  const std::vector<base::CsvColumn> columns{
+      {"displacement_mm", base::CsvColumn::Presence::required, base::Range::from(-1000.0, 1000.0),
        1e-3},
       {"force_N"},
-      {"time_s", numerics::CsvColumn::Presence::optional, numerics::Range::finite(), 1.0,
-       numerics::CsvColumn::Order::non_decreasing}};
+      {"time_s", base::CsvColumn::Presence::optional, base::Range::finite(), 1.0,
+       base::CsvColumn::Order::non_decreasing}};
   try {
-    const numerics::CsvTable table = numerics::parse_csv("fuzz.csv", bytes, columns);
+    const base::CsvTable table = base::parse_csv("fuzz.csv", bytes, columns);
     for (const auto& column : table.columns)
       for (const double value : column)
         if (!std::isfinite(value)) throw std::logic_error("a number that is not finite was read");
-  } catch (const numerics::InputError& error) {
+  } catch (const base::InputError& error) {
     if (error.problems().empty()) throw std::logic_error("an error without a problem");
   }
 }
@@ -38,13 +38,13 @@ inline void read_bytes_as_experiment(std::string_view bytes) {
     constexpr std::string_view flag = "--set ";
     if (bytes.starts_with(flag)) {
       const std::size_t end = bytes.find('\n');
-      overrides.push_back(numerics::parse_override(bytes.substr(flag.size(), end - flag.size())));
+      overrides.push_back(base::parse_override(bytes.substr(flag.size(), end - flag.size())));
       bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + 1);
     }
     const identification::Experiment experiment =
         identification::parse_experiment("fuzz.toml", bytes, overrides);
     for (const identification::Series& series : experiment.series) {
-      const coupling::PushTest& test = series.test;
+      const coupling::PushProblem& test = series.test;
       for (const double value :
            {test.wire.diameter, test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(),
             test.wire.torsional_stiffness(), test.mount.span, test.contact_position})
@@ -52,7 +52,7 @@ inline void read_bytes_as_experiment(std::string_view bytes) {
           throw std::logic_error("a number that must be positive is not");
       if (test.travel.size() < 2) throw std::logic_error("a series without travel");
     }
-  } catch (const numerics::InputError& error) {
+  } catch (const base::InputError& error) {
     if (error.problems().empty()) throw std::logic_error("an error without a problem");
   }
 }

@@ -2,7 +2,7 @@
 // (bash):
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -I. tests/fuzz/readers_libfuzzer.cpp
 //     numerics/{errors,range,files,csv,toml_tree,toml_reader}.cpp wire/specification.cpp
-//     identification/experiment.cpp -lfmt -o readers_fuzzer
+//     identification/fitting/experiment.cpp -lfmt -o readers_fuzzer
 //   ./readers_fuzzer -max_len=65536
 
 #include "tests/fuzz/readers.hpp"

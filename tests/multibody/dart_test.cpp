@@ -1,6 +1,6 @@
 #include "tests/multibody/dart_reference.hpp"
 
-#include "multibody/arm_run.hpp"
+#include "multibody/arm/arm_run.hpp"
 #include "multibody/dynamics.hpp"
 #include "multibody/kinematics.hpp"
 

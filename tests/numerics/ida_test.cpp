@@ -22,12 +22,12 @@ class Oscillator final : public DaePart {
     first_ = layout.add({"oscillator", {"position", "velocity"}, 2, DaeKind::differential, 1e-9, 0});
     layout.add({"oscillator energy", {}, 1, DaeKind::algebraic, 1e-9, 0});
   }
-  void couple(std::vector<std::pair<int, int>>& entries) const override {
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override {
     for (const auto& [i, j] : {std::pair{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}) {
       entries.emplace_back(first_ + i, first_ + j);
     }
   }
-  void bind(const SparseMatrix& pattern) override {
+  void attach_pattern(const SparseMatrix& pattern) override {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) slot_[i][j] = pattern.slot(first_ + i, first_ + j);
     }
@@ -155,8 +155,8 @@ TEST(Ida, FailureNamesTimeStepAndUnknown) {
   EXPECT_LE(report.time, 1.0);
   EXPECT_GT(report.time, 0.9);
   EXPECT_NEAR(ida.y()[0], std::cos(2.0 * ida.time()), 1e-7);  // the last accepted state is kept
-  ASSERT_FALSE(report.culprits.empty());
-  EXPECT_EQ(report.culprits.front(), "oscillator, velocity");
+  ASSERT_FALSE(report.worst_unknowns.empty());
+  EXPECT_EQ(report.worst_unknowns.front(), "oscillator, velocity");
   EXPECT_THAT(report.message, testing::HasSubstr("oscillator, velocity"));
 }
 

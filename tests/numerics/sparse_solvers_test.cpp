@@ -1,7 +1,7 @@
 // KLU, CHOLMOD and KINSOL behind our handles, against dense Eigen.
 
 #include "numerics/cholmod.hpp"
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 #include "numerics/kinsol.hpp"
 #include "numerics/klu.hpp"
 

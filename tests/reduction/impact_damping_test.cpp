@@ -10,7 +10,7 @@
 namespace snare::reduction {
 namespace {
 
-HermiteCurve curve_of(double end, double (*force)(double)) {
+numerics::HermiteCurve curve_of(double end, double (*force)(double)) {
   std::vector<double> d, f;
   for (int i = 0; i <= 200; ++i) {
     d.push_back(end * i / 200);
@@ -23,7 +23,7 @@ HermiteCurve curve_of(double end, double (*force)(double)) {
 TEST(ImpactDamping, LinearSpringDashpotReturnsAsPublished) {
   constexpr double k = 2000.0;
   constexpr double mass = 3.0;
-  const HermiteCurve law = curve_of(0.05, [](double d) { return k * d; });
+  const numerics::HermiteCurve law = curve_of(0.05, [](double d) { return k * d; });
   for (const double c : {1.0, 20.0, 100.0}) {
     const double beta = 0.5 * c / mass;
     const double q = std::sqrt(k / mass - beta * beta);
@@ -65,7 +65,7 @@ TEST(ImpactDamping, StraightWireLosesWhatItsMaterialTakes) {
     if (v < 0.0 && a >= 0.0) break;
   }
 
-  coupling::PushTest test;
+  coupling::PushProblem test;
   test.wire.diameter = 1.5e-3;
   test.wire.length = l;
   test.wire.youngs_modulus = 193e9;
@@ -79,7 +79,7 @@ TEST(ImpactDamping, StraightWireLosesWhatItsMaterialTakes) {
   settings.mass = mass;
   settings.damping.axial_time = tau;
   settings.elements = 12;
-  const HermiteCurve law = curve_of(0.02, [](double x) { return 0.5 * axial * l * curvature * curvature * x * x * x; });
+  const numerics::HermiteCurve law = curve_of(0.02, [](double x) { return 0.5 * axial * l * curvature * curvature * x * x * x; });
   numerics::SolveReport report;
   const ImpactDamping impact = distil_impact(test, settings, speed, law, report);
   ASSERT_TRUE(report.usable()) << report.message;
@@ -90,7 +90,7 @@ TEST(ImpactDamping, StraightWireLosesWhatItsMaterialTakes) {
 }
 
 TEST(ImpactDamping, NothingIsSaidBeyondTheLaw) {
-  coupling::PushTest test;
+  coupling::PushProblem test;
   test.wire.diameter = 1.5e-3;
   test.wire.length = 0.18;
   test.wire.youngs_modulus = 193e9;

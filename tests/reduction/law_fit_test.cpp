@@ -10,7 +10,7 @@
 namespace snare::reduction {
 namespace {
 
-const LawPlace place{0.175, 0.065, 0.1755, 0.01};
+const coupling::LawPlace place{0.175, 0.065, 0.1755, 0.01};
 
 std::vector<double> travels(int count, double end) {
   std::vector<double> d;
@@ -32,14 +32,14 @@ Eigen::VectorXd numbers_of(const std::string& name) {
 // that carries the
 // curve, but at its knots, where the fit looks.
 TEST(LawFit, FindsItsOwnNumbers) {
-  for (const LawFormPointer& form : law_forms(place)) {
+  for (const coupling::LawFormPointer& form : coupling::law_forms(place)) {
     const Eigen::VectorXd p = numbers_of(form->name());
     const std::vector<double> d = travels(60, 4e-3);
     std::vector<double> force;
     for (const double x : d) force.push_back(form->force(p, x));
     std::vector<std::size_t> at;
     for (std::size_t i = 0; i < d.size(); i += 3) at.push_back(i);
-    const FittedLaw law = fit_law(form, HermiteCurve(d, force), at);
+    const FittedLaw law = fit_law(form, numerics::HermiteCurve(d, force), at);
     ASSERT_EQ(law.values.size(), p.size()) << form->name();
     for (Eigen::Index i = 0; i < p.size(); ++i)
       EXPECT_NEAR(law.values[i] / p[i], 1.0, 1e-6) << form->name() << " " << i;
@@ -49,7 +49,7 @@ TEST(LawFit, FindsItsOwnNumbers) {
 
 // Central differences over 1e-5 of each number and of the travel: truncation about 1e-9, round-off 1e-11.
 TEST(LawFit, DerivativesMatchDifferences) {
-  for (const LawFormPointer& form : law_forms(place)) {
+  for (const coupling::LawFormPointer& form : coupling::law_forms(place)) {
     const Eigen::VectorXd p = numbers_of(form->name());
     for (const double d : {0.9e-3, 2.2e-3, 3.7e-3}) {
       const Eigen::VectorXd exact = form->by_parameters(p, d);
@@ -76,15 +76,15 @@ TEST(LawFit, DerivativesMatchDifferences) {
 // four digits.
 TEST(StretchedWire, IsHondasLawAtMidSpan) {
   const double k_wire = 5.55e5;
-  const LawPlace middle{0.175, 0.0875, 0.180, 0.01};
+  const coupling::LawPlace middle{0.175, 0.0875, 0.180, 0.01};
   Eigen::VectorXd p(2);
   p << k_wire * 0.09, 0.0;
   const double h = std::sqrt(0.09 * 0.09 - 0.0875 * 0.0875);
   for (const double x : {1e-3, 10e-3}) {
     const double honda = 2.0 * k_wire * (1.0 - 0.09 / std::sqrt(0.09 * 0.09 + 2.0 * h * x + x * x)) * (h + x);
-    EXPECT_NEAR(stretched_wire_law(middle)->force(p, x), honda, 1e-9 * honda);
+    EXPECT_NEAR(coupling::stretched_wire_law(middle)->force(p, x), honda, 1e-9 * honda);
   }
-  EXPECT_NEAR(stretched_wire_linearised(middle)->force(p, 1.0), 60810.0, 5.0);
+  EXPECT_NEAR(coupling::stretched_wire_linearised(middle)->force(p, 1.0), 60810.0, 5.0);
 }
 
 // The scatter of fits to noisy curves is what the covariance says: 200 draws, standard deviation to 5 % (one
@@ -102,7 +102,7 @@ TEST(LawFit, CovarianceIsTheScatterOfNoisyFits) {
   for (int k = 0; k < draws; ++k) {
     std::vector<double> force;
     for (const double x : d) force.push_back(8e5 * x * x + 400.0 * x + noise(random));
-    const FittedLaw law = fit_law(quadratic_law(), HermiteCurve(d, force), all);
+    const FittedLaw law = fit_law(coupling::quadratic_law(), numerics::HermiteCurve(d, force), all);
     sum += law.values[0];
     square += law.values[0] * law.values[0];
     claimed += law.covariance(0, 0) / draws;
@@ -115,7 +115,7 @@ TEST(FittedLaw, RefusesOrFlagsOutsideItsRange) {
   const std::vector<double> d = travels(30, 4e-3);
   std::vector<double> force;
   for (const double x : d) force.push_back(3000.0 * x);
-  const FittedLaw law = fit_law(linear_law(), HermiteCurve(d, force), {0, 10, 20, 30});
+  const FittedLaw law = fit_law(coupling::linear_law(), numerics::HermiteCurve(d, force), {0, 10, 20, 30});
   EXPECT_FALSE(law.at(2e-3, Outside::refuse).extrapolated);
   EXPECT_EQ(law.at(-1e-3, Outside::refuse).force, 0.0);
   EXPECT_TRUE(law.at(5e-3, Outside::extrapolate).extrapolated);
@@ -132,7 +132,7 @@ TEST(LoadUnload, NeverGivesEnergy) {
   const std::vector<double> d = travels(40, 4e-3);
   std::vector<double> force;
   for (const double x : d) force.push_back(8e5 * x * x);
-  const LoadUnloadLaw law(HermiteCurve(d, force), 0.7, 4e-4);
+  const LoadUnloadLaw law(numerics::HermiteCurve(d, force), 0.7, 4e-4);
   LoadUnloadState state;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> target(0.5e-3, 3.5e-3);

@@ -9,7 +9,7 @@ namespace {
 
 coupling::SnareSpecification small_snare(double friction) {
   coupling::SnareSpecification snare;
-  coupling::PushTest& t = snare.wire;
+  coupling::PushProblem& t = snare.wire;
   t.wire.diameter = 0.75e-3;
   t.wire.youngs_modulus = 193e9;
   t.wire.poisson_ratio = 0.29;

@@ -1,4 +1,4 @@
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "reduction/table_builder.hpp"
 #include "wires.hpp"
 
@@ -18,7 +18,7 @@ TEST(CubicSpline, ReproducesCubics) {
   const auto f = [](double t) { return 1.0 - 2.0 * t + 0.5 * t * t + 3.0 * t * t * t; };
   std::vector<double> v;
   for (const double t : x) v.push_back(f(t));
-  const HermiteCurve curve(x, v);
+  const numerics::HermiteCurve curve(x, v);
   for (double t = 0.0; t <= 1.3; t += 0.013) {
     EXPECT_NEAR(curve.value(t), f(t), 1e-12);
     EXPECT_NEAR(curve.slope(t), -2.0 + t + 9.0 * t * t, 1e-11);
@@ -34,7 +34,7 @@ TEST(CubicSpline, ConvergesAtFourthOrder) {
       x.push_back(static_cast<double>(i) / n);
       v.push_back(std::exp(2.0 * x.back()));
     }
-    const HermiteCurve curve(x, v);
+    const numerics::HermiteCurve curve(x, v);
     double worst = 0.0;
     for (double t = 0.0; t <= 1.0; t += 1e-3)
       worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
@@ -126,7 +126,7 @@ TEST(SlowTable, AThousandRandomPoints) {
   std::uniform_real_distribution<double> u(0.0, 1.0);
   double worst = 0.0;
   for (int i = 0; i < 1000; ++i) {
-    coupling::PushTest test = wire.test;
+    coupling::PushProblem test = wire.test;
     test.contact_position = wire.position.low + (wire.position.high - wire.position.low) * u(random);
     const double slack = wire.slack.low + (wire.slack.high - wire.slack.low) * u(random);
     test.wire.length = test.mount.span + slack;

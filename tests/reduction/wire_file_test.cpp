@@ -1,4 +1,4 @@
-#include "numerics/errors.hpp"
+#include "base/errors.hpp"
 #include "wires.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ positions_mm = [0.1]
   try {
     static_cast<void>(parse_wire_file("w.toml", text));
     FAIL() << "accepted";
-  } catch (const numerics::InputError& error) {
+  } catch (const base::InputError& error) {
     using testing::HasSubstr;
     EXPECT_THAT(error.what(), HasSubstr("w.toml:25: table.tolerance = 2.0, must be >= 1e-05 and <= 0.5"));
     EXPECT_THAT(error.what(), HasSubstr("w.toml:27: ranges.travel_mm = -1.0, must be > 0 and <= 1000"));

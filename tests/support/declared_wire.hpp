@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/push_solver.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 #include "validation/elastica_push.hpp"
 
@@ -13,8 +13,8 @@ constexpr double mm = 1e-3;
 using validation::declared_wire;
 
 /// The same with the stiffness of a strand: it wraps a pin of some millimetres.
-inline coupling::PushTest soft_wire(double position, double radius) {
-  coupling::PushTest test = declared_wire(position, radius);
+inline coupling::PushProblem soft_wire(double position, double radius) {
+  coupling::PushProblem test = declared_wire(position, radius);
   test.wire.bending_stiffness_override = 5e-4;
   test.wire.axial_stiffness_override = 114e3;
   return test;
@@ -40,7 +40,7 @@ inline coupling::PushOptions mesh(int elements, double grading = -1.0) {
 }
 
 /// The continuous wire of the same test, which shares no code with the rod.
-inline validation::ElasticaPush elastica_of(const coupling::PushTest& test) {
+inline validation::ElasticaPush elastica_of(const coupling::PushProblem& test) {
   validation::ElasticaPush e;
   e.wire = {test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(), 0.0};
   e.span = test.mount.span;

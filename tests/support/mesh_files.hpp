@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/mesh_file.hpp"
+#include "coupling/contact/mesh_file.hpp"
 
 #include <Eigen/Core>
 

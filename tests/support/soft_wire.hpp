@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/motion.hpp"
+#include "coupling/dynamics/motion.hpp"
 
 #include <Eigen/Core>
 

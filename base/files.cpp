@@ -1,0 +1,137 @@
+#include "base/files.hpp"
+
+#include "base/errors.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cassert>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace snare::base {
+
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, std::string requirement) {
+  throw InputError(InputProblem{path.string(), 0, "", "", std::move(requirement)});
+}
+
+[[noreturn]] void fail(int code, const std::filesystem::path& path, const char* what) {
+  throw std::system_error(code, std::generic_category(), fmt::format("{}: {}", path.string(), what));
+}
+
+std::string reason(int code) {
+  return std::generic_category().message(code);
+}
+
+/// Bytes of the UTF-8 sequence that starts at text[at], or 0 when it is not well-formed.
+std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
+  const auto byte = [&](std::size_t offset) -> unsigned {
+    return at + offset < text.size() ? static_cast<unsigned char>(text[at + offset]) : 0u;
+  };
+  const auto continues = [&](std::size_t offset) { return (byte(offset) & 0xC0u) == 0x80u; };
+  const unsigned lead = byte(0);
+  const unsigned second = byte(1);
+  if (lead < 0x80u) return 1;
+  if (lead >= 0xC2u && lead <= 0xDFu) return continues(1) ? 2 : 0;
+  if (lead >= 0xE0u && lead <= 0xEFu) {
+    if (lead == 0xE0u && second < 0xA0u) return 0;  // overlong
+    if (lead == 0xEDu && second > 0x9Fu) return 0;  // surrogate
+    return continues(1) && continues(2) ? 3 : 0;
+  }
+  if (lead >= 0xF0u && lead <= 0xF4u) {
+    if (lead == 0xF0u && second < 0x90u) return 0;  // overlong
+    if (lead == 0xF4u && second > 0x8Fu) return 0;  // beyond U+10FFFF
+    return continues(1) && continues(2) && continues(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+InputFile open_input(const std::filesystem::path& path) {
+  // The system would cut a name at a zero byte and open another file than the one that was named.
+  if (path.empty()) refuse(path, "the name of the file is empty");
+  if (path.native().find('\0') != std::string::npos)
+    refuse(path.c_str(), "a zero byte in the name of the file");
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (status.type() == std::filesystem::file_type::not_found) refuse(path, "no such file");
+  if (status.type() == std::filesystem::file_type::none)
+    refuse(path, fmt::format("cannot be read ({})", code.message()));
+  if (status.type() == std::filesystem::file_type::directory) refuse(path, "is a directory, must be a file");
+  if (status.type() != std::filesystem::file_type::regular)
+    refuse(path, "is a device, a pipe or a socket, must be a regular file");
+  InputFile file{FileHandle(std::fopen(path.c_str(), "rb")), 0};
+  if (!file.handle) refuse(path, fmt::format("cannot be read ({})", reason(errno)));
+  file.size = std::filesystem::file_size(path, code);
+  if (code) refuse(path, fmt::format("cannot be read ({})", code.message()));
+  return file;
+}
+
+std::size_t read_bytes(std::FILE* file, char* to, std::size_t size, const std::filesystem::path& path) {
+  const std::size_t count = std::fread(to, 1, size, file);
+  if (count < size && std::ferror(file) != 0) refuse(path, fmt::format("cannot be read ({})", reason(errno)));
+  return count;
+}
+
+std::string read_text(const std::filesystem::path& path, std::size_t limit) {
+  const InputFile file = open_input(path);
+  if (file.size > limit) refuse(path, fmt::format("has {} bytes, must have at most {}", file.size, limit));
+  std::string text(static_cast<std::size_t>(file.size), '\0');
+  text.resize(read_bytes(file.handle.get(), text.data(), text.size(), path));
+  return text;
+}
+
+std::size_t find_invalid_utf8(std::string_view text) noexcept {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return at;
+    at += length;
+  }
+  return std::string_view::npos;
+}
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  static std::atomic<unsigned> counter{0};  // two files of one process never share a temporary name
+  std::error_code code;
+  const std::filesystem::path folder = path_.parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder, code);
+  if (code) fail(code.value(), folder, "cannot create the folder");
+  temporary_ = folder / fmt::format(".{}.{}-{}.tmp", path_.filename().string(), ::getpid(), counter++);
+  handle_.reset(std::fopen(temporary_.c_str(), "wbx"));
+  if (!handle_) fail(errno, path_, "cannot be written");
+}
+
+AtomicFile::~AtomicFile() {
+  if (!handle_) return;
+  handle_.reset();
+  std::error_code ignored;  // nothing better can be done while leaving
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::write(std::string_view text) {
+  assert(handle_ && "write after commit");
+  if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size())
+    fail(errno, path_, "cannot be written");
+}
+
+void AtomicFile::commit() {
+  assert(handle_ && "commit twice");
+  if (std::fflush(handle_.get()) != 0) fail(errno, path_, "cannot be written");
+  std::error_code code;
+  std::filesystem::rename(temporary_, path_, code);
+  if (code) fail(code.value(), path_, "cannot be written");  // the destructor removes the temporary file
+  handle_.reset();
+}
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace snare::base

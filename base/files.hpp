@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace snare::base {
+
+struct FileCloser {
+  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
+
+/// A regular file that is open for reading.
+struct InputFile {
+  FileHandle handle;
+  std::uintmax_t size = 0;  ///< [byte]
+};
+
+/// Opens a regular file for reading. Throws InputError when it is missing, a directory, a device or a pipe
+/// (which could be endless), or unreadable.
+[[nodiscard]] InputFile open_input(const std::filesystem::path& path);
+
+/// The next bytes of an open file: `size` of them, fewer at its end only. Throws InputError, naming `path`,
+/// when the system cannot read on.
+[[nodiscard]] std::size_t read_bytes(std::FILE* file, char* to, std::size_t size,
+                                     const std::filesystem::path& path);
+
+/// The whole content of a regular file of at most `limit` bytes. Throws InputError as open_input, and when
+/// the file is longer.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path, std::size_t limit = 16u << 20u);
+
+/// Offset of the first byte that does not belong to well-formed UTF-8 (Unicode 15, table 3-7), or npos.
+[[nodiscard]] std::size_t find_invalid_utf8(std::string_view text) noexcept;
+
+/// A file that appears under its name when it is complete and not before.
+///
+/// Writes go to a temporary name in the same folder; `commit()` renames it. Destroyed without a commit, it
+/// leaves nothing behind and what stood under the name before stays. Missing parent folders are created.
+/// Every failure of the system throws std::system_error that names the path.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&&) = delete;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+
+  void write(std::string_view text);
+  /// To be called once; no write after it.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  FileHandle handle_;
+};
+
+/// Writes `text` under `path` by way of AtomicFile.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace snare::base

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// The wire that a law stands for, at one place.
+struct LawPlace {
+  double span = 0.0;               ///< [m]
+  double position = 0.0;           ///< s [m]
+  double length = 0.0;             ///< unstretched, between the mounts [m]
+  double bending_stiffness = 0.0;  ///< EI [N m^2]
+};
+
+struct LawParameter {
+  std::string name;
+  std::string unit;  ///< SI; empty for a pure number
+};
+
+/// One way to write force against travel with a few numbers p. Travel d >= 0 from first touch; without contact
+/// (d < 0) the force is none and these functions are not asked.
+class LawForm {
+ public:
+  virtual ~LawForm() = default;
+  LawForm(const LawForm&) = delete;
+  LawForm& operator=(const LawForm&) = delete;
+
+  [[nodiscard]] virtual std::string name() const = 0;     ///< as in law.json
+  [[nodiscard]] virtual std::string formula() const = 0;  ///< for people
+  [[nodiscard]] virtual std::vector<LawParameter> parameters() const = 0;
+  /// Body of a function `double force(double d)` with the numbers written in, in the language that C, C++ and Python
+  /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python).
+  [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
+
+  [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const = 0;  ///< [N]
+  /// The force as a function of the travel alone, all that depends on the numbers done: for many evaluations.
+  [[nodiscard]] virtual std::function<double(double)> with(const Eigen::VectorXd& p) const = 0;
+  [[nodiscard]] virtual double stiffness(const Eigen::VectorXd& p, double d) const = 0;  ///< dF/dd [N/m]
+  [[nodiscard]] virtual double energy(const Eigen::VectorXd& p, double d) const = 0;  ///< integral from 0 [J]
+  [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;
+
+  /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale and travel_scale:
+  /// largest force and travel of the points.
+  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale,
+                                                             double travel_scale) const = 0;
+  /// Whether numbers make sense (a positive power); a search does not leave them.
+  [[nodiscard]] virtual bool admissible(const Eigen::VectorXd& /*p*/) const { return true; }
+
+ protected:
+  LawForm() = default;
+};
+
+using LawFormPointer = std::shared_ptr<const LawForm>;
+
+/// F = A d^2 + B d + C, and without C.                       Abiko et al., Table 4; theory.md (R.7)
+[[nodiscard]] LawFormPointer quadratic_law();
+[[nodiscard]] LawFormPointer quadratic_through_origin();
+/// F = k d, the spring of the spring-dashpot law.             Abiko et al., eq. 4
+[[nodiscard]] LawFormPointer linear_law();
+/// F = k d^p.                                                 Abiko et al., eq. 3 (Gilardi and Sharf 2002)
+[[nodiscard]] LawFormPointer power_law();
+/// Two straight pieces of an elastic wire, taut after a free travel d0; at mid-span Honda et al., eq. 1.
+///   F = K (l1 + l2 - L)/L (y/l1 + y/l2),  y = q + d - d0,  q the height at which the wire is just taut  (R.8)
+[[nodiscard]] LawFormPointer stretched_wire_law(const LawPlace& place);
+/// Its tangent where the wire becomes taut; at mid-span Honda et al., eq. 2.
+[[nodiscard]] LawFormPointer stretched_wire_linearised(const LawPlace& place);
+/// F = k(EI, T, s) d, T fitted, EI the wire's.                Uyama et al. 2011; theory.md (R.6)
+[[nodiscard]] LawFormPointer tensioned_wire_law(const LawPlace& place);
+
+/// All of them.
+[[nodiscard]] std::vector<LawFormPointer> law_forms(const LawPlace& place);
+
+}  // namespace snare::coupling

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "multibody/arm/arm_part.hpp"
+
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// An arm in a motion. Its gravity is that of the motion. Times of its drives, switches and loads count from the start.
+struct MotionArm {
+  std::string name = "arm";
+  multibody::ElasticArm arm;
+  multibody::ArmState start;
+  std::vector<multibody::Drive> drives;          ///< at the start, one a joint
+  std::vector<multibody::DriveSwitch> switches;  ///< in the order of their times
+  std::vector<multibody::TimedLoad> loads;
+};
+
+/// What something is fastened to: the world, a body, or a frame of an arm.
+struct MotionCarrier {
+  enum class Kind { world, body, arm };
+  Kind kind = Kind::world;
+  int index = 0;  ///< of the body or the arm
+  int frame = 0;  ///< of the arm's tree
+};
+
+/// A free body held by a carrier in the pose in which it starts; it starts with the carrier's motion, whatever its own says.
+/// A body is held by one weld, and a body that carries is held, if at all, by an earlier one.
+struct MotionWeld {
+  std::string name = "weld";
+  MotionCarrier carrier;
+  int body = 0;  ///< index
+};
+
+/// An end of a wire on a carrier that moves, held where the wire's mount stands at the start; it starts with the carrier's
+/// motion. The mount must be rigid: clamp, twisting pin or pin.
+struct MotionMount {
+  std::string name = "mount";
+  int wire = 0;        ///< index
+  bool right = false;  ///< end of the wire
+  MotionCarrier carrier;
+};
+
+}  // namespace snare::coupling

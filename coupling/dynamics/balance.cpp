@@ -1,0 +1,157 @@
+// Energy, momentum and what else is summed up along a motion.
+
+#include "coupling/dynamics/run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace snare::coupling {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using numerics::DaePoint;
+
+EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
+  EnergyBalance e;
+  for (wire::RodPart& r : rods_) {
+    const wire::RodPart::Energies w = r.energies(at);
+    e.kinetic += w.kinetic;
+    e.strain += w.strain;
+    e.potential += w.potential;
+    if (into == nullptr) continue;
+    into->momentum += w.momentum;
+    into->angular_momentum += w.angular_momentum;
+    into->mount_forces.push_back(w.mount_forces[0]);
+    into->mount_forces.push_back(w.mount_forces[1]);
+  }
+  for (const ContactHandle& p : points()) e.strain += p.part->bristle_energy(at.y);
+  for (const BodyPart& b : bodies_) {
+    if (!b.moves_freely()) continue;
+    const multibody::RigidBodyState s = b.state(at.y);
+    e.kinetic += multibody::kinetic_energy(b.body().properties, s);
+    e.potential -= b.body().properties.mass * motion_.gravity.dot(s.position);
+    if (into == nullptr) continue;
+    into->momentum += b.body().properties.mass * s.velocity;
+    into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
+  }
+  constraints_->add_energy(at.y, e, into);
+  if (into != nullptr) constraints_->fill(at.y, *into);
+  return e;
+}
+
+// Of a contact's force (or impulse) on its wire: what a driven body gives, with its work, and what goes on to rigidly
+// held components, where it is no part of the rod's own reaction.
+void MotionRun::add_reactions(const ContactHandle& contact, const Vector3d& force, const DaePoint& at,
+                        Eigen::Ref<VectorXd> rates) const {
+  const ContactPart& c = *contact.part;
+  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact.contact].wire)];
+  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact.contact].body)];
+  const auto outer = [&rates](const Vector3d& f, const Vector3d& point) {
+    rates.segment<3>(integral::outer) += f;
+    rates.segment<3>(integral::outer_moment) += point.cross(f);
+  };
+  const std::array<Vector3d, 2> held = c.share_of_mounts(at.y, force);
+  outer(-held[0], at.y.segment<3>(rod.position_of(0)));
+  outer(-held[1], at.y.segment<3>(rod.position_of(rod.vertices() - 1)));
+  if (body.moves_freely()) return;
+  rates[integral::work] += force.dot(at.y.segment<3>(body.velocity()));
+  outer(force, c.sample(at).point);
+}
+
+void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
+  for (wire::RodPart& rod : rods_) {
+    const wire::RodPart::Energies w = rod.energies(at);
+    const wire::RodInMotion& c = rod.constants();
+    rates[integral::dissipated] += w.dissipation;
+    rates.segment<3>(integral::outer) += w.mount_forces[0] + w.mount_forces[1] +
+                                         c.mass_per_length * c.length * motion_.gravity -
+                                         c.damping.mass_rate * w.momentum;
+    rates.segment<3>(integral::outer_moment) += w.mount_moments[0] + w.mount_moments[1] + w.weight_moment -
+                                                c.damping.mass_rate * w.angular_momentum;
+  }
+  for (const BodyPart& b : bodies_) {
+    if (!b.moves_freely()) continue;
+    rates[integral::dissipated] += b.drag_power(at.y);
+    rates[integral::work] += b.force_power(at.y);
+    const Vector3d force = b.body().force + b.body().properties.mass * motion_.gravity -
+                           b.body().linear_drag * at.y.segment<3>(b.velocity());
+    const multibody::RigidBodyState state = b.state(at.y);
+    rates.segment<3>(integral::outer) += force;
+    rates.segment<3>(integral::outer_moment) +=
+        state.position.cross(force) - b.body().angular_drag * (state.orientation * state.spin);
+  }
+  for (const ContactHandle& p : points()) {
+    if (!p.part->closed()) continue;
+    const Vector3d force = p.part->sample(at).force;
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(p.contact)) += force;
+    rates[integral::dissipated] += p.part->lost_power(at.y);
+    add_reactions(p, force, at, rates);
+  }
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const ContactSample s = springs_[k].sample(at);
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
+    rates[integral::dissipated] += springs_[k].taken_power(at);
+    rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
+    rates.segment<3>(integral::outer) -= s.force;
+    rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
+  }
+  const ConstraintSet::Outer linked = constraints_->outer(at);
+  rates.segment<3>(integral::outer) += linked.force;
+  rates.segment<3>(integral::outer_moment) += linked.moment;
+  rates[integral::work] += linked.power;
+}
+
+// Extremes over the accepted steps.
+void MotionRun::watch() {
+  const DaePoint at{time_, y_, rate_};
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const ContactSample sum = contacts_[k].closed_sample(at);
+    sums_.peak_force[k] = std::max(sums_.peak_force[k], sum.normal_force);
+    if (motion_.contacts[k].law) continue;
+    for (const ContactSample& s : sum.points) {
+      sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+      sums_.largest_gap = std::max(sums_.largest_gap, std::abs(s.gap));
+    }
+  }
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    double& peak = sums_.peak_force[contacts_.size() + k];
+    peak = std::max(peak, springs_[k].sample(at).normal_force);
+  }
+  sums_.largest_drift = std::max(sums_.largest_drift, constraints_->largest_gap(y_));
+  for (const BodyPart& b : bodies_) {
+    sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
+  }
+  for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
+}
+
+MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
+  MotionSample s;
+  s.time = at.time;
+  EnergyBalance e = stored(at, &s);
+  e.dissipated += integrals[integral::dissipated];
+  e.impacts = sums_.impacts;
+  e.work += integrals[integral::work];
+  e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - sums_.start_energy;
+  s.energy = e;
+  for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    s.contacts.push_back(contacts_[k].sample(at));
+    const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
+    for (const ContactPart& p : contacts_[k].points()) {
+      const std::array<Vector3d, 2> held = p.force_on_mounts(at.y);
+      s.mount_forces[2 * w] -= held[0];
+      s.mount_forces[2 * w + 1] -= held[1];
+    }
+  }
+  for (const LawPart& spring : springs_) s.contacts.push_back(spring.sample(at));
+  for (const wire::RodPart& r : rods_) {
+    Eigen::Matrix3Xd x(3, r.vertices());
+    for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));
+    s.wires.push_back(std::move(x));
+  }
+  return s;
+}
+
+}  // namespace snare::coupling

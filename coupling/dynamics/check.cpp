@@ -1,0 +1,125 @@
+#include "coupling/dynamics/check.hpp"
+
+#include "coupling/dynamics/constraint_set.hpp"
+#include "base/errors.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace snare::coupling {
+
+namespace {
+
+/// Collects what is wrong with a motion.
+class Complaints {
+ public:
+  void require(bool fine, const std::string& key, double value, const std::string& requirement) {
+    if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
+  }
+  std::vector<base::InputProblem>& problems() { return problems_; }
+  void raise() {
+    if (!problems_.empty()) throw base::InputError(problems_);
+  }
+
+ private:
+  std::vector<base::InputProblem> problems_;
+};
+
+void validate_friction(Complaints& c, const std::string& key, const MotionFriction& f) {
+  const auto not_negative = [&](const std::string& name, double value) {
+    c.require(std::isfinite(value) && value >= 0.0, key + name, value, "must be >= 0");
+  };
+  not_negative("static_coefficient", f.static_coefficient);
+  not_negative("dynamic_coefficient", f.dynamic_coefficient);
+  if (f.law == ContactFriction::smooth) {
+    c.require(f.static_speed > 0.0 && f.dynamic_speed > f.static_speed, key + "static_speed", f.static_speed,
+              "must be > 0 and < dynamic_speed");
+    return;
+  }
+  const bool at_once = f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  c.require(at_once || (f.static_speed >= 0.0 && f.dynamic_speed > f.static_speed), key + "static_speed",
+            f.static_speed, "must be >= 0 and < dynamic_speed, or both 0");
+  c.require(f.static_coefficient >= f.dynamic_coefficient, key + "static_coefficient", f.static_coefficient,
+            "must be at least the dynamic coefficient");
+  for (const auto& [name, value] : {std::pair{"bristle_displacement", f.bristle_displacement},
+                                    {"bristle_force", f.bristle_force},
+                                    {"bristle_time", f.bristle_time}}) {
+    c.require(std::isfinite(value) && value > 0.0, key + name, value, "must be > 0");
+  }
+}
+
+}  // namespace
+
+void require_valid(const Motion& motion, const MotionOptions& options) {
+  Complaints c;
+  const auto positive = [&c](const std::string& key, double value) {
+    c.require(std::isfinite(value) && value > 0.0, key, value, "must be > 0");
+  };
+  positive("duration", options.duration);
+  positive("output_interval", options.output_interval);
+  positive("relative_tolerance", options.relative_tolerance);
+  positive("position_tolerance", options.position_tolerance);
+  positive("velocity_tolerance", options.velocity_tolerance);
+  positive("twist_tolerance", options.twist_tolerance);
+  positive("body_position_tolerance", options.body_position_tolerance);
+  positive("body_velocity_tolerance", options.body_velocity_tolerance);
+  positive("angle_tolerance", options.angle_tolerance);
+  positive("spin_tolerance", options.spin_tolerance);
+  positive("newton_share", options.newton_share);
+  c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
+  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order,
+            "must be 1 to 5");
+  for (const MotionWire& w : motion.wires) {
+    positive(w.name + ".length", w.rod.length);
+    positive(w.name + ".mass_per_length", w.rod.mass_per_length);
+    positive(w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
+    positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
+    positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
+    c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
+    if (w.rod.strands.act()) {
+      positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
+      positive(w.name + ".strands.time", w.rod.strands.time);
+    }
+    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
+              static_cast<double>(w.positions.cols()), "must be one more than the elements");
+    c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
+              static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
+    c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
+              "must be finite");
+  }
+  for (const MotionBody& b : motion.bodies) {
+    positive(b.name + ".mass", b.properties.mass);
+    const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
+    c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
+              "must be positive definite");
+    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
+              b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
+    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
+              b.start.orientation.norm(), "must be a unit quaternion");
+  }
+  for (const MotionContact& k : motion.contacts) {
+    c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
+              "must be the index of a wire");
+    c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
+              "must be the index of a body");
+    c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
+    c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
+    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius, "must be >= 0");
+    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius", k.wire_radius,
+              "must be > 0 for a shape with edges");
+    validate_friction(c, k.name + ".friction.", k.friction);
+  }
+  for (const PointContactLaw& s : motion.springs) {
+    c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
+              "must be the index of a body");
+    c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
+              "must be a unit vector");
+    c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
+  }
+  ConstraintSet::check(motion, c.problems());
+  c.raise();
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,398 @@
+#include "coupling/dynamics/constraint_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::coupling {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using multibody::ElasticArmPart;
+using multibody::Pose;
+using numerics::DaePoint;
+using numerics::VectorView;
+
+namespace {
+
+std::size_t at_index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+Pose pose_of(const multibody::RigidBodyState& s) {
+  return {s.orientation.toRotationMatrix(), s.position};
+}
+
+Pose mount_pose(const wire::SpatialEnd& end) {
+  Pose X;
+  X.R << end.direction, end.director, end.direction.cross(end.director);
+  X.p = end.position;
+  return X;
+}
+
+/// Collects what is wrong.
+struct Complaints {
+  std::vector<base::InputProblem>& problems;
+  bool require(bool fine, const std::string& key, double value, const std::string& requirement) {
+    if (!fine) problems.push_back({"", 0, key, fmt::format("{}", value), requirement});
+    return fine;
+  }
+};
+
+void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier,
+                   Complaints& c) {
+  if (carrier.kind == MotionCarrier::Kind::body) {
+    c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.bodies.size()), name + ".carrier",
+              carrier.index, "must be the index of a body");
+  } else if (carrier.kind == MotionCarrier::Kind::arm) {
+    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()),
+                   name + ".carrier", carrier.index, "must be the index of an arm"))
+      return;
+    const auto frames = motion.arms[at_index(carrier.index)].arm.tree.frames().size();
+    c.require(carrier.frame >= 0 && at_index(carrier.frame) < frames, name + ".carrier.frame", carrier.frame,
+              "must be the index of a frame of the arm");
+  }
+}
+
+}  // namespace
+
+void ConstraintSet::check(const Motion& motion, std::vector<base::InputProblem>& problems) {
+  Complaints c{problems};
+  for (const MotionArm& a : motion.arms) {
+    const int n = a.arm.motors();
+    const auto fits = [n](const std::vector<multibody::Drive>& drives) {
+      return static_cast<int>(drives.size()) == n;
+    };
+    bool fit = fits(a.drives) && a.start.motor.size() == n && a.start.motor_rate.size() == n &&
+               a.start.q.size() == a.arm.tree.coordinates() && a.start.v.size() == a.arm.tree.velocities();
+    for (const multibody::DriveSwitch& s : a.switches) fit = fit && fits(s.drives) && s.joint < n;
+    c.require(fit, a.name + ".joints", n, "must have one drive, angle and rate for each joint");
+    for (const multibody::TimedLoad& load : a.loads) {
+      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads",
+                load.frame, "must act on a frame of the arm");
+    }
+  }
+  std::vector<bool> held(motion.bodies.size(), false), later(motion.bodies.size(), false);
+  for (const MotionWeld& w : motion.welds) {
+    if (w.body >= 0 && at_index(w.body) < later.size()) later[at_index(w.body)] = true;
+  }
+  for (const MotionWeld& w : motion.welds) {
+    check_carrier(motion, w.name, w.carrier, c);
+    if (!c.require(w.body >= 0 && at_index(w.body) < motion.bodies.size(), w.name + ".body", w.body,
+                   "must be the index of a body"))
+      continue;
+    c.require(!motion.bodies[at_index(w.body)].driven, w.name + ".body", w.body, "must not be driven");
+    c.require(!held[at_index(w.body)], w.name + ".body", w.body, "must not be held by two welds");
+    held[at_index(w.body)] = true;
+    if (w.carrier.kind == MotionCarrier::Kind::body && at_index(w.carrier.index) < held.size()) {
+      const std::size_t k = at_index(w.carrier.index);
+      c.require(w.carrier.index != w.body && (held[k] || !later[k]), w.name + ".carrier", w.carrier.index,
+                "must be held, if at all, by an earlier weld");
+    }
+  }
+  std::vector<bool> taken(2 * motion.wires.size(), false);
+  for (const MotionMount& m : motion.mounts) {
+    check_carrier(motion, m.name, m.carrier, c);
+    if (!c.require(m.wire >= 0 && at_index(m.wire) < motion.wires.size(), m.name + ".wire", m.wire,
+                   "must be the index of a wire"))
+      continue;
+    const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
+    const wire::SpatialEnd& end = m.right ? p.right : p.left;
+    c.require(end.kind != wire::SpatialEnd::Kind::free && std::isinf(end.translational_stiffness), m.name + ".wire",
+              m.wire, "must have a rigid mount there");
+    c.require(!motion.wires[at_index(m.wire)].rod.strands.act(), m.name + ".wire", m.wire,
+              "must not be of strands that slide: their moment on a moving mount is not computed");
+    const std::size_t k = 2 * at_index(m.wire) + (m.right ? 1 : 0);
+    c.require(!taken[k], m.name + ".wire", m.wire, "must not be held twice at one end");
+    taken[k] = true;
+  }
+}
+
+ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
+                 const MotionOptions& options)
+    : motion_(motion), end_(options.duration) {
+  for (const MotionArm& a : motion.arms) {
+    Arm& arm = arms_.emplace_back();
+    arm.model = a.arm;
+    arm.model.tree.gravity = motion.gravity;
+    arm.floats = arm.model.tree.size() > 0;
+    for (const multibody::TreeBody& b : arm.model.tree.bodies())
+      arm.floats = arm.floats && (b.parent >= 0 || b.joint == multibody::JointKind::free);
+    const double motion_tolerance = std::min(options.position_tolerance, options.angle_tolerance);
+    arm.part.emplace(arm.model, a.drives, a.loads, multibody::ArmTolerances{motion_tolerance, 1e-6},
+                     multibody::BaseEquations::newton_euler);
+    arm.crowding = multibody::EventCrowding(arm.model.motors());
+  }
+  for (const MotionWeld& w : motion.welds) {
+    const BodyPart& body = bodies[at_index(w.body)];
+    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{},
+                        options);
+    held_.push_back(&body);
+  }
+  for (const MotionMount& m : motion.mounts) {
+    const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
+    mounts_.emplace_back(m.name, frame_of(m.carrier, bodies, mount_pose(m.right ? p.right : p.left)),
+                         rods[at_index(m.wire)], m.right, options);
+  }
+  for (const WeldPart& w : welds_) constraints_.push_back(&w);
+  for (const MountPart& m : mounts_) constraints_.push_back(&m);
+}
+
+// The frame that a carrier holds where it is wanted at the start.
+MovingFrame ConstraintSet::frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
+                              const Pose& X_WF) const {
+  switch (carrier.kind) {
+    case MotionCarrier::Kind::world:
+      break;
+    case MotionCarrier::Kind::body: {
+      const BodyPart& body = bodies[at_index(carrier.index)];
+      return {body, pose_of(body.body().start).inverse() * X_WF};
+    }
+    case MotionCarrier::Kind::arm: {
+      const Arm& arm = arms_[at_index(carrier.index)];
+      const multibody::Tree& tree = arm.model.tree;
+      const int body = tree.frame(carrier.frame).body;
+      if (body < 0) break;
+      multibody::Kinematics kinematics(tree);
+      multibody::place(tree, motion_.arms[at_index(carrier.index)].start.q, kinematics);
+      return {*arm.part, body, kinematics.X_WB[at_index(body)].inverse() * X_WF};
+    }
+  }
+  return MovingFrame(X_WF);
+}
+
+void ConstraintSet::append(std::vector<numerics::DaePart*>& parts) {
+  for (Arm& a : arms_) parts.push_back(&*a.part);
+  for (WeldPart& w : welds_) parts.push_back(&w);
+  for (MountPart& m : mounts_) parts.push_back(&m);
+}
+
+int ConstraintSet::event_count() const {
+  int count = 0;
+  for (const Arm& a : arms_) count += a.part->event_count();
+  return count;
+}
+
+void ConstraintSet::place(VectorXd& y) {
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    arms_[k].part->write_state(motion_.arms[k].start, y);
+    arms_[k].part->settle(0.0, y);
+  }
+  for (std::size_t k = 0; k < welds_.size(); ++k) {
+    const MovingFrame::State s = welds_[k].carrier().state(y);
+    y.segment<3>(held_[k]->velocity()) = s.linear;
+    y.segment<3>(held_[k]->spin()) = s.X_WF.R.transpose() * s.angular;
+  }
+  for (const MountPart& m : mounts_)
+    y.segment<3>(m.rod().velocity_of(m.right() ? m.rod().vertices() - 1 : 0)) = m.carrier().state(y).linear;
+  enter(0.0);
+}
+
+void ConstraintSet::loosen(VectorXd& y) const {
+  for (const Constraint* link : constraints_) y.segment(link->multipliers(), 2 * link->constraints()).setZero();
+}
+
+void ConstraintSet::solve_rates(const VectorXd& y, const VectorXd& rows, VectorXd& rate) {
+  for (Arm& a : arms_) a.part->solve_rates(y, rows, rate);
+}
+
+void ConstraintSet::project(const VectorXd& y, VectorXd& dv) const {
+  static_cast<void>(coupling::project(constraints_, y, {}, dv));
+}
+
+VectorXd ConstraintSet::hold_rates(const VectorXd& y, VectorXd& rate) const {
+  Eigen::Index n = 0;
+  for (const Constraint* link : constraints_) n += link->constraints();
+  VectorXd bias(n);
+  n = 0;
+  for (const Constraint* link : constraints_) {
+    bias.segment(n, link->constraints()) = link->acceleration_bias(y, rate);
+    n += link->constraints();
+  }
+  return coupling::project(constraints_, y, bias, rate);
+}
+
+void ConstraintSet::set_multipliers(const VectorXd& multipliers, VectorXd& y) const {
+  Eigen::Index first = 0;
+  for (const Constraint* link : constraints_) {
+    y.segment(link->multipliers(), link->constraints()) = multipliers.segment(first, link->constraints());
+    first += link->constraints();
+  }
+}
+
+void ConstraintSet::enter(double time) {
+  limit_ = end_;
+  const auto consider = [&](double t) {
+    if (t > time && t < limit_) limit_ = t;
+  };
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    for (const double t : arms_[k].part->breaks()) consider(t);
+    const auto& switches = motion_.arms[k].switches;
+    arms_[k].part->watch_torque(-1, 0.0);
+    if (arms_[k].next_switch >= switches.size()) continue;
+    const multibody::DriveSwitch& next = switches[arms_[k].next_switch];
+    consider(next.time);
+    if (next.joint >= 0 && next.time <= time) arms_[k].part->watch_torque(next.joint, next.torque);
+  }
+  for (Arm& a : arms_) a.part->enter_interval(time, limit_);
+}
+
+bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, VectorXd& y) {
+  if (arms_.empty()) return false;
+  constexpr double beyond = -1e-9;  // of functions scaled to one; far above the accuracy of a found event
+  const double time = at.time;      // `at` may view y, which changes
+  bool anew = false, drives_anew = false;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    ElasticArmPart& part = *arms_[k].part;
+    const auto count = static_cast<std::size_t>(part.event_count());
+    values_.resize(count);
+    part.events(at, values_);
+    std::vector<int> ended_modes;
+    bool torque_reached = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!((!found.empty() && found[first + i] < 0) || values_[i] < beyond)) continue;
+      if (static_cast<int>(i) == part.torque_event()) {
+        torque_reached = true;
+        continue;
+      }
+      ended_modes.push_back(static_cast<int>(i));
+      const int joint = static_cast<int>(i) / ElasticArmPart::events_per_joint;
+      if (arms_[k].crowding.crowded(joint, time)) {
+        stuck_ = fmt::format(
+            "{}: joint {} stays at a jump of its law: a load between the torques on its two sides holds it "
+            "there; give the jump a width (jump_width_deg)",
+            motion_.arms[k].name, arms_[k].model.joints[at_index(joint)].name);
+      }
+    }
+    first += count;
+    if (!ended_modes.empty()) {
+      part.leave_modes(time, y, ended_modes);
+      anew = true;
+    }
+    const auto& switches = motion_.arms[k].switches;
+    if (arms_[k].next_switch < switches.size()) {
+      const multibody::DriveSwitch& next = switches[arms_[k].next_switch];
+      if (next.joint >= 0 ? torque_reached : next.time <= time) {
+        part.set_drives(next.drives, y);
+        ++arms_[k].next_switch;
+        drives_anew = true;
+      }
+    }
+  }
+  if (drives_anew || (time >= limit_ && time < end_)) {
+    enter(time);
+    for (Arm& a : arms_) a.part->settle(time, y);
+    anew = true;
+  }
+  return anew;
+}
+
+void ConstraintSet::save_state(std::vector<double>& memory) const {
+  for (const Arm& a : arms_) {
+    memory.push_back(static_cast<double>(a.next_switch));
+    a.crowding.save_state(memory);
+  }
+}
+
+void ConstraintSet::restore_state(double time, VectorXd& y, std::span<const double>& memory) {
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    const auto& switches = motion_.arms[k].switches;
+    arms_[k].next_switch = std::min(static_cast<std::size_t>(numerics::take(memory)), switches.size());
+    arms_[k].crowding.restore_state(memory);
+    // A motor that the drives brake stands still in y already.
+    if (arms_[k].next_switch > 0) arms_[k].part->set_drives(switches[arms_[k].next_switch - 1].drives, y);
+  }
+  enter(time);
+}
+
+void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, MotionSample* sample) const {
+  for (const Arm& a : arms_) {
+    const multibody::ArmState state = a.part->state(y);
+    multibody::Kinematics kinematics(a.model.tree);
+    multibody::place(a.model.tree, state.q, kinematics);
+    multibody::set_moving(a.model.tree, state.v, kinematics);
+    const double links = multibody::kinetic_energy(a.model.tree, kinematics);
+    const double potential = multibody::potential_energy(a.model.tree, kinematics);
+    double motors = 0.0;
+    for (int k = 0; k < a.model.motors(); ++k)
+      motors += 0.5 * a.model.joints[at_index(k)].motor_inertia * state.motor_rate[k] * state.motor_rate[k];
+    const multibody::ArmWork work = a.part->work(y);
+    energy.kinetic += links + motors;
+    energy.potential += potential;
+    energy.strain += multibody::total_energy(a.model, state) - links - motors - potential;
+    energy.dissipated += work.lost;
+    energy.work += work.motors + work.loads;
+    if (sample == nullptr || !a.floats) continue;
+    const multibody::Wrench h = multibody::momentum(a.model.tree, kinematics);
+    sample->momentum += h.force;
+    sample->angular_momentum += h.moment;
+  }
+}
+
+// Whether the momentum of what carries the frame is counted.
+bool ConstraintSet::counted(const MovingFrame& frame) const {
+  if (frame.body() != nullptr) return frame.moves_freely();
+  for (const Arm& a : arms_) {
+    if (&*a.part == frame.arm()) return a.floats;
+  }
+  return false;
+}
+
+ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
+  Outer sum;
+  const auto add = [&](const Constraint& link, const Vector3d& moment) {
+    const MovingFrame& carrier = link.carrier();
+    if (counted(carrier)) return;
+    const multibody::Wrench w = link.wrench(at.y);
+    const MovingFrame::State s = carrier.state(at.y);
+    sum.force += w.force;
+    sum.moment += moment + s.X_WF.p.cross(w.force);
+    if (carrier.moves_freely()) return;
+    sum.power += w.force.dot(s.linear) + moment.dot(s.angular);
+  };
+  for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
+  for (const MountPart& m : mounts_) add(m, -m.moment(at));
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    if (!arms_[k].floats) continue;
+    const multibody::Tree& tree = arms_[k].model.tree;
+    multibody::Kinematics kinematics(tree);
+    multibody::place(tree, arms_[k].part->state(at.y).q, kinematics);
+    const Vector3d weight = tree.mass() * motion_.gravity;
+    sum.force += weight;
+    sum.moment += multibody::centre_of_mass(tree, kinematics).cross(weight);
+    for (const multibody::TimedLoad& load : motion_.arms[k].loads) {
+      const double share = load.share(at.time);
+      const Vector3d point = multibody::frame_pose(tree, kinematics, load.frame).p;
+      sum.force += share * load.peak.force;
+      sum.moment += share * (load.peak.moment + point.cross(load.peak.force));
+    }
+  }
+  return sum;
+}
+
+void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
+  for (std::size_t k = 0; k < mounts_.size(); ++k) {
+    const auto i = 2 * at_index(motion_.mounts[k].wire) + (mounts_[k].right() ? 1 : 0);
+    sample.mount_forces[i] = mounts_[k].wrench(y).force;
+  }
+  for (const Arm& a : arms_) {
+    MotionSample::Arm s;
+    s.state = a.part->state(y);
+    s.work = a.part->work(y);
+    s.joint_torque.resize(a.model.motors());
+    for (int k = 0; k < a.model.motors(); ++k) s.joint_torque[k] = a.part->joint_torque(y, k);
+    sample.arms.push_back(std::move(s));
+  }
+  for (const WeldPart& w : welds_) sample.welds.push_back(w.wrench(y));
+}
+
+double ConstraintSet::largest_gap(const VectorView& y) const {
+  double gap = 0.0;
+  for (const WeldPart& w : welds_) gap = std::max(gap, w.gap(y));
+  for (const MountPart& m : mounts_) gap = std::max(gap, m.gap(y));
+  return gap;
+}
+
+}  // namespace snare::coupling

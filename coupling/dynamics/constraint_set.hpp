@@ -1,0 +1,89 @@
+#pragma once
+
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/mount_part.hpp"
+#include "multibody/arm/event_crowding.hpp"
+#include "base/errors.hpp"
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace snare::coupling {
+
+/// Arms, welds and moving mounts of one run.                                           theory.md (M.15)-(M.17)
+class ConstraintSet {
+ public:
+  /// What is wrong with them, appended.
+  static void check(const Motion& motion, std::vector<base::InputProblem>& problems);
+
+  ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
+          const MotionOptions& options);
+
+  /// Last among the parts of the system, in this order.
+  void append(std::vector<numerics::DaePart*>& parts);
+  [[nodiscard]] int event_count() const;
+
+  /// The arms' start, and velocities of all that is held from those of their carriers, in y.
+  void place(Eigen::VectorXd& y);
+  /// Multipliers zero.
+  void loosen(Eigen::VectorXd& y) const;
+  /// Rates of the arms that annul their rows of a residual with vanishing rates of theirs.
+  void solve_rates(const Eigen::VectorXd& y, const Eigen::VectorXd& rows, Eigen::VectorXd& rate);
+  /// Adds to changes of the velocities what the constraints make of them.                       theory.md (M.16)
+  void project(const Eigen::VectorXd& y, Eigen::VectorXd& dv) const;
+  /// Adds to free rates the accelerations of the constraints' forces; returns the multipliers.
+  Eigen::VectorXd hold_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  void set_multipliers(const Eigen::VectorXd& multipliers, Eigen::VectorXd& y) const;
+
+  /// Time up to which nothing of the arms jumps but by an event [s].
+  [[nodiscard]] double limit() const { return limit_; }
+  /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms, empty
+  /// when it found none. True: the integration must start anew.
+  [[nodiscard]] bool follow(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
+  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: drives and crowding of events.
+  void save_state(std::vector<double>& memory) const;
+  void restore_state(double time, Eigen::VectorXd& y, std::span<const double>& memory);
+  /// Why it cannot go on, if so.
+  [[nodiscard]] const std::optional<std::string>& stuck() const { return stuck_; }
+
+  /// Adds the arms' energies, works and losses, and their momentum when nothing holds their base.
+  void add_energy(const numerics::VectorView& y, EnergyBalance& energy, MotionSample* sample) const;
+  /// Forces that count as outer ones [N], their moments about the origin [N m], and the power of driven carriers [W].
+  struct Outer {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    double power = 0.0;
+  };
+  [[nodiscard]] Outer outer(const numerics::DaePoint& at) const;
+  /// Forces of moving mounts into a sample, and the arms' coordinates.
+  void fill(const numerics::VectorView& y, MotionSample& sample) const;
+  [[nodiscard]] double largest_gap(const numerics::VectorView& y) const;
+
+ private:
+  struct Arm {
+    multibody::ElasticArm model;
+    std::optional<multibody::ElasticArmPart> part;
+    multibody::EventCrowding crowding{0};
+    std::size_t next_switch = 0;
+    bool floats = false;
+  };
+  [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
+                                     const multibody::Pose& X_WF) const;
+  [[nodiscard]] bool counted(const MovingFrame& frame) const;
+  void enter(double time);
+
+  const Motion& motion_;
+  double end_;
+  double limit_ = 0.0;
+  std::deque<Arm> arms_;
+  std::deque<WeldPart> welds_;
+  std::deque<MountPart> mounts_;
+  std::vector<const BodyPart*> held_;  // by each weld
+  std::vector<const Constraint*> constraints_;
+  std::vector<double> values_;
+  std::optional<std::string> stuck_;
+};
+
+}  // namespace snare::coupling

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/body_part.hpp"
+
+#include <vector>
+
+namespace snare::coupling {
+
+/// A law between a point of a body and a plane fixed in the world, in place of a wire.        theory.md (L.5)
+///   d = n.(p_WP - p_0) - v_0 t,  d' = n.v_WP - v_0;  the body gets -F(d, d') n at P
+/// It has no unknowns of its own and adds to the body's rows.
+class LawPart final : public numerics::DaePart {
+ public:
+  LawPart(const PointContactLaw& spring, const BodyPart& body) : spring_(spring), body_(body) {}
+
+  void declare(numerics::DaeLayout& layout) override;
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override;
+  void attach_pattern(const numerics::SparseMatrix& pattern) override;
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// The penetration: its zeros are where the law has its corner.
+  [[nodiscard]] int event_count() const override { return 1; }
+  void events(const numerics::DaePoint& at, std::span<double> values) override;
+
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
+  /// Power that the law takes from body and plane [W]; negative when it gives back.
+  [[nodiscard]] double taken_power(const numerics::DaePoint& at) const;
+
+ private:
+  struct Geometry;
+  [[nodiscard]] Geometry geometry(double time, const numerics::VectorView& y) const;
+
+  PointContactLaw spring_;
+  const BodyPart& body_;
+  std::vector<int> slots_;  // rows v, w (6) by columns p, q, v, w (13)
+};
+
+}  // namespace snare::coupling

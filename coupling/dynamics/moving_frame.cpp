@@ -1,0 +1,192 @@
+#include "coupling/dynamics/moving_frame.hpp"
+
+#include "multibody/dynamics.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace snare::coupling {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using multibody::Matrix6X;
+using multibody::Pose;
+using multibody::skew;
+using multibody::Wrench;
+using numerics::VectorView;
+
+namespace {
+
+/// Axes of the joints that bear a body of a tree, at a point: velocity's index, depth in the chain, s and v in J.
+struct ChainAxis {
+  int velocity;
+  int depth;
+};
+
+std::vector<ChainAxis> chain_of(const multibody::Tree& tree, int body) {
+  std::vector<ChainAxis> chain;
+  int depth = 0;
+  for (int i = body; i >= 0; i = tree.body(i).parent) {
+    for (int k = 0; k < tree.body(i).velocities(); ++k) chain.push_back({tree.body(i).v_index + k, -depth});
+    ++depth;
+  }
+  return chain;
+}
+
+}  // namespace
+
+MovingFrame::MovingFrame(const multibody::ElasticArmPart& arm, int body, const Pose& X_BF)
+    : arm_(body < 0 ? nullptr : &arm), tree_body_(body), X_CF_(X_BF) {}
+
+bool MovingFrame::moves_freely() const {
+  return arm_ != nullptr || (body_ != nullptr && body_->moves_freely());
+}
+
+std::vector<int> MovingFrame::coordinates() const {
+  std::vector<int> list;
+  const int first = body_ != nullptr ? body_->position() : (arm_ != nullptr ? arm_->coordinates() : 0);
+  const int count = body_ != nullptr ? 7 : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
+  for (int i = 0; i < count; ++i) list.push_back(first + i);
+  return list;
+}
+
+std::vector<int> MovingFrame::velocities() const {
+  std::vector<int> list;
+  const int first = body_ != nullptr ? body_->velocity() : (arm_ != nullptr ? arm_->velocities() : 0);
+  const int count = body_ != nullptr ? 6 : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
+  for (int i = 0; i < count; ++i) list.push_back(first + i);
+  return list;
+}
+
+MovingFrame::State MovingFrame::state(const VectorView& y) const {
+  State s;
+  if (body_ != nullptr) {
+    const Pose X_WB{multibody::rotation(y.segment<4>(body_->quaternion())), y.segment<3>(body_->position())};
+    s.X_WF = X_WB * X_CF_;
+    s.angular = X_WB.R * y.segment<3>(body_->spin());
+    s.linear = y.segment<3>(body_->velocity()) + s.angular.cross(X_WB.R * X_CF_.p);
+  } else if (arm_ != nullptr) {
+    const multibody::Tree& tree = arm_->arm().tree;
+    multibody::Kinematics kinematics(tree);
+    multibody::place(tree, y.segment(arm_->coordinates(), tree.coordinates()), kinematics);
+    multibody::set_moving(tree, y.segment(arm_->velocities(), tree.velocities()), kinematics);
+    const Pose& X_WB = kinematics.X_WB[static_cast<std::size_t>(tree_body_)];
+    const multibody::Twist& V = kinematics.V_B[static_cast<std::size_t>(tree_body_)];
+    s.X_WF = X_WB * X_CF_;
+    s.angular = X_WB.R * V.angular;
+    s.linear = X_WB.R * (V.linear + V.angular.cross(X_CF_.p));
+  } else {
+    s.X_WF = X_CF_;
+  }
+  return s;
+}
+
+Matrix6X MovingFrame::jacobian(const VectorView& y) const {
+  if (body_ != nullptr) {
+    const Matrix3d R = multibody::rotation(y.segment<4>(body_->quaternion()));
+    Matrix6X J = Matrix6X::Zero(6, 6);
+    J.topRightCorner<3, 3>() = R;
+    J.bottomLeftCorner<3, 3>().setIdentity();
+    J.bottomRightCorner<3, 3>() = -R * skew(X_CF_.p);
+    return J;
+  }
+  if (arm_ == nullptr) return Matrix6X::Zero(6, 0);
+  const multibody::Tree& tree = arm_->arm().tree;
+  multibody::Kinematics kinematics(tree);
+  multibody::place(tree, y.segment(arm_->coordinates(), tree.coordinates()), kinematics);
+  return multibody::point_jacobian(tree, kinematics, tree_body_,
+                                   (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p);
+}
+
+MovingFrame::Derivatives MovingFrame::differentiate(const VectorView& y) const {
+  Derivatives d;
+  d.jacobian = jacobian(y);
+  if (body_ != nullptr) {
+    // Coordinates: the centre of mass and the quaternion, whose change dq turns the body by 4 R Q^T dq.
+    const Vector4d q = y.segment<4>(body_->quaternion());
+    const Matrix3d R = multibody::rotation(q);
+    const Eigen::Matrix<double, 3, 4> turn = 4.0 * R * multibody::quaternion_rates(q).transpose();
+    const Vector3d arm = R * X_CF_.p;
+    d.place = d.motion = Matrix6X::Zero(6, 7);
+    d.place.bottomLeftCorner<3, 3>().setIdentity();
+    d.place.topRightCorner<3, 4>() = turn;
+    d.place.bottomRightCorner<3, 4>() = -skew(arm) * turn;
+    d.jacobian_by.assign(7, Matrix6X::Zero(6, 6));
+    for (int k = 0; k < 4; ++k) {
+      const Matrix3d turned = skew(turn.col(k)) * R;
+      Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(3 + k)];
+      by.topRightCorner<3, 3>() = turned;
+      by.bottomRightCorner<3, 3>() = -turned * skew(X_CF_.p);
+      d.motion.col(3 + k) << turned * y.segment<3>(body_->spin()),
+          by.bottomRightCorner<3, 3>() * y.segment<3>(body_->spin());
+    }
+    return d;
+  }
+  if (arm_ == nullptr) {
+    d.place = d.motion = Matrix6X::Zero(6, 0);
+    return d;
+  }
+  // Moving axis j (s_j, and v_j at the frame's origin) carries the axes of its own joint and all outward of it along:
+  // ds_i = s_j x s_i, dv_i = s_j x v_i, and moves the origin for those inward: dv_i = s_i x v_j.
+  const multibody::Tree& tree = arm_->arm().tree;
+  const int nv = tree.velocities(), nq = tree.coordinates();
+  const std::vector<ChainAxis> chain = chain_of(tree, tree_body_);
+  std::vector<Matrix6X> by_motion(static_cast<std::size_t>(nv), Matrix6X::Zero(6, nv));
+  for (const ChainAxis& j : chain) {
+    const Vector3d s_j = d.jacobian.col(j.velocity).head<3>(), v_j = d.jacobian.col(j.velocity).tail<3>();
+    Matrix6X& by = by_motion[static_cast<std::size_t>(j.velocity)];
+    for (const ChainAxis& i : chain) {
+      const Vector3d s_i = d.jacobian.col(i.velocity).head<3>(), v_i = d.jacobian.col(i.velocity).tail<3>();
+      if (i.depth >= j.depth) {
+        by.col(i.velocity) << s_j.cross(s_i), s_j.cross(v_i);
+      } else {
+        by.col(i.velocity).tail<3>() = s_i.cross(v_j);
+      }
+    }
+  }
+  const MatrixXd to_motion = multibody::coordinate_motion(tree, y.segment(arm_->coordinates(), nq));
+  d.place = d.jacobian * to_motion;
+  d.jacobian_by.assign(static_cast<std::size_t>(nq), Matrix6X::Zero(6, nv));
+  d.motion = Matrix6X::Zero(6, nq);
+  for (int k = 0; k < nq; ++k) {
+    Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(k)];
+    for (int j = 0; j < nv; ++j) {
+      if (to_motion(j, k) != 0.0) by += to_motion(j, k) * by_motion[static_cast<std::size_t>(j)];
+    }
+    d.motion.col(k) = by * y.segment(arm_->velocities(), nv);
+  }
+  return d;
+}
+
+MatrixXd MovingFrame::Derivatives::force(const Wrench& wrench) const {
+  MatrixXd result(jacobian.cols(), static_cast<Eigen::Index>(jacobian_by.size()));
+  for (std::size_t k = 0; k < jacobian_by.size(); ++k)
+    result.col(static_cast<Eigen::Index>(k)) = jacobian_by[k].transpose() * wrench.vector();
+  return result;
+}
+
+void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench,
+                       Eigen::Ref<Eigen::VectorXd> rows) const {
+  if (!moves_freely()) return;
+  const int first = body_ != nullptr ? body_->velocity() : arm_->velocities();
+  rows.segment(first, jacobian.cols()) -= jacobian.transpose() * wrench.vector();
+}
+
+void MovingFrame::apply_impulse(const VectorView& y, const Matrix6X& jacobian, const Wrench& wrench,
+                          Eigen::VectorXd& dv) const {
+  if (!moves_freely()) return;
+  const Eigen::VectorXd force = jacobian.transpose() * wrench.vector();
+  if (body_ != nullptr) {
+    dv.segment<3>(body_->velocity()) += force.head<3>() / body_->body().properties.mass;
+    dv.segment<3>(body_->spin()) += body_->inverse_inertia() * force.tail<3>();
+    return;
+  }
+  const multibody::Tree& tree = arm_->arm().tree;
+  multibody::DynamicsWorkspace workspace(tree);
+  const MatrixXd& H =
+      multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
+  dv.segment(arm_->velocities(), tree.velocities()) += H.ldlt().solve(force);
+}
+
+}  // namespace snare::coupling

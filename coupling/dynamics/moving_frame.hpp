@@ -1,0 +1,66 @@
+#pragma once
+
+#include "coupling/dynamics/body_part.hpp"
+#include "multibody/arm/arm_part.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace snare::coupling {
+
+/// A frame that a body, an arm or the world carries, as constraints see it.                    theory.md (M.15)
+///
+/// Its place depends on the unknowns `coordinates()`, its motion on these and on `velocities()`; the rows of the same
+/// index as the velocities are the balances of force to which a wrench on the frame adds -J^T F. A body that is driven
+/// has coordinates but no rows.
+class MovingFrame {
+ public:
+  /// Fixed in the world.
+  explicit MovingFrame(const multibody::Pose& X_WF) : X_CF_(X_WF) {}
+  MovingFrame(const BodyPart& body, const multibody::Pose& X_BF) : body_(&body), X_CF_(X_BF) {}
+  /// X_BF: in the frame of a body of the arm's tree; body -1: the world.
+  MovingFrame(const multibody::ElasticArmPart& arm, int body, const multibody::Pose& X_BF);
+
+  /// Pose in the world, angular velocity, and velocity of the origin, in the axes of the world.
+  struct State {
+    multibody::Pose X_WF;
+    Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+  };
+  [[nodiscard]] State state(const numerics::VectorView& y) const;
+
+  /// Derivatives at one y, angular over linear, in the axes of the world.
+  struct Derivatives {
+    multibody::Matrix6X jacobian;  ///< motion by velocities: J
+    multibody::Matrix6X place;     ///< turn and shift by coordinates
+    multibody::Matrix6X motion;    ///< motion by coordinates
+    /// (columns of the jacobian x coordinates): derivative of J^T F for a wrench that is fixed in the world, by M and F.
+    [[nodiscard]] Eigen::MatrixXd force(const multibody::Wrench& wrench) const;
+    std::vector<multibody::Matrix6X> jacobian_by;  ///< J by each coordinate
+  };
+  [[nodiscard]] Derivatives differentiate(const numerics::VectorView& y) const;
+  /// J alone.
+  [[nodiscard]] multibody::Matrix6X jacobian(const numerics::VectorView& y) const;
+
+  [[nodiscard]] std::vector<int> coordinates() const;
+  [[nodiscard]] std::vector<int> velocities() const;
+  /// Whether forces on it move it.
+  [[nodiscard]] bool moves_freely() const;
+  /// Adds -J^T F to the rows of whoever carries it.
+  void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
+            Eigen::Ref<Eigen::VectorXd> rows) const;
+  /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier.
+  void apply_impulse(const numerics::VectorView& y, const multibody::Matrix6X& jacobian,
+               const multibody::Wrench& wrench, Eigen::VectorXd& dv) const;
+  [[nodiscard]] const BodyPart* body() const { return body_; }
+  [[nodiscard]] const multibody::ElasticArmPart* arm() const { return arm_; }
+
+ private:
+  const BodyPart* body_ = nullptr;
+  const multibody::ElasticArmPart* arm_ = nullptr;
+  int tree_body_ = -1;
+  multibody::Pose X_CF_;
+};
+
+}  // namespace snare::coupling

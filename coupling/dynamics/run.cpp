@@ -1,0 +1,226 @@
+#include "coupling/dynamics/run.hpp"
+
+#include "base/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+namespace snare::coupling {
+
+using Eigen::VectorXd;
+using numerics::DaePoint;
+
+MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const MotionObserver& observer)
+    : motion_(motion), options_(options), observer_(observer) {
+  for (const MotionWire& w : motion.wires) {
+    wire::RodInMotion rod = w.rod;
+    rod.properties.weight = rod.mass_per_length * motion.gravity;
+    rods_.emplace_back(
+        w.name, rod,
+        wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
+  }
+  for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
+  for (const MotionContact& c : motion.contacts) {
+    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)],
+                           bodies_[static_cast<std::size_t>(c.body)], options);
+  }
+  for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  for (const ContactHandle& p : points()) friction_events_.emplace_back(*p.part);
+  constraints_.emplace(motion, rods_, bodies_, options);
+  system_ = std::make_unique<numerics::DaeSystem>(parts());
+  y_ = VectorXd::Zero(system_->size());
+  rate_ = y_;
+  for (std::size_t i = 0; i < rods_.size(); ++i)
+    rods_[i].place(motion.wires[i].positions, motion.wires[i].velocities, y_);
+  for (const BodyPart& b : bodies_) b.place(y_);
+  constraints_->place(y_);
+  require_apart();
+  numerics::IdaOptions ida;
+  ida.relative_tolerance = options.relative_tolerance;
+  ida.max_order = options.max_order;
+  ida.max_step = options.max_step;
+  ida.newton_test = numerics::NewtonTest::every_unknown;
+  ida.newton_share = options.newton_share;
+  const auto touching = static_cast<int>(contacts_.size() + springs_.size());
+  integrals_ = VectorXd::Zero(integral::contacts + 3 * touching);
+  ida_ = std::make_unique<numerics::Ida>(
+      *system_, ida,
+      numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
+                             [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
+  ida_->watch([this](double from, const numerics::Ida& now) { return first_touch(from, now); });
+  sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
+}
+
+std::vector<numerics::DaePart*> MotionRun::parts() {
+  std::vector<numerics::DaePart*> list;
+  for (auto& r : rods_) list.push_back(&r);
+  for (auto& b : bodies_) list.push_back(&b);
+  for (const ContactHandle& p : points()) list.push_back(p.part);
+  for (auto& s : springs_) list.push_back(&s);
+  for (auto& f : friction_events_) list.push_back(&f);
+  constraints_->append(list);
+  return list;
+}
+
+// A wire that is inside a shape has no side to which it belongs.
+void MotionRun::require_apart() {
+  std::vector<base::InputProblem> problems;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const MotionContact& c = motion_.contacts[k];
+    const GapMinimum n = contacts_[k].nearest(y_);
+    for (ContactPart& p : contacts_[k].points()) p.wait_at(n.coordinate, y_);
+    // The start may touch, up to a small part of the wire's radius.
+    if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
+      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate), "must be >= 0 m at the start"});
+  }
+  if (!problems.empty()) throw base::InputError(problems);
+}
+
+bool MotionRun::write_until(double time) {
+  if (!observer_) return false;
+  while (static_cast<double>(sums_.samples) * options_.output_interval <= time) {
+    const double t = static_cast<double>(sums_.samples) * options_.output_interval;
+    ++sums_.samples;
+    if (t == time_) {
+      if (observer_(sample({t, y_, rate_}, integrals_))) return true;
+      continue;
+    }
+    const VectorXd y = ida_->interpolate(t);
+    const VectorXd rate = ida_->interpolate(t, 1);
+    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
+  }
+  return false;
+}
+
+void MotionRun::begin() {
+  MotionSample start;
+  const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
+  sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
+  sums_.start_momentum = start.momentum;
+  sums_.start_angular_momentum = start.angular_momentum;
+  refused_ = close_touching();
+  settle();
+}
+
+void MotionRun::resume(const MotionState& from) {
+  if (from.unknowns.size() != y_.size() || from.rates.size() != y_.size() ||
+      from.integrals.size() != integrals_.size() || from.sums.peak_force.size() != sums_.peak_force.size()) {
+    throw base::InputError({"", 0, "state", fmt::format("{} unknowns", from.unknowns.size()),
+                                fmt::format("must be that of the same motion, of {} unknowns", y_.size())});
+  }
+  time_ = from.time;
+  y_ = from.unknowns;
+  rate_ = from.rates;
+  integrals_ = from.integrals;
+  sums_ = from.sums;
+  std::span<const double> memory = from.memory;
+  for (ContactPoints& c : contacts_) c.restore_state(memory);
+  constraints_->restore_state(time_, y_, memory);
+  system_->restore_state(y_, memory);
+  ida_->set_integrals(integrals_);
+  ida_->start(time_, y_, rate_);
+}
+
+MotionResult MotionRun::go(double limit) {
+  const auto clock = std::chrono::steady_clock::now();
+  numerics::IdaReport report;
+  bool stopped = write_until(time_);
+  while (!stopped && !refused_ && !reached(time_, limit)) {
+    const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()));
+    report = ida_->report();
+    if (advance == numerics::IdaAdvance::failed) {
+      if (!rest_lost_minima()) break;
+      settle();
+      continue;
+    }
+    time_ = ida_->time();
+    y_ = ida_->y();
+    rate_ = ida_->rate();
+    integrals_ = ida_->integrals();
+    watch();
+    stopped = write_until(time_) || (options_.stop && options_.stop());
+    bool changed = leave_broken_modes(advance == numerics::IdaAdvance::event);
+    const std::vector<int> found = ida_->events_found();
+    const auto arms = static_cast<std::size_t>(constraints_->event_count());  // the last of the events
+    changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_) || changed;
+    if (constraints_->stuck()) {
+      report.termination = numerics::Termination::step_too_small;
+      report.message = *constraints_->stuck();
+      break;
+    }
+    if (advance != numerics::IdaAdvance::event) {
+      if (changed) settle();
+      continue;
+    }
+    // The watch stops a step at a touch, without an event of the integrator.
+    if (std::none_of(found.begin(), found.end(), [](int f) { return f != 0; })) {
+      refused_ = close_touching();
+      if (refused_) break;
+      changed = true;
+    }
+    std::size_t event = 0;
+    for (const ContactHandle& p : points()) {
+      if (found[event++] >= 0) continue;  // only a falling force is an event
+      changed = true;
+      open(p);
+    }
+    for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
+      if (found[event] == 0) continue;
+      changed = true;
+      const bool touch = found[event] > 0;
+      sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
+                              touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
+    }
+    if (changed) settle();
+    if (static_cast<int>(sums_.events.size()) > options_.max_events) {
+      report.termination = numerics::Termination::iteration_limit;
+      report.message = fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
+      break;
+    }
+  }
+  if (refused_) {
+    report.termination = numerics::Termination::iteration_limit;
+    report.message = *refused_;
+  }
+  if (stopped && report.usable()) {
+    report.termination = numerics::Termination::interrupted;
+    report.message = fmt::format("stopped on request at {:.9g} s", time_);
+  }
+  report.time = time_;
+  sums_.statistics += ida_->statistics();
+  sums_.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return result(std::move(report));
+}
+
+MotionResult MotionRun::result(numerics::IdaReport report) {
+  MotionResult r;
+  r.report = std::move(report);
+  const MotionSample last = sample({time_, y_, rate_}, integrals_);
+  r.energy = last.energy;
+  r.momentum_error = last.momentum - sums_.start_momentum - integrals_.segment<3>(integral::outer);
+  r.angular_momentum_error =
+      last.angular_momentum - sums_.start_angular_momentum - integrals_.segment<3>(integral::outer_moment);
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(sums_.peak_force.size()); ++k)
+    r.impulse.emplace_back(integrals_.segment<3>(integral::contacts + 3 * k));
+  r.events = sums_.events;
+  r.peak_force = sums_.peak_force;
+  r.largest_penetration = sums_.largest_penetration;
+  r.largest_gap = sums_.largest_gap;
+  r.largest_drift = sums_.largest_drift;
+  r.statistics = sums_.statistics;
+  r.wall_seconds = sums_.wall_seconds;
+  r.search_seconds = sums_.search_seconds;
+  std::vector<double> memory;
+  for (const ContactPoints& c : contacts_) c.save_state(memory);
+  constraints_->save_state(memory);
+  const std::vector<double> parts = system_->memory();
+  memory.insert(memory.end(), parts.begin(), parts.end());
+  r.last = {time_, y_, rate_, integrals_, std::move(memory), sums_};
+  return r;
+}
+
+}  // namespace snare::coupling

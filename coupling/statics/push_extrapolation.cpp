@@ -1,0 +1,62 @@
+#include "coupling/statics/push_solver.hpp"
+
+#include <cmath>
+
+namespace snare::coupling {
+
+ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
+  ExtrapolatedCurve result;
+  result.curve = solve_push(test, options);
+  PushOptions coarse_options = options;
+  coarse_options.shapes_at.clear();
+  coarse_options.progress = nullptr;
+  coarse_options.examine_out_of_plane = false;
+  coarse_options.examine_rates = false;
+  const PushCurve half = solve_push(test, coarse_options, 2);
+  const PushCurve quarter = solve_push(test, coarse_options, 4);
+  result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
+  result.discretisation_error.assign(result.curve.points.size(), 0.0);
+  const auto extrapolated = [](double fine, double half_value, double quarter_value) {
+    return (64.0 * fine - 20.0 * half_value + quarter_value) / 45.0;
+  };
+  if (half.report.usable() && quarter.report.usable()) {
+    PushCurve& c = result.curve;
+    c.natural_height = extrapolated(c.natural_height, half.natural_height, quarter.natural_height);
+    c.touch_height = extrapolated(c.touch_height, half.touch_height, quarter.touch_height);
+  }
+
+  // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
+  std::size_t in_half = 0;
+  std::size_t in_quarter = 0;
+  const auto find = [](const std::vector<PushPoint>& points, std::size_t from, double travel) {
+    while (from < points.size() && points[from].travel != travel) ++from;
+    return from;
+  };
+  const auto same_state = [](const PushPoint& a, const PushPoint& b) {
+    return a.in_contact == b.in_contact && a.slipping == b.slipping && a.unstable_modes == b.unstable_modes;
+  };
+  for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
+    PushPoint& p = result.curve.points[i];
+    const std::size_t j = find(half.points, in_half, p.travel);
+    const std::size_t k = find(quarter.points, in_quarter, p.travel);
+    if (j == half.points.size() || k == quarter.points.size()) continue;
+    in_half = j + 1;
+    in_quarter = k + 1;
+    const PushPoint& h = half.points[j];
+    const PushPoint& q = quarter.points[k];
+    p.iterations += h.iterations + q.iterations;
+    if (!same_state(p, h) || !same_state(p, q)) continue;
+    const double third_order = (32.0 * p.force - 12.0 * h.force + q.force) / 21.0;
+    for (double PushPoint::*value : {&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
+                                     &PushPoint::tension_right, &PushPoint::contact_coordinate}) {
+      p.*value = extrapolated(p.*value, h.*value, q.*value);
+    }
+    for (std::size_t v = 0; v < p.force_by.size(); ++v) {
+      p.force_by[v] = extrapolated(p.force_by[v], h.force_by[v], q.force_by[v]);
+    }
+    result.discretisation_error[i] = 2.0 * std::abs(p.force - third_order);
+  }
+  return result;
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,206 @@
+#include "coupling/statics/push_sensitivity.hpp"
+
+#include "coupling/statics/push_setup.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace snare::coupling {
+
+namespace {
+
+using Eigen::Vector2d;
+
+Vector2d turned(const Vector2d& v, double angle) { return Eigen::Rotation2Dd(angle) * v; }
+
+/// The point moved by a multiple of a change.
+numerics::PathPoint moved(const numerics::PathPoint& at, const numerics::PathPoint& change, double amount) {
+  return {at.band + amount * change.band, at.border + amount * change.border,
+          at.parameter + amount * change.parameter};
+}
+
+/// Positions that the mounts of this rod hold, in the order of the band unknowns; zero elsewhere.
+Eigen::VectorXd held_positions(const wire::PlanarRod& rod) {
+  Eigen::VectorXd held = Eigen::VectorXd::Zero(rod.unknowns());
+  const auto put = [&held](const wire::PlanarEnd& end, int row) {
+    if (end.kind == wire::PlanarEnd::Kind::free) return;
+    held.segment<2>(row) = end.position;
+  };
+  put(rod.properties().left, 0);
+  put(rod.properties().right, rod.unknowns() - 2);
+  return held;
+}
+
+}  // namespace
+
+PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMesh& mesh,
+                                 const std::vector<PushVariation>& variations) {
+  for (const PushVariation& variation : variations) {
+    assert(variation.step > 0.0);
+    Varied varied;
+    varied.step = variation.step;
+    varied.travel = variation.travel;
+    varied.mount_compliance = variation.mount_compliance;
+    for (const int k : {0, 1}) {
+      Side& side = varied.sides[static_cast<std::size_t>(k)];
+      side.amount = k == 0 ? -variation.step : variation.step;
+      PushProblem changed = test;
+      if (variation.apply) variation.apply(changed, side.amount);
+      side.rod = std::make_unique<wire::PlanarRod>(mesh, rod_properties(changed));
+      const wire::Controls controls = initial_controls(changed);
+      side.system = std::make_unique<PushSystem>(*side.rod, controls);
+      side.contacts = make_contacts(changed, mesh, controls);
+      side.controls = controls;
+      side.system->compliance = changed.pusher.compliance;
+      side.slip_limit = changed.mount.slip_tension.value_or(0.0);
+    }
+    const auto& [minus, plus] = varied.sides;
+    const double twice = 2.0 * variation.step;
+    varied.held = (held_positions(*plus.rod) - held_positions(*minus.rod)) / twice;
+    for (std::size_t k = 0; k < plus.contacts.size(); ++k) {
+      varied.centre.emplace_back((plus.contacts[k].centre - minus.contacts[k].centre) / twice);
+      varied.memory.coordinate.push_back(
+          (plus.contacts[k].last_coordinate - minus.contacts[k].last_coordinate) / twice);
+    }
+    varied.memory.angle.assign(plus.contacts.size(), 0.0);
+    varied_.push_back(std::move(varied));
+  }
+  force_by_.assign(varied_.size(), 0.0);
+}
+
+// The states of the system's contacts with the constants of the changed test.
+void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side& side) const {
+  side.system->restore(system.contact_states());
+  ContactStates& states = *side.system;
+  const Memory& memory = varied.memory;
+  for (std::size_t k = 0; k < states.guided.size(); ++k) {
+    SlidingContact& contact = states.guided[k];
+    const SlidingContact& constants = side.contacts[k];
+    contact.radius = constants.radius;
+    contact.friction = constants.friction;
+    contact.motion = constants.motion;
+    contact.centre += side.amount * varied.centre[k];
+    contact.last_coordinate += side.amount * memory.coordinate[k];
+    contact.last_tangent = turned(contact.last_tangent, side.amount * memory.angle[k]);
+  }
+  for (WrappedContact& contact : states.riding) {
+    contact.friction = side.contacts.front().friction;
+    const auto known = memory.radial.find(contact.node);
+    if (known != memory.radial.end()) contact.last_radial = turned(contact.last_radial, side.amount * known->second);
+  }
+  const auto shift = [&side](std::vector<double>& values, const std::vector<double>& rates) {
+    for (std::size_t i = 0; i < rates.size() && i < values.size(); ++i) values[i] += side.amount * rates[i];
+  };
+  shift(states.sections.bending, memory.bending);
+  shift(states.sections.axial, memory.axial);
+  // The material that the sliders were remembered of.
+  wire::Controls& controls = states.sections.controls;
+  controls[2] += 0.5 * (side.amount > 0.0 ? 1.0 : -1.0) * (varied.sides[1].controls[2] - varied.sides[0].controls[2]);
+  if (states.guided.size() > 1) controls[2] = system.sections.controls[2];  // supports: a contact's coordinate, below
+  for (std::size_t k = 0; k < states.guided.size(); ++k) {
+    controls[static_cast<std::size_t>(states.guided[k].control)] += side.amount * memory.coordinate[k];
+  }
+  controls[0] += side.amount * memory.mount;
+  if (states.mount) {
+    states.mount->limit = side.slip_limit;
+    states.mount->last_coordinate += side.amount * memory.mount;
+  }
+}
+
+numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numerics::PathPoint& at,
+                                           numerics::PathWorkspace& workspace, Varied& varied) {
+  numerics::PathPoint change{varied.held, Eigen::VectorXd::Zero(at.border.size()), varied.travel};
+  if (varied.mount_compliance != 0.0) {
+    // A spring of stiffness 1/c under the gradient g of the wire's energy: q = x - c g.
+    const auto& reactions = system.mount_reactions();
+    change.band[0] -= varied.mount_compliance * reactions[0].x();
+    change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
+  }
+  Eigen::VectorXd band = Eigen::VectorXd::Zero(at.band.size());
+  Eigen::VectorXd border = Eigen::VectorXd::Zero(at.border.size());
+  for (Side& side : varied.sides) {
+    put_states(system, varied, side);
+    side.system->assemble(moved(at, change, side.amount), scratch_, by_parameter_);
+    band -= scratch_.band_residual / (2.0 * side.amount);
+    border -= scratch_.border_residual / (2.0 * side.amount);
+  }
+  workspace.solver.solve(workspace.system, band, border);
+  change.band += band;
+  change.border = border;
+  return change;
+}
+
+void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
+  if (system.guided.front().status != ContactStatus::touching) {
+    force_by_.assign(varied_.size(), 0.0);  // on supports the wire is straight and the centres known
+    return;
+  }
+  system.assemble(at, workspace.system, workspace.by_parameter);
+  workspace.factored = workspace.solver.factorize(workspace.system);
+  if (!workspace.factored) return;
+  for (Varied& varied : varied_) {
+    // The travel counts from here: it does not change, where the pusher touches does.
+    const double travel = std::exchange(varied.travel, 0.0);
+    const numerics::PathPoint change = solve(system, at, workspace, varied);
+    varied.travel = travel;
+    varied.centre.front() += change.border[3] * system.guided.front().approach();
+    remember(system, at, change, varied);
+  }
+}
+
+void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
+  force_by_.assign(varied_.size(), 0.0);
+  if (system.guided.front().status == ContactStatus::open) return;
+  system.assemble(at, workspace.system, workspace.by_parameter);
+  workspace.factored = workspace.solver.factorize(workspace.system);
+  if (!workspace.factored) return;
+  const Vector2d force = system.pusher_force(at);
+  for (std::size_t k = 0; k < varied_.size(); ++k) {
+    Varied& varied = varied_[k];
+    const numerics::PathPoint change = solve(system, at, workspace, varied);
+    const Vector2d by_motion = (varied.sides[1].contacts.front().motion - varied.sides[0].contacts.front().motion) /
+                               (2.0 * varied.step);
+    force_by_[k] = system.pusher_force(change).dot(system.guided.front().motion) + force.dot(by_motion);
+    remember(system, at, change, varied);
+  }
+}
+
+void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoint& at,
+                               const numerics::PathPoint& change, Varied& varied) const {
+  // Directions by central differences over the change of the whole state.
+  const PushSystem& minus = *varied.sides[0].system;
+  const PushSystem& plus = *varied.sides[1].system;
+  const numerics::PathPoint low = moved(at, change, -varied.step);
+  const numerics::PathPoint high = moved(at, change, varied.step);
+  const wire::PlanarState low_state = minus.state(low);
+  const wire::PlanarState high_state = plus.state(high);
+  for (std::size_t k = 0; k < system.guided.size(); ++k) {
+    varied.memory.coordinate[k] = change.border[system.guided_row(static_cast<int>(k)) + 2];
+    varied.memory.angle[k] = angle_between(minus.tangent_at(minus.guided[k], low_state).t,
+                                           plus.tangent_at(plus.guided[k], high_state).t) /
+                             (2.0 * varied.step);
+  }
+  varied.memory.radial.clear();
+  for (const WrappedContact& contact : system.riding) {
+    const Vector2d from = wire::vertex(low_state, contact.node) - minus.pusher_centre(low);
+    const Vector2d to = wire::vertex(high_state, contact.node) - plus.pusher_centre(high);
+    varied.memory.radial[contact.node] = angle_between(from, to) / (2.0 * varied.step);
+  }
+  if (system.mount) varied.memory.mount = change.border[system.mount_row()];
+  if (!system.rod().has_memory()) return;
+  // The sliders follow the moved states; a kink between the two is as rare as a reading that falls on it.
+  const wire::SectionMemory before = minus.rod().remembered(low_state);
+  const wire::SectionMemory after = plus.rod().remembered(high_state);
+  const auto rates = [&varied](const std::vector<double>& from, const std::vector<double>& to) {
+    std::vector<double> result(to.size());
+    for (std::size_t i = 0; i < to.size(); ++i) result[i] = (to[i] - from[i]) / (2.0 * varied.step);
+    return result;
+  };
+  varied.memory.bending = rates(before.bending, after.bending);
+  varied.memory.axial = rates(before.axial, after.axial);
+}
+
+}  // namespace snare::coupling

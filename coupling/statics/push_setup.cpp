@@ -1,0 +1,203 @@
+#include "coupling/statics/push_setup.hpp"
+
+#include "wire/loose_wire.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace snare::coupling {
+
+namespace {
+
+using Eigen::Vector2d;
+
+wire::PlanarEnd make_end(const PushProblem& test, double x) {
+  wire::PlanarEnd end;
+  switch (test.mount.kind) {
+    case wire::MountKind::clamped: end.kind = wire::PlanarEnd::Kind::clamp; break;
+    case wire::MountKind::pinned: end.kind = wire::PlanarEnd::Kind::pin; break;
+    case wire::MountKind::supports: end.kind = wire::PlanarEnd::Kind::free; break;
+  }
+  end.position = {x, 0.0};
+  if (test.mount.rotational_stiffness) end.rotational_stiffness = *test.mount.rotational_stiffness;
+  if (test.mount.translational_stiffness) end.translational_stiffness = *test.mount.translational_stiffness;
+  return end;
+}
+
+double effective_radius(double radius, double diameter) {
+  return radius > 0.0 ? radius + 0.5 * diameter : 0.0;  // a knife edge meets the centreline
+}
+
+SlidingContact make_pusher(const PushProblem& test, int node) {
+  const double towards = test.pusher.direction == PushDirection::outward ? 1.0 : -1.0;
+  SlidingContact pusher;
+  pusher.node = node;
+  pusher.control = 1;
+  pusher.side = towards;
+  pusher.radius = effective_radius(test.pusher.radius, test.wire.diameter);
+  pusher.friction = test.pusher.friction;
+  pusher.motion = towards * Vector2d(std::sin(test.pusher.misalignment), std::cos(test.pusher.misalignment));
+  pusher.centre = {test.contact_position, 0.0};
+  return pusher;
+}
+
+// Wire resting on two supports, the pusher touching it from the other side; straight, without force.
+void rest_on_supports(PushSetup& setup, const wire::Controls& controls) {
+  PushSystem& system = *setup.system;
+  const wire::MaterialMesh& mesh = setup.rod->mesh();
+  setup.start.band.resize(setup.rod->unknowns());
+  for (int i = 0; i <= mesh.edges(); ++i) {
+    setup.start.band.segment<2>(2 * i) = Vector2d(mesh.coordinate(i, controls) - controls[0], 0.0);
+  }
+  setup.start.border.setZero(system.border_unknowns());
+  for (int k = 0; k < 3; ++k) {
+    const auto control = static_cast<std::size_t>(system.guided[static_cast<std::size_t>(k)].control);
+    setup.start.border[system.guided_row(k) + 2] = controls[control];
+  }
+}
+
+}  // namespace
+
+wire::PlanarRodProperties rod_properties(const PushProblem& test) {
+  wire::PlanarRodProperties properties;
+  properties.bending_stiffness = test.wire.bending_stiffness();
+  properties.axial_stiffness = test.wire.axial_stiffness();
+  // The bulge goes to +y, where a wire running along +x turns right at its top.
+  properties.natural_curvature = -test.wire.natural_curvature;
+  properties.weight = test.wire.mass_per_length() * Vector2d(test.gravity[0], test.gravity[1]);
+  properties.left = make_end(test, 0.0);
+  properties.right = make_end(test, test.mount.span);
+  properties.bending_profile = test.wire.bending_profile;
+  if (test.wire.yielding) {
+    const double hardening = test.wire.yielding->hardening_ratio;
+    // The moduli that give the stiffnesses: E of a solid wire, less for a strand.
+    const double area = 0.25 * std::numbers::pi * test.wire.diameter * test.wire.diameter;
+    const double second_moment = area * test.wire.diameter * test.wire.diameter / 16.0;
+    const double stress = test.wire.yielding->yield_stress;
+    properties.bending_sliders = wire::yielding_section(properties.bending_stiffness, test.wire.diameter,
+                                                        stress * second_moment / properties.bending_stiffness, hardening);
+    properties.axial_sliders = {{(1.0 - hardening) * properties.axial_stiffness, stress * area / properties.axial_stiffness}};
+    properties.bending_stiffness *= hardening;
+    properties.axial_stiffness *= hardening;
+  }
+  if (test.wire.strand_friction) {
+    properties.bending_sliders.push_back(
+        {test.wire.strand_friction->extra_stiffness, test.wire.strand_friction->slip_curvature});
+  }
+  return properties;
+}
+
+wire::Controls initial_controls(const PushProblem& test) {
+  const double length = test.wire.length;
+  if (test.mount.kind == wire::MountKind::supports) {
+    const double overhang = 0.5 * (length - test.mount.span);
+    return {overhang, overhang + test.contact_position, overhang + test.mount.span};
+  }
+  return {0.0, test.contact_position / test.mount.span * length, length};
+}
+
+std::vector<SlidingContact> make_contacts(const PushProblem& test, const wire::MaterialMesh& mesh,
+                                         const wire::Controls& controls) {
+  SlidingContact pusher = make_pusher(test, mesh.contact_vertex());
+  if (test.mount.kind != wire::MountKind::supports) return {pusher};
+  pusher.centre -= pusher.side * pusher.radius * Vector2d::UnitY();
+  pusher.holds_material = true;
+  pusher.last_coordinate = controls[1];
+  std::vector<SlidingContact> contacts{pusher};
+  for (const int end : {0, 2}) {
+    SlidingContact support;
+    support.node = end == 0 ? 0 : mesh.edges();
+    support.control = end;
+    support.side = -pusher.side;
+    support.friction = test.pusher.friction;
+    support.status = support.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
+    support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
+    support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
+    support.last_coordinate = controls[static_cast<std::size_t>(end)];
+    contacts.push_back(support);
+  }
+  return contacts;
+}
+
+PushSetup prepare_push(const PushProblem& test, int edges, double grading, int coarsening) {
+  const double length = test.wire.length;
+  const double fraction = test.contact_position / test.mount.span;
+  const double ei = test.wire.bending_stiffness();
+  const double ea = test.wire.axial_stiffness();
+  wire::MaterialMesh mesh = wire::make_mesh(edges, fraction, 0.0);
+  if (grading < 0.0) {
+    constexpr double strain = 5e-3;  // about where steel wire yields: the highest tension of interest
+    const double layer = std::sqrt(ei / (strain * ea));
+    const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
+    const double right =
+        wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
+    grading = std::max(left, right);
+  }
+  mesh = wire::make_mesh(edges, fraction, grading);
+  if (coarsening > 1) mesh = mesh.coarsened(coarsening);
+
+  PushSetup setup;
+  setup.rod = std::make_unique<wire::PlanarRod>(mesh, rod_properties(test));
+  if (test.mount.kind == wire::MountKind::supports) {
+    if (test.wire.natural_curvature != 0.0) {
+      // It would touch the supports in a shape and a roll of its own.
+      setup.report.termination = numerics::Termination::step_too_small;
+      setup.report.message = "a naturally curved wire on supports is not computed";
+      return setup;
+    }
+    const wire::Controls controls = initial_controls(test);
+    setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+    setup.system->guided = make_contacts(test, mesh, controls);
+    setup.system->compliance = test.pusher.compliance;
+    rest_on_supports(setup, controls);
+    return setup;
+  }
+
+  wire::Controls controls = initial_controls(test);
+  wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+  setup.iterations = loose.report.iterations;
+  if (test.bulge.mode > 1 && loose.report.usable()) {
+    // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method does not
+    // wander off to another shape.
+    for (int i = 0; i < mesh.edges(); ++i) {
+      const double x0 = wire::vertex(loose.state, i).x();
+      const double x1 = wire::vertex(loose.state, i + 1).x();
+      if (x0 > test.contact_position || x1 < test.contact_position) continue;
+      const double part = (test.contact_position - x0) / (x1 - x0);
+      controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
+                    part * mesh.coordinate(i + 1, loose.state.controls);
+    }
+    loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+    setup.iterations += loose.report.iterations;
+  }
+  setup.report = loose.report;
+  if (!loose.report.usable()) return setup;
+
+  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+  PushSystem& system = *setup.system;
+  system.guided = make_contacts(test, mesh, controls);
+  SlidingContact& pusher = system.guided.front();
+  pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
+  pusher.status = ContactStatus::touching;
+  system.compliance = test.pusher.compliance;
+  if (test.mount.slip_tension) system.mount = SlippingMount{*test.mount.slip_tension, false, 0.0, 0.0};
+
+  setup.start.band = loose.state.q;
+  setup.start.border.setZero(system.border_unknowns());
+  setup.start.border[2] = controls[1];
+  numerics::PathWorkspace workspace;
+  const numerics::SolveReport touch = numerics::correct(system, setup.start, workspace, 50);
+  setup.iterations += touch.iterations;
+  setup.report = touch;
+  if (!touch.usable()) {
+    setup.report.message = "the pusher does not touch the wire in its initial shape";
+    return setup;
+  }
+  pusher.centre += setup.start.border[3] * pusher.approach();
+  setup.start.border[3] = 0.0;
+  setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
+  return setup;
+}
+
+}  // namespace snare::coupling

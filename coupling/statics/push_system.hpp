@@ -1,0 +1,84 @@
+#pragma once
+
+#include "coupling/contact/pin_contact.hpp"
+#include "numerics/path.hpp"
+#include "wire/planar_rod.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace snare::coupling {
+
+/// The left mount lets the wire through when the force on it passes Coulomb's limit.   theory.md (C.8)
+struct SlippingMount {
+  double limit = 0.0;             ///< force at which the wire slips [N], > 0
+  bool slips = false;
+  double slip_sign = 0.0;         ///< of the driving force dE/dS_0 while it slips
+  double last_coordinate = 0.0;   ///< S_0 at the last accepted state [m]
+};
+
+/// Contacts and mount of a push, with what they remember of the last accepted state.
+struct ContactStates {
+  std::vector<SlidingContact> guided;  ///< the pusher first, then the supports
+  std::vector<WrappedContact> riding;
+  std::optional<SlippingMount> mount;
+  wire::SectionMemory sections;  ///< of a wire with sliders
+};
+
+/// Equilibrium of a planar rod with the pins that guide it, as a path problem in the pusher's travel.
+///
+/// Band unknowns: q of the rod. Border unknowns: of every guided contact (f_x, f_y, S, g): the force on the wire, the
+/// material coordinate, the gap; of every riding contact (f_x, f_y); S_0 of a slipping mount.
+class PushSystem final : public numerics::PathProblem, public ContactStates {
+ public:
+  static constexpr int guided_unknowns = 4;
+  static constexpr int riding_unknowns = 2;
+
+  PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls);
+
+  double compliance = 0.0;  ///< of the pusher along its motion [m/N], >= 0
+
+  [[nodiscard]] const ContactStates& contact_states() const { return *this; }
+  void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
+
+  [[nodiscard]] int border_unknowns() const;
+  [[nodiscard]] int guided_row(int contact) const { return guided_unknowns * contact; }
+  [[nodiscard]] int riding_row(int contact) const;
+  [[nodiscard]] int mount_row() const { return riding_row(static_cast<int>(riding.size())); }
+
+  [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
+  /// Place of the pusher's axis: centre + (parameter - compliance F) motion, F its force along the motion.
+  [[nodiscard]] Eigen::Vector2d pusher_centre(const numerics::PathPoint& at) const;
+  /// Force of the pusher on the wire [N].
+  [[nodiscard]] Eigen::Vector2d pusher_force(const numerics::PathPoint& at) const;
+  /// The rod's state at a point of the path.
+  [[nodiscard]] wire::PlanarState state(const numerics::PathPoint& at) const;
+  [[nodiscard]] VertexTangent tangent_at(const SlidingContact& contact, const wire::PlanarState& state) const;
+
+  void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                Eigen::VectorXd& by_parameter) override;
+  [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
+  [[nodiscard]] double length_scale() const override { return length_; }
+
+  /// Reactions of the mounts on the wire at the last assembly: left, right [N].
+  [[nodiscard]] const std::array<Eigen::Vector2d, 2>& mount_reactions() const { return reactions_; }
+  /// Energy of the rod at the last assembly [J] and its derivatives by the controls.
+  [[nodiscard]] const wire::RodAssembly& rod_assembly() const { return assembly_; }
+
+ private:
+  void assemble_guided(int index, const wire::PlanarState& state, const numerics::PathPoint& at,
+                       numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
+  void assemble_riding(int index, const wire::PlanarState& state, const numerics::PathPoint& at,
+                       numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
+  void add_compliance(int row, const Eigen::Vector2d& by_centre, numerics::BorderedSystem& system) const;
+  void assemble_mount(const wire::PlanarState& state, numerics::BorderedSystem& system) const;
+
+  const wire::PlanarRod* rod_;
+  wire::Controls controls_;
+  double length_;
+  double shortest_edge_;
+  wire::RodAssembly assembly_;  // workspace of assemble(); the system's dense columns point into it
+  std::array<Eigen::Vector2d, 2> reactions_{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+};
+
+}  // namespace snare::coupling

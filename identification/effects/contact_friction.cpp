@@ -1,0 +1,25 @@
+#include "identification/effects/effect.hpp"
+
+namespace snare::identification {
+
+namespace {
+
+// Sticking has no derivative at zero friction: the contact sticks over a travel that grows with it.
+std::vector<std::vector<double>> trial_coefficients(const TrialContext&) { return {{0.03}, {0.1}, {0.25}}; }
+
+}  // namespace
+
+/// Coulomb friction between wire and pusher (on supports: between wire and supports).
+Effect contact_friction_effect() {
+  Effect e;
+  e.name = "contact_friction";
+  e.channel = Channel::contact;
+  e.meaning = "the wire rubs on the pusher";
+  e.numbers = {{"pusher.friction", 0.0, 1.0}};
+  e.one_sided = true;
+  e.trials = trial_coefficients;
+  e.independent_check = "load and unload with a lubricated and with a dry pusher";
+  return e;
+}
+
+}  // namespace snare::identification

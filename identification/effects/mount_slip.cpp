@@ -1,0 +1,36 @@
+#include "identification/effects/effect.hpp"
+
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+// The tension at which slip begins decides everything: from just above what the buckled wire pushes, which the mount
+// must have held, to the highest tension of the test.
+std::vector<std::vector<double>> trial_tensions(const TrialContext& context) {
+  std::vector<std::vector<double>> result;
+  for (const double share : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
+    const double tension = share * context.highest_tension;
+    if (tension > 1.02 * context.highest_compression) result.push_back({std::log(tension)});
+  }
+  return result;
+}
+
+}  // namespace
+
+/// The wire feeds through the left mount by Coulomb's law when its tension passes a limit.
+Effect mount_slip_effect() {
+  Effect e;
+  e.name = "mount_slip";
+  e.channel = Channel::mount;
+  e.meaning = "the wire slips through a mount beyond a certain tension";
+  e.numbers = {{"mount_slip.tension_N", 1e-3, 1e5}};
+  e.one_sided = true;
+  e.trials = trial_tensions;
+  e.unobservable = needs_mounts;
+  e.independent_check = "mark the wire at the mounts and look for a shift of the marks after the test";
+  return e;
+}
+
+}  // namespace snare::identification

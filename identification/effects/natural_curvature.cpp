@@ -1,0 +1,30 @@
+#include "identification/effects/effect.hpp"
+
+namespace snare::identification {
+
+namespace {
+
+std::string rigid_clamps(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    const bool rigid = s.test.mount.kind == wire::MountKind::clamped && !s.test.mount.rotational_stiffness;
+    if (s.test.mount.kind == wire::MountKind::supports) return "a naturally curved wire on supports is not computed";
+    if (!rigid) return "";
+  }
+  return "a uniform natural curvature changes nothing between rigid clamps";
+}
+
+}  // namespace
+
+/// The wire is naturally curved, uniformly, in the plane of the bulge (as it comes from the reel).
+Effect natural_curvature_effect() {
+  Effect e;
+  e.name = "natural_curvature";
+  e.channel = Channel::wire;
+  e.meaning = "the free wire is curved";
+  e.numbers = {{"wire.natural_curvature_1_m", -50.0, 50.0}};
+  e.unobservable = rigid_clamps;
+  e.independent_check = "lay the free wire on a table and measure its curvature";
+  return e;
+}
+
+}  // namespace snare::identification

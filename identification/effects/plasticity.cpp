@@ -1,0 +1,38 @@
+#include "identification/effects/effect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace snare::identification {
+
+namespace {
+
+std::vector<std::vector<double>> trial_stresses(const TrialContext& context) {
+  const wire::WireSpecification& wire = context.model->series().front().test.wire;
+  const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+  const double bending = context.bending_stiffness * context.highest_curvature * 8.0 / (area * wire.diameter);
+  const double highest = std::max(bending, context.highest_tension / area);
+  std::vector<std::vector<double>> result;
+  // With the usual hardening, and with one as of a section that yields in part.
+  for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95}) result.push_back({std::log(share * highest), 0.0});
+  for (const double share : {0.03, 0.1, 0.3}) result.push_back({std::log(share * highest), 0.2});
+  return result;
+}
+
+}  // namespace
+
+/// The metal yields, in bending from the outer fibres inwards and in tension.
+Effect plasticity_effect() {
+  Effect e;
+  e.name = "plasticity";
+  e.channel = Channel::wire;
+  e.meaning = "the metal of the wire yields";
+  e.numbers = {{"plasticity.yield_stress_MPa", 1.0, 4000.0}, {"plasticity.hardening_ratio", 0.0, 0.5, true}};
+  e.one_sided = true;
+  e.trials = trial_stresses;
+  e.independent_check = "look for a lasting kink or elongation of the wire after the test";
+  return e;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,41 @@
+#include "identification/effects/effect.hpp"
+
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+// With a given slip curvature the force is linear in the extra stiffness, to first order: one amplitude, a grid of thresholds.
+std::vector<std::vector<double>> trial_slips(const TrialContext& context) {
+  std::vector<std::vector<double>> result;
+  for (const double share : {0.01, 0.03, 0.1, 0.3, 0.7}) {
+    result.push_back({0.3 * context.bending_stiffness, std::log(share * context.highest_curvature)});
+  }
+  return result;
+}
+
+std::string needs_strand(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.test.wire.construction == wire::Construction::strand) return "";
+  }
+  return "the wire is declared solid";
+}
+
+}  // namespace
+
+/// The strands stick to each other up to a curvature and slide then: stiff at first, soft later, with a loop.
+Effect strand_hysteresis_effect() {
+  Effect e;
+  e.name = "strand_hysteresis";
+  e.channel = Channel::wire;
+  e.meaning = "the strands of the wire stick together and slip when it bends";
+  e.numbers = {{"strand_hysteresis.extra_stiffness_Nm2", 0.0, 10.0}, {"strand_hysteresis.slip_curvature_1_m", 1e-3, 500.0}};
+  e.one_sided = true;
+  e.trials = trial_slips;
+  e.unobservable = needs_strand;
+  e.independent_check = "bend a free piece forth and back and look for a loop in moment against curvature";
+  return e;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,315 @@
+#include "identification/fitting/experiment.hpp"
+
+#include "scenario/push_reader.hpp"
+#include "identification/fitting/parameter.hpp"
+#include "base/csv.hpp"
+#include "base/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace snare::identification {
+
+namespace {
+
+using base::Choice;
+using base::CsvColumn;
+using base::InputError;
+using base::InputProblem;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
+
+constexpr std::string_view schema = "snare-experiment/1";
+
+constexpr double mm = 1e-3;  // [m]
+
+// Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
+constexpr double largest_length = 1e5;                // [mm]
+constexpr double largest_travel = 1000.0;             // [mm]
+constexpr double largest_force = 1e9;                 // [N]
+constexpr int most_points = 1'000'000;
+constexpr std::size_t most_travels = 10'000'000;  // points of a path
+constexpr int default_law_points = 41;
+constexpr std::size_t fewest_rows = 3;
+
+/// Numbers that a fit may change.
+std::vector<std::string> free_keys() {
+  std::vector<std::string> keys;
+  for (const Parameter& p : all_parameters()) keys.push_back(p.key);
+  return keys;
+}
+
+/// The tables of one series above those of the file.
+scenario::PushTables over(const scenario::PushTables& own, const scenario::PushTables& base) {
+  return {own.wire.over(base.wire), own.mount.over(base.mount), own.pusher.over(base.pusher),
+          own.bulge.over(base.bulge), own.gravity.over(base.gravity)};
+}
+
+double read_contact_position(const TomlTable& series, double span) {
+  const double position = series.number("contact_position_mm", Range::above(0.0, largest_length), mm);
+  if (!std::isfinite(position) || !std::isfinite(span)) return position;  // reported already
+  if (const auto problem = scenario::position_problem(position, span)) series.fail("contact_position_mm", *problem);
+  return position;
+}
+
+/// `points` values from `from` to `to`, both included, evenly spread; the first is left out where `skip` is
+/// 1.
+void append_leg(std::vector<double>& travel, double from, double to, int points, int skip) {
+  const double step = (to - from) / (points - 1);
+  for (int i = skip; i < points - 1; ++i) travel.push_back(from + i * step);
+  travel.push_back(to);
+}
+
+std::vector<double> read_travel(const TomlTable& series) {
+  const double travel = series.number("travel_mm", Range::above(0.0, largest_travel), mm);
+  const int points = series.integer("points", 2, most_points);
+  std::vector<double> result;
+  append_leg(result, 0.0, travel, points, 0);
+  return result;
+}
+
+std::vector<double> read_path(const TomlTable& series) {
+  constexpr std::size_t most_turns = 10000;
+  const std::vector<double> turns =
+      series.numbers("path_mm", 2, most_turns, Range::from(-largest_travel, largest_travel), mm);
+  const int points = series.integer("points", 2, most_points);
+  if (turns.empty()) return {};
+  if (std::adjacent_find(turns.begin(), turns.end()) != turns.end())
+    series.fail("path_mm", "neighbouring turning points must differ");
+  const std::size_t total = (turns.size() - 1) * static_cast<std::size_t>(points - 1) + 1;
+  if (total > most_travels) {
+    series.fail("points",
+                fmt::format("gives {} points on the path, must give at most {}", total, most_travels));
+    return {};
+  }
+  std::vector<double> result;
+  result.reserve(total);
+  for (std::size_t leg = 0; leg + 1 < turns.size(); ++leg)
+    append_leg(result, turns[leg], turns[leg + 1], points, leg == 0 ? 0 : 1);
+  return result;
+}
+
+QuadraticLaw read_law(const TomlTable& table) {
+  const Range coefficient = Range::from(-1e12, 1e12);
+  QuadraticLaw law;
+  law.a = table.number("A_N_m2", coefficient);
+  law.b = table.number("B_N_m", coefficient);
+  law.c = table.number("C_N", coefficient);
+  law.r_squared = table.number("R2", Range::above(0.0, 1.0));
+  law.to = table.number("to_mm", Range::above(0.0, largest_travel), mm);
+  return law;
+}
+
+/// Reads the CSV file of a series. What is wrong inside it is reported at its line; what is wrong with it as
+/// a whole, at the key that names it.
+std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& series,
+                                      const std::filesystem::path& folder) {
+  const std::vector<CsvColumn> columns{
+      {"displacement_mm", CsvColumn::Presence::required, Range::from(-largest_travel, largest_travel), mm},
+      {"force_N", CsvColumn::Presence::required, Range::from(-largest_force, largest_force)},
+      {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0,
+       CsvColumn::Order::non_decreasing}};
+  const std::string name = series.text("file");
+  if (name.empty()) {
+    series.fail("file", "must be the name of a CSV file");
+    return std::nullopt;
+  }
+  const std::filesystem::path path = folder / name;
+  const auto fail = [&](const std::string& requirement) {
+    series.fail("file", fmt::format("{}: {}", path.string(), requirement));
+  };
+  try {
+    base::CsvTable table = base::read_csv(path, columns);
+    Readings readings{std::move(table.columns[0]), std::move(table.columns[1]), std::move(table.columns[2])};
+    const std::vector<double>& moved = readings.displacement;
+    if (table.rows < fewest_rows)
+      fail(fmt::format("has {} rows, must have at least {}", table.rows, fewest_rows));
+    else if (std::all_of(moved.begin(), moved.end(), [&](double one) { return one == moved.front(); }))
+      fail("displacement_mm is the same in every row");
+    return readings;
+  } catch (const InputError& error) {
+    for (const InputProblem& problem : error.problems()) {
+      if (problem.line == 0)
+        fail(problem.requirement);
+      else
+        document.add(problem);
+    }
+    return std::nullopt;
+  }
+}
+
+/// What stands for the push of a series: readings, a law, or a prediction's travel.
+enum class Source { none, file, law, travel, path };
+
+Source read_source(const TomlTable& table) {
+  static constexpr std::pair<const char*, Source> sources[] = {
+      {"file", Source::file}, {"law", Source::law}, {"travel_mm", Source::travel}, {"path_mm", Source::path}};
+  Source source = Source::none;
+  const char* first = nullptr;
+  for (const auto& [key, value] : sources) {
+    if (!table.has(key)) continue;
+    if (first != nullptr) {
+      table.fail(key, fmt::format("cannot stand beside {}", first));
+    } else {
+      first = key;
+      source = value;
+    }
+  }
+  if (first == nullptr)
+    table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
+  if (source == Source::file && table.has("points")) table.fail("points", "cannot stand beside file");
+  return source;
+}
+
+std::string read_name(const TomlTable& table) {
+  constexpr std::size_t longest = 64;
+  const std::string name = table.text("name");
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  const bool safe = !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), fits) &&
+                    name.front() != '.' && name.front() != '-';
+  if (table.has("name") && !safe)
+    table.fail(
+        "name",
+        fmt::format("must be 1 to {} letters, digits, '_', '-' or '.', the first a letter, digit or '_'",
+                    longest));
+  return name;
+}
+
+Series read_series(TomlDocument& document, const TomlTable& table, const scenario::PushTables& base,
+                   const std::filesystem::path& folder) {
+  const scenario::PushTables tables = over(scenario::push_tables(table), base);
+  Series series;
+  series.name = read_name(table);
+  series.test = scenario::read_push_problem(tables);
+  series.test.contact_position = read_contact_position(table, series.test.mount.span);
+  series.force_sigma = table.optional_number("force_sigma_N", Range::above(0.0, largest_force));
+  static_cast<void>(table.has("points"));
+  switch (read_source(table)) {
+    case Source::none:
+      break;
+    case Source::travel:
+      series.test.travel = read_travel(table);
+      break;
+    case Source::path:
+      series.test.travel = read_path(table);
+      break;
+    case Source::law: {
+      series.law = read_law(table.table("law"));
+      const int points = table.integer_or("points", default_law_points, 2, most_points);
+      append_leg(series.test.travel, 0.0, series.law->to, points, 0);
+      break;
+    }
+    case Source::file:
+      series.readings = read_readings(document, table, folder);
+      if (series.readings) series.test.travel = series.readings->displacement;
+      break;
+  }
+  return series;
+}
+
+void check_names(const std::vector<Series>& series, const std::vector<TomlTable>& tables) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    if (!series[i].name.empty() && !names.insert(series[i].name).second)
+      tables[i].fail("name", "another series has this name");
+}
+
+SolverSettings read_solver(const TomlTable& table) {
+  SolverSettings solver;
+  solver.elements = table.integer_or("elements", solver.elements, 16, 100'000);
+  if (solver.elements % 4 != 0) table.fail("elements", "must be a multiple of 4");
+  solver.extrapolate = table.boolean_or("extrapolate", solver.extrapolate);
+  constexpr base::Choice<coupling::Instability> branches[]{
+      {"follow_path", coupling::Instability::follow_path}, {"switch_branch", coupling::Instability::switch_branch}};
+  if (table.has("instability")) {
+    solver.instability = table.choice("instability", branches).value_or(solver.instability);
+  }
+  return solver;
+}
+
+/// Elements of an array of names that must come from a list, each once.
+std::vector<std::string> read_names(const TomlTable& table, std::string_view key,
+                                    const std::vector<std::string>& known, std::string_view what) {
+  std::vector<std::string> names = table.texts_or_none(key);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
+      const std::string nearest = base::nearest_word(names[i], known);
+      table.fail_element(key, i,
+                         nearest.empty() ? fmt::format("must be {}", what)
+                                         : fmt::format("must be {}; did you mean {}?", what, nearest));
+    } else if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+               names.begin() + static_cast<std::ptrdiff_t>(i)) {
+      table.fail_element(key, i, "is there twice");
+    }
+  }
+  return names;
+}
+
+Experiment read_document(TomlDocument& document, const std::filesystem::path& file) {
+  const TomlTable root = document.root();
+  static constexpr Choice<bool> schemas[] = {{schema, true}};
+  static_cast<void>(root.choice("schema", schemas));
+
+  Experiment experiment;
+  experiment.file = file;
+  experiment.title = root.text_or("title", "");
+  experiment.source = root.text_or("source", "");
+  experiment.solver = read_solver(root.table("solver"));
+
+  const scenario::PushTables base = scenario::push_tables(root);
+  const std::vector<TomlTable> tables = root.tables("series");
+  std::vector<std::string> names;
+  for (const TomlTable& table : tables) {
+    experiment.series.push_back(read_series(document, table, base, file.parent_path()));
+    names.push_back(experiment.series.back().name);
+  }
+  check_names(experiment.series, tables);
+  if (!root.has("series")) root.fail("series", "missing, must be one or more tables, each headed [[series]]");
+  if (tables.empty()) static_cast<void>(scenario::read_push_problem(base));  // what else is wrong
+
+  const TomlTable fit = root.table("fit");
+  std::vector<std::string> keys = free_keys();
+  for (const std::string& name : names) {
+    for (const Parameter& p : all_parameters()) keys.push_back("series[" + name + "]." + p.key);
+  }
+  experiment.free = read_names(fit, "free", keys, "a number that can be fitted");
+  experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
+  const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
+  if (!names.empty() && distinct.size() >= names.size())
+    fit.fail("heldout", "must leave at least one series to fit");
+  document.finish();
+  return experiment;
+}
+
+}  // namespace
+
+double QuadraticLaw::scatter() const {
+  // With u = d / to uniform on [0, 1], p = A to^2 and q = B to, the law is p u^2 + q u + C and its variance
+  //   p^2 (1/5 - 1/9) + 2 p q (1/4 - 1/6) + q^2 (1/3 - 1/4) = 4 p^2 / 45 + p q / 6 + q^2 / 12.
+  // R^2 = 1 - S_residual / (S_law + S_residual), hence S_residual / S_law = (1 - R^2) / R^2.
+  const double p = a * to * to;
+  const double q = b * to;
+  const double variance = 4.0 * p * p / 45.0 + p * q / 6.0 + q * q / 12.0;
+  return std::sqrt((1.0 - r_squared) / r_squared * std::max(variance, 0.0));
+}
+
+Experiment read_experiment(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  TomlDocument document(file, overrides);
+  return read_document(document, file);
+}
+
+Experiment parse_experiment(const std::filesystem::path& file, std::string_view text,
+                            const std::vector<Override>& overrides) {
+  TomlDocument document(file.string(), text, overrides);
+  return read_document(document, file);
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,302 @@
+#include "identification/fitting/least_squares.hpp"
+
+#include <Eigen/SVD>
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace snare::identification {
+
+namespace {
+
+/// One whitened residual vector as a function of scaled coordinates. The last evaluation is kept, since Ceres asks for
+/// the derivatives where it has just asked for the values, and the best one, which is where it ends.
+class Residuals final : public ceres::CostFunction {
+ public:
+  Residuals(const Model& model, const Data& data, std::vector<Setting> settings, std::size_t free, Eigen::VectorXd scale)
+      : model_(model), data_(data), settings_(std::move(settings)), free_(free), scale_(std::move(scale)) {
+    set_num_residuals(static_cast<int>(data.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(free));
+    for (std::size_t k = 0; k < free; ++k) by_.push_back(settings_[k].parameter);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::VectorXd> at(parameters[0], static_cast<Eigen::Index>(free_));
+    const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
+    if (best_.is_at(at) && !last_.is_at(at)) last_ = best_;
+    if (!last_.is_at(at) || (derivatives && last_.evaluation.by.empty())) {
+      std::vector<Setting> settings = settings_;
+      for (std::size_t k = 0; k < free_; ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        settings[k].coordinate = at[i] * scale_[i];
+      }
+      keep(at, model_.evaluate(settings, derivatives || cheap_ ? by_ : std::vector<const Parameter*>{}));
+    }
+    if (!last_.evaluation.complete) {
+      last_.at.resize(0);
+      return false;
+    }
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = -data_.residual(last_.evaluation);
+    if (derivatives) {
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+          jacobians[0], num_residuals(), static_cast<Eigen::Index>(free_)) =
+          data_.jacobian(last_.evaluation) * scale_.asDiagonal();
+    }
+    return true;
+  }
+  void derivatives_are_dear() { cheap_ = false; }
+
+  /// An evaluation made elsewhere.
+  void keep(const Eigen::VectorXd& at, Evaluation evaluation) const {
+    last_ = {at, std::move(evaluation), std::numeric_limits<double>::max()};
+    if (!last_.evaluation.complete) return;
+    last_.chi2 = data_.residual(last_.evaluation).squaredNorm();
+    if (last_.chi2 < best_.chi2 || best_.is_at(at)) best_ = last_;
+  }
+  /// The evaluation there with its derivatives, if it is known; else null.
+  [[nodiscard]] const Evaluation* known(const Eigen::VectorXd& at) const {
+    return best_.is_at(at) && !best_.evaluation.by.empty() ? &best_.evaluation : nullptr;
+  }
+
+ private:
+  struct Kept {
+    Eigen::VectorXd at;
+    Evaluation evaluation;
+    double chi2 = std::numeric_limits<double>::max();
+    [[nodiscard]] bool is_at(const Eigen::VectorXd& other) const { return at.size() == other.size() && at == other; }
+  };
+
+  const Model& model_;
+  const Data& data_;
+  std::vector<Setting> settings_;
+  std::size_t free_;
+  Eigen::VectorXd scale_;
+  std::vector<const Parameter*> by_;
+  bool cheap_ = true;
+  mutable Kept last_;
+  mutable Kept best_;
+};
+
+class Observer final : public ceres::IterationCallback {
+ public:
+  explicit Observer(const FitOptions& options) : options_(options) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
+    if (options_.progress && !options_.progress(s.iteration, 2.0 * s.cost)) return ceres::SOLVER_ABORT;
+    // A refused step reports its own cost: the fit stands where it stood.
+    chi2_.push_back(chi2_.empty() ? 2.0 * s.cost : std::min(2.0 * s.cost, chi2_.back()));
+    const std::size_t n = chi2_.size();
+    if (!(options_.rival > 0.0) || n <= pace) return ceres::SOLVER_CONTINUE;
+    const double fall = (chi2_[n - 1 - pace] - chi2_[n - 1]) / pace;
+    const double left = std::min(patience, options_.max_iterations - s.iteration);
+    return chi2_.back() - left * fall > options_.rival ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  static constexpr std::size_t pace = 3;  // iterations over which the pace is taken: some steps are refused
+  static constexpr int patience = 10;     // iterations for which a pace can last: it slackens
+  const FitOptions& options_;
+  std::vector<double> chi2_;
+};
+
+}  // namespace
+
+Eigen::Index Data::rows() const {
+  Eigen::Index n = 0;
+  for (const std::size_t k : series) n += measured[k].size();
+  return n;
+}
+
+Eigen::VectorXd Data::residual(const Evaluation& evaluation) const {
+  Eigen::VectorXd result(rows());
+  Eigen::Index row = 0;
+  for (const std::size_t k : series) {
+    const Eigen::Index n = measured[k].size();
+    result.segment(row, n) = noise.whiten(k, measured[k] - evaluation.force[k]);
+    row += n;
+  }
+  return result;
+}
+
+Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
+  if (evaluation.by.empty()) return Eigen::MatrixXd::Zero(rows(), 0);
+  Eigen::MatrixXd result(rows(), evaluation.by.front().cols());
+  Eigen::Index row = 0;
+  for (const std::size_t k : series) {
+    const Eigen::Index n = measured[k].size();
+    result.middleRows(row, n) = noise.whiten(k, evaluation.by[k]);
+    row += n;
+  }
+  return result;
+}
+
+double Fit::bic() const {
+  return chi2 + static_cast<double>(free) * std::log(static_cast<double>(std::max<Eigen::Index>(residual.size(), 1)));
+}
+
+std::vector<Setting> Fit::fitted() const {
+  return {settings.begin(), settings.begin() + static_cast<std::ptrdiff_t>(free)};
+}
+
+std::vector<Setting> Fit::fixed() const {
+  return {settings.begin() + static_cast<std::ptrdiff_t>(free), settings.end()};
+}
+
+std::vector<const Parameter*> Fit::parameters() const {
+  std::vector<const Parameter*> result;
+  for (std::size_t k = 0; k < free; ++k) result.push_back(settings[k].parameter);
+  return result;
+}
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian) {
+  const Eigen::Index n = jacobian.cols();
+  if (n == 0) return {};
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index k = 0; k < n; ++k) scale[k] = 1.0 / std::max(jacobian.col(k).norm(), 1e-300);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd& s = svd.singularValues();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < s.size(); ++k) {
+    if (s[k] > 1e-10 * s[0]) inverse += svd.matrixV().col(k) * svd.matrixV().col(k).transpose() / (s[k] * s[k]);
+  }
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start, const std::vector<Setting>& fixed,
+        const FitOptions& options) {
+  Fit result;
+  result.settings = start;
+  result.free = start.size();
+  result.settings.insert(result.settings.end(), fixed.begin(), fixed.end());
+  const auto n = static_cast<Eigen::Index>(start.size());
+  result.evaluation = model.evaluate(result.settings, result.parameters());
+  if (!result.evaluation.complete) {
+    result.report.termination = numerics::Termination::step_too_small;
+    result.report.message = result.evaluation.message;
+    return result;
+  }
+  const auto finish = [&] {
+    result.residual = data.residual(result.evaluation);
+    result.jacobian = data.jacobian(result.evaluation);
+    result.chi2 = result.residual.squaredNorm();
+    result.covariance = covariance_of(result.jacobian);
+  };
+  finish();
+  if (n == 0) return result;
+
+  // Scaled so that a unit of every unknown changes the residual by about one standard deviation in all.
+  Eigen::VectorXd scale(n);
+  Eigen::VectorXd unknown(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double norm = result.jacobian.col(k).norm();
+    scale[k] = norm > 0.0 ? 1.0 / norm : 1.0;
+    unknown[k] = start[static_cast<std::size_t>(k)].coordinate / scale[k];
+  }
+  Residuals residuals(model, data, result.settings, result.free, scale);
+  for (const Series& s : model.apply(result.settings).series) {
+    if (!coupling::differentiable(s.test)) residuals.derivatives_are_dear();
+  }
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(problem_options);
+  problem.AddResidualBlock(&residuals, nullptr, unknown.data());
+  bool moved = false;
+  for (int k = 0; k < static_cast<int>(n); ++k) {
+    const Parameter& p = *result.settings[static_cast<std::size_t>(k)].parameter;
+    const double lower = model.lower(p) / scale[k];
+    const double upper = model.upper(p) / scale[k];
+    moved = moved || unknown[k] < lower || unknown[k] > upper;
+    unknown[k] = std::clamp(unknown[k], lower, upper);
+    problem.SetParameterLowerBound(unknown.data(), k, lower);
+    problem.SetParameterUpperBound(unknown.data(), k, upper);
+  }
+  if (!moved) residuals.keep(unknown, result.evaluation);
+  ceres::Solver::Options solve;
+  solve.linear_solver_type = ceres::DENSE_QR;
+  solve.logging_type = ceres::SILENT;
+  solve.max_num_iterations = options.max_iterations;
+  solve.function_tolerance = options.tolerance;
+  solve.parameter_tolerance = 0.01 * options.tolerance;
+  solve.gradient_tolerance = 1e-12;
+  solve.max_num_consecutive_invalid_steps = 12;
+  Observer observer(options);
+  solve.callbacks.push_back(&observer);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solve, &problem, &summary);
+  result.report.iterations = static_cast<int>(summary.iterations.size());
+  if (summary.termination_type == ceres::USER_FAILURE) {
+    result.report.termination = numerics::Termination::interrupted;
+    result.report.message = "interrupted";
+  } else if (!summary.IsSolutionUsable()) {
+    result.report.termination = numerics::Termination::step_too_small;
+    result.report.message = "the least squares did not converge";
+    return result;
+  }
+  for (std::size_t k = 0; k < result.free; ++k) {
+    result.settings[k].coordinate = unknown[static_cast<Eigen::Index>(k)] * scale[static_cast<Eigen::Index>(k)];
+  }
+  const Evaluation* known = residuals.known(unknown);
+  Evaluation at = known != nullptr ? *known : model.evaluate(result.settings, result.parameters());
+  if (!at.complete) {
+    result.report.termination = numerics::Termination::step_too_small;
+    result.report.message = at.message;
+    return result;
+  }
+  result.evaluation = std::move(at);
+  finish();
+  return result;
+}
+
+ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which, double rise) {
+  ProfileInterval interval;
+  const double centre = optimum.settings[which].coordinate;
+  const double spread = std::sqrt(std::max(optimum.covariance(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(which)), 0.0));
+  const Parameter& p = *optimum.settings[which].parameter;
+  if (!(spread > 0.0)) return interval;
+  std::vector<Setting> others;
+  for (std::size_t k = 0; k < optimum.free; ++k) {
+    if (k != which) others.push_back(optimum.settings[k]);
+  }
+  const std::vector<Setting> fixed = optimum.fixed();
+  FitOptions options;
+  options.max_iterations = 15;
+  for (const double sense : {-1.0, 1.0}) {
+    const double limit = sense < 0.0 ? model.lower(p) : model.upper(p);
+    double step = std::sqrt(rise) * spread;  // where the profile is a parabola
+    std::optional<double> end;
+    for (int k = 0; k < 4; ++k) {
+      const double at = centre + sense * step;
+      if ((at - limit) * sense >= 0.0) {
+        end.reset();
+        break;
+      }
+      std::vector<Setting> held{{&p, at}};
+      held.insert(held.end(), fixed.begin(), fixed.end());
+      // The others move along with the held one, to first order.
+      std::vector<Setting> start = others;
+      std::size_t j = 0;
+      for (std::size_t i = 0; i < optimum.free; ++i) {
+        if (i == which) continue;
+        const double slope = optimum.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(which)) / (spread * spread);
+        start[j].coordinate = std::clamp(start[j].coordinate + sense * step * slope, model.lower(*start[j].parameter),
+                                         model.upper(*start[j].parameter));
+        ++j;
+      }
+      const Fit other = fit(model, data, start, held, options);
+      if (!other.report.usable()) {
+        step *= 0.5;
+        continue;
+      }
+      const double risen = std::max(other.chi2 - optimum.chi2, 1e-3 * rise);
+      end = at;
+      if (std::abs(risen / rise - 1.0) < 0.05) break;
+      step *= std::clamp(std::sqrt(rise / risen), 0.3, 3.0);
+      end = centre + sense * step;
+    }
+    (sense < 0.0 ? interval.lower : interval.upper) = end;
+  }
+  return interval;
+}
+
+}  // namespace snare::identification

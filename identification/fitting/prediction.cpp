@@ -1,0 +1,209 @@
+#include "identification/fitting/prediction.hpp"
+#include "base/parallel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace snare::identification {
+
+namespace {
+
+/// Where a record is computed and how its readings follow from there.
+struct Sampling {
+  std::vector<double> displacement;  // to compute at
+  struct Weights {
+    std::size_t first = 0;  // of four neighbours
+    std::array<double, 4> weight{};
+  };
+  std::vector<Weights> readings;  // empty: the displacements are the readings
+};
+
+constexpr std::size_t dense_leg = 120;
+constexpr int points_a_leg = 60;
+
+/// Turning points of a record: indices at which it turns back by more than 2 % of its range.
+std::vector<std::size_t> turning_points(const std::vector<double>& d) {
+  const auto [low, high] = std::minmax_element(d.begin(), d.end());
+  const double threshold = 0.02 * (*high - *low);
+  std::vector<std::size_t> turns{0};
+  std::size_t extreme = 0;
+  double sense = 0.0;
+  for (std::size_t i = 1; i < d.size(); ++i) {
+    if (sense == 0.0) {
+      if (std::abs(d[i] - d[0]) > threshold) sense = d[i] > d[0] ? 1.0 : -1.0;
+      if (sense != 0.0) extreme = i;
+      continue;
+    }
+    if ((d[i] - d[extreme]) * sense >= 0.0) extreme = i;
+    else if ((d[extreme] - d[i]) * sense > threshold) {
+      turns.push_back(extreme);
+      extreme = i;
+      sense = -sense;
+    }
+  }
+  turns.push_back(d.size() - 1);
+  return turns;
+}
+
+Sampling sample(const std::vector<double>& d, bool thin) {
+  Sampling result;
+  result.displacement = d;
+  if (!thin || d.size() <= dense_leg) return result;
+  const std::vector<std::size_t> turns = turning_points(d);
+  if (d.size() / (turns.size() - 1) <= dense_leg) return result;
+  result.displacement.clear();
+  for (std::size_t leg = 0; leg + 1 < turns.size(); ++leg) {
+    const std::size_t begin = leg == 0 ? 0 : turns[leg] + 1;
+    const std::size_t end = turns[leg + 1];
+    const auto [low, high] = std::minmax_element(d.begin() + static_cast<std::ptrdiff_t>(turns[leg]),
+                                                 d.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+    const bool up = d[end] >= d[turns[leg]];
+    const double from = up ? *low : *high;
+    const double to = up ? *high : *low;
+    const std::size_t first = result.displacement.size();
+    // Denser towards the beginning of the leg, where a wire is touched or friction turns round.
+    for (int k = 0; k < points_a_leg; ++k) {
+      const double u = static_cast<double>(k) / (points_a_leg - 1);
+      result.displacement.push_back(from + (to - from) * u * (0.3 + 0.7 * u));
+    }
+    for (std::size_t i = begin; i <= end; ++i) {
+      const auto knot = [&](std::size_t k) { return result.displacement[first + k]; };
+      std::size_t j = 1;
+      while (j + 3 < static_cast<std::size_t>(points_a_leg) && (d[i] - knot(j + 1)) * (to - from) > 0.0) ++j;
+      Sampling::Weights w;
+      w.first = first + j - 1;
+      for (std::size_t a = 0; a < 4; ++a) {
+        w.weight[a] = 1.0;
+        for (std::size_t b = 0; b < 4; ++b) {
+          if (b != a) w.weight[a] *= (d[i] - knot(j - 1 + b)) / (knot(j - 1 + a) - knot(j - 1 + b));
+        }
+      }
+      result.readings.push_back(w);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> speeds(const Series& series) {
+  const std::vector<double>& d = measured_displacement(series);
+  std::vector<double> result(d.size(), 0.0);
+  if (!series.readings || series.readings->time.size() != d.size()) return result;
+  const std::vector<double>& t = series.readings->time;
+  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const std::size_t a = i == 0 ? 0 : i - 1;
+    const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;
+    if (t[b] > t[a]) result[i] = (d[b] - d[a]) / (t[b] - t[a]);
+  }
+  return result;
+}
+
+Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading,
+                   const PredictionOptions& options) {
+  coupling::PushProblem test = series.test;
+  const Sampling sampling = sample(measured_displacement(series), options.thin);
+  const std::vector<double>& displacement = sampling.displacement;
+  Prediction result;
+  result.reading = reading;
+  // Points before the first touch stand at the front; a later return to no contact is part of the path.
+  while (result.before_touch < displacement.size() &&
+         displacement[result.before_touch] < reading.displacement_offset) {
+    ++result.before_touch;
+  }
+  test.travel.clear();
+  for (std::size_t i = result.before_touch; i < displacement.size(); ++i) {
+    test.travel.push_back(displacement[i] - reading.displacement_offset);
+  }
+  const bool flows = reading.relaxation_time > 0.0;
+  coupling::PushOptions push;
+  push.elements = solver.elements;
+  push.instability = solver.instability;
+  push.shapes_at = options.shapes_at;
+  push.progress = options.progress;
+  push.examine_out_of_plane = options.examine_out_of_plane;
+  push.variations = options.variations;
+  push.examine_rates = flows || options.examine_rates;
+  if (solver.extrapolate) {
+    result.curve = coupling::solve_push_extrapolated(test, push);
+  } else {
+    result.curve.curve = coupling::solve_push(test, push);
+    result.curve.discretisation_error.assign(result.curve.curve.points.size(), 0.0);
+  }
+  // Points that the path passed between the asked ones (arcs through folds) have no reading.
+  std::vector<const coupling::PushPoint*> at(result.before_touch, nullptr);
+  for (const coupling::PushPoint& p : result.curve.curve.points) {
+    if (at.size() == displacement.size()) break;
+    if (p.travel == test.travel[at.size() - result.before_touch]) at.push_back(&p);
+  }
+  const auto numbers = static_cast<Eigen::Index>(options.variations.size());
+  const bool whole = at.size() == displacement.size();
+  const std::size_t readings = sampling.readings.empty() ? at.size() : (whole ? sampling.readings.size() : 0);
+  const std::vector<double> speed = flows ? speeds(series) : std::vector<double>();
+  result.force.assign(readings, reading.force_offset);
+  result.tension.assign(readings, 0.0);
+  result.viscous_stiffness.assign(readings, 0.0);
+  result.force_by.setZero(static_cast<Eigen::Index>(readings), numbers);
+  const auto add = [&](std::size_t i, const coupling::PushPoint* p, double weight) {
+    if (p == nullptr) return;
+    result.force[i] += weight * reading.force_gain * p->force;
+    result.tension[i] += weight * p->tension_left;
+    result.viscous_stiffness[i] += weight * p->viscous_stiffness;
+    if (flows) result.force[i] += weight * reading.force_gain * reading.relaxation_time * speed[i] * p->viscous_stiffness;
+    if (p->force_by.empty()) return;
+    result.force_by.row(static_cast<Eigen::Index>(i)) +=
+        weight * reading.force_gain * Eigen::Map<const Eigen::RowVectorXd>(p->force_by.data(), numbers);
+  };
+  for (std::size_t i = 0; i < readings; ++i) {
+    if (sampling.readings.empty()) {
+      add(i, at[i], 1.0);
+      continue;
+    }
+    const Sampling::Weights& w = sampling.readings[i];
+    for (std::size_t k = 0; k < 4; ++k) add(i, at[w.first + k], w.weight[k]);
+  }
+  return result;
+}
+
+std::vector<Prediction> predict_all(const std::vector<Series>& series, const SolverSettings& solver,
+                                    const ReadingModel& reading, const std::vector<PredictionOptions>& options) {
+  std::vector<Prediction> result(series.size());
+  base::parallel_for(series.size(), [&](std::size_t k) {
+    result[k] = predict(series[k], solver, reading, options.empty() ? PredictionOptions{} : options[k]);
+  });
+  return result;
+}
+
+std::vector<double> measured_force(const Series& series) {
+  if (series.readings) return series.readings->force;
+  std::vector<double> force;
+  if (series.law) {
+    for (const double d : series.test.travel) force.push_back(series.law->force(d));
+  }
+  return force;
+}
+
+const std::vector<double>& measured_displacement(const Series& series) {
+  return series.readings ? series.readings->displacement : series.test.travel;
+}
+
+Misfit misfit(const std::vector<double>& measured, const std::vector<double>& predicted) {
+  Misfit result;
+  const std::size_t n = std::min(measured.size(), predicted.size());
+  if (n == 0) return result;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double difference = predicted[i] - measured[i];
+    sum += difference * difference;
+    result.largest = std::max(result.largest, std::abs(difference));
+  }
+  result.rmse = std::sqrt(sum / static_cast<double>(n));
+  const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
+  if (*high > *low) result.nrmse = result.rmse / (*high - *low);
+  return result;
+}
+
+}  // namespace snare::identification

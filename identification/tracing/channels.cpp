@@ -1,0 +1,147 @@
+#include "identification/tracing/channels.hpp"
+
+#include "identification/tracing/score.hpp"
+#include "identification/fitting/statistics.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr int stations = ChannelColumns::stations;
+
+/// Hat functions over evenly spread stations at one argument.
+void add_hats(double u, double weight, Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index row) {
+  const double at = std::clamp(u, 0.0, 1.0) * (stations - 1);
+  const auto j = std::min(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(stations - 2));
+  const double part = at - static_cast<double>(j);
+  out(row, j) += weight * (1.0 - part);
+  out(row, j + 1) += weight * part;
+}
+
+/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the argument.
+ChannelColumns function_of(const Data& data, const std::function<double(std::size_t, Eigen::Index)>& argument,
+                           const std::function<double(std::size_t, Eigen::Index)>& weight,
+                           double argument_unit) {
+  double low = std::numeric_limits<double>::max();
+  double high = std::numeric_limits<double>::lowest();
+  for (const std::size_t k : data.series) {
+    for (Eigen::Index i = 0; i < data.measured[k].size(); ++i) {
+      low = std::min(low, argument(k, i));
+      high = std::max(high, argument(k, i));
+    }
+  }
+  ChannelColumns result;
+  result.columns.resize(data.rows(), stations);
+  Eigen::Index row = 0;
+  for (const std::size_t k : data.series) {
+    const Eigen::Index n = data.measured[k].size();
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, stations);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), own, i);
+    }
+    result.columns.middleRows(row, n) = data.noise.whiten(k, own);
+    row += n;
+  }
+  for (int s = 0; s < stations; ++s)
+    result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
+  return result;
+}
+
+}  // namespace
+
+std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data, const Fit& current) {
+  std::vector<ChannelColumns> channels;
+  const auto displacement = [&](std::size_t k, Eigen::Index i) {
+    return measured_displacement(model.series()[k])[static_cast<std::size_t>(i)];
+  };
+  const auto computed = [&](std::size_t k, Eigen::Index i) { return current.evaluation.force[k][i]; };
+  const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument,
+                       const std::string& effect, double unit) {
+    c.channel = channel;
+    c.argument = argument;
+    c.effect = effect;
+    c.unit = unit;
+    channels.push_back(std::move(c));
+  };
+  const auto one = [](std::size_t, Eigen::Index) { return 1.0; };
+
+  add(function_of(data, displacement, one, 1e-3), Channel::sensor, "recorded travel [mm]",
+      "adds to the recorded force [N]", 1.0);
+  bool timed = true;
+  for (const std::size_t k : data.series)
+    timed = timed && model.series()[k].readings && !model.series()[k].readings->time.empty();
+  const auto time = [&](std::size_t k, Eigen::Index i) {
+    const auto r = static_cast<std::size_t>(i);
+    if (!timed) return static_cast<double>(i);
+    return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
+  };
+  add(function_of(data, time, one, 1.0), Channel::sensor,
+      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]",
+      1.0);
+
+  const Parameter& span = parameter("mount.span_mm");
+  const Parameter& zero = parameter("reading.displacement_offset_mm");
+  const bool supports = model.series().front().test.mount.kind == wire::MountKind::supports;
+  const Evaluation smooth = model.evaluate(current.settings, {&span, &zero});
+  if (smooth.complete) {
+    if (!supports) {
+      const auto tension = [&](std::size_t k, Eigen::Index i) {
+        return current.evaluation.predictions[k].tension[static_cast<std::size_t>(i)];
+      };
+      add(function_of(
+              data, tension, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
+          Channel::mount, "tension at the mount [N]", "moves the mounts apart [mm]", 1e-3);
+    }
+    add(function_of(
+            data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0),
+        Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3);
+  }
+  const auto sense = [&](std::size_t k, Eigen::Index i) {
+    const Eigen::Index last = data.measured[k].size() - 1;
+    const double move =
+        displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
+    return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
+  };
+  add(function_of(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
+      "resists the pusher's motion, either way [N]", 1.0);
+  if (!supports) {
+    const Evaluation windows = model.evaluate_windows(current.settings, stations);
+    if (windows.complete) {
+      ChannelColumns c;
+      c.columns = data.jacobian(windows);
+      const double length = model.series().front().test.wire.length;
+      for (int s = 0; s < stations; ++s) c.at.push_back(1e3 * length * s / (stations - 1));
+      add(std::move(c), Channel::wire, "place along the wire from the left mount [mm]",
+          "changes the bending stiffness there, as a share", 1.0);
+    }
+  }
+
+  return channels;
+}
+
+double channel_p(const ChannelColumns& channel, const Fit& current) {
+  constexpr double length = 2.5;  // of the correlation between stations
+  const Eigen::Index m = channel.columns.cols();
+  Eigen::MatrixXd prior(m, m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index j = 0; j < m; ++j)
+      prior(i, j) = std::exp(-0.5 * std::pow(static_cast<double>(i - j) / length, 2));
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(prior);
+  const Eigen::MatrixXd half = root.eigenvectors() *
+                               root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                               root.eigenvectors().transpose();
+  const Eigen::MatrixXd c = Projection(current.jacobian).without(channel.columns) * half;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(c.transpose() * c, Eigen::EigenvaluesOnly);
+  return chi_square_mixture_tail((c.transpose() * current.residual).squaredNorm(), spectrum.eigenvalues());
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "identification/tracing/trace.hpp"
+
+#include <vector>
+
+namespace snare::identification {
+
+/// The push test, of a list of variations of the present ones (position, slack, load and unload, direction, speed), in
+/// which two models that explain the present data differ most; beside it the measurement that settles an effect by
+/// itself. names: of the two effects. sigma: of a reading [N].
+[[nodiscard]] NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
+                                             const std::vector<Setting>& other, const std::vector<std::string>& names,
+                                             double sigma);
+
+}  // namespace snare::identification

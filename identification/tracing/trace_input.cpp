@@ -1,0 +1,81 @@
+#include "identification/tracing/trace_input.hpp"
+
+#include "base/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace snare::identification {
+
+namespace {
+
+/// Readings drawn about a published law with the scatter that its R^2 implies.
+Readings drawn_about(const Series& series, std::mt19937& random, bool draw) {
+  std::normal_distribution<double> normal(0.0, series.law->scatter());
+  Readings r;
+  r.displacement = series.test.travel;
+  for (const double d : r.displacement) r.force.push_back(series.law->force(d) + (draw ? normal(random) : 0.0));
+  return r;
+}
+
+}  // namespace
+
+bool replace_laws(std::vector<Series>& series, bool draw, unsigned seed) {
+  std::mt19937 random(seed);
+  bool drawn = false;
+  for (Series& s : series) {
+    if (s.readings || !s.law) continue;
+    s.readings = drawn_about(s, random, draw);
+    if (!s.force_sigma) s.force_sigma = s.law->scatter();
+    drawn = drawn || draw;
+  }
+  return drawn;
+}
+
+void check_readings(const std::filesystem::path& file, const std::vector<Series>& series, const std::vector<bool>& heldout) {
+  std::vector<base::InputProblem> problems;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const std::string key = "series[" + series[k].name + "]";
+    const auto refuse = [&](const std::string& requirement) {
+      problems.push_back({file.string(), 0, key, "", requirement});
+    };
+    if (!series[k].readings) {
+      refuse("must have readings or a law to be fitted");
+      continue;
+    }
+    if (heldout[k]) continue;
+    const std::vector<double>& f = series[k].readings->force;
+    const auto [low, high] = std::minmax_element(f.begin(), f.end());
+    if (*low == *high) {
+      refuse(fmt::format("force_N is {} in every reading: there is nothing to fit", *low));
+      continue;
+    }
+    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike (von Neumann 1941:
+    // the ratio is 2 +- 2/sqrt(n) for noise).
+    double mean = 0.0;
+    for (const double v : f) mean += v / static_cast<double>(f.size());
+    double variance = 0.0;
+    double steps = 0.0;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      variance += (f[i] - mean) * (f[i] - mean);
+      if (i > 0) steps += (f[i] - f[i - 1]) * (f[i] - f[i - 1]);
+    }
+    const double n = static_cast<double>(f.size());
+    if (f.size() >= 8 && steps / variance > std::max(0.8, 2.0 - 6.0 / std::sqrt(n))) {
+      refuse("the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
+    }
+  }
+  if (!problems.empty()) throw base::InputError(problems);
+}
+
+std::vector<std::string> default_free(const Experiment& experiment) {
+  const bool supports = experiment.series.front().test.mount.kind == wire::MountKind::supports;
+  // A wire that slides over supports is not stretched.
+  if (supports) return {"wire.bending_stiffness_Nm2"};
+  return {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
+}
+
+}  // namespace snare::identification

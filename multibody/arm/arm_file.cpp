@@ -1,0 +1,289 @@
+#include "multibody/arm/arm_file.hpp"
+
+#include "base/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <stdexcept>
+
+namespace snare::multibody {
+
+namespace {
+
+using base::Choice;
+using base::InputError;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
+
+constexpr double degree = std::numbers::pi / 180.0;
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+constexpr Choice<StiffnessReading> readings[] = {{"continuous", StiffnessReading::continuous},
+                                                 {"literal", StiffnessReading::literal}};
+constexpr Choice<DampingRate> damping_rates[] = {{"deflection", DampingRate::deflection},
+                                                 {"motor", DampingRate::motor}};
+constexpr Choice<DriveMode> drive_modes[] = {
+    {"locked", DriveMode::locked}, {"servo", DriveMode::servo}, {"limp", DriveMode::limp}};
+enum class Law { linear, piecewise, backlash };
+constexpr Choice<Law> laws[] = {
+    {"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
+enum class BaseKind { fixed, free };
+constexpr Choice<BaseKind> base_kinds[] = {{"fixed", BaseKind::fixed}, {"free", BaseKind::free}};
+
+/// After a problem that hides what the other keys mean, none of them is called unknown.
+void know(const TomlTable& table, std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) static_cast<void>(table.has(key));
+}
+
+/// A URDF file named by a key; nothing after a problem, which goes to the document.
+std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable& table,
+                                         const std::filesystem::path& folder, std::string& input) {
+  const std::string name = table.text("urdf");
+  if (name.empty()) return std::nullopt;
+  try {
+    const RobotDescription robot = read_urdf(folder / name);
+    input += robot.text;
+    return robot;
+  } catch (const InputError& error) {
+    for (const base::InputProblem& problem : error.problems()) document.add(problem);
+    return std::nullopt;
+  }
+}
+
+/// Puts a robot on a frame; false when a name of its links is taken.
+bool put(const TomlTable& table, Tree& tree, int frame, RootJoint root, const RobotDescription& robot) {
+  for (const RobotLink& link : robot.links) {
+    if (tree.find_frame(link.name) < 0) continue;
+    table.fail("urdf", fmt::format("must not have a link \"{}\": another file has it already", link.name));
+    return false;
+  }
+  add_robot(tree, frame, root, robot);
+  return true;
+}
+
+/// A frame of the tree named by a key; -1 after a problem.
+int frame_of(const TomlTable& table, std::string_view key, const Tree& tree) {
+  const std::string name = table.text(key);
+  if (name.empty()) return -1;
+  const int frame = tree.find_frame(name);
+  if (frame < 0) {
+    std::vector<std::string> names;
+    for (const TreeFrame& f : tree.frames()) names.push_back(f.name);
+    const std::string nearest = base::nearest_word(name, names);
+    table.fail(key, "must be a link" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+  }
+  return frame;
+}
+
+std::optional<DeflectionLaw> law_of(const TomlTable& table) {
+  const auto law = table.choice("law", laws);
+  const auto rate =
+      table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
+  if (!law || !rate) {
+    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg",
+                 "stiffness_Nm_rad", "damping_Nms_rad", "half_gap_deg"});
+    return std::nullopt;
+  }
+  std::vector<DeflectionPiece> pieces;
+  auto reading = std::optional(StiffnessReading::continuous);
+  double width = 0.0;
+  if (*law == Law::piecewise) {
+    const auto from = table.numbers("from_deg", 2, 20, Range::from(0.0, 180.0), degree);
+    const auto stiffness = table.numbers("stiffness_Nm_deg", 2, 20, Range::from(0.0), 1.0 / degree);
+    const auto damping = table.numbers("damping_Nms_deg", 2, 20, Range::from(0.0), 1.0 / degree);
+    if (table.has("reading")) reading = table.choice("reading", readings);
+    // A fiftieth of the narrowest range of Abiko et al., Table 2.
+    constexpr double usual_width = 4e-4 * degree;
+    width = table.number_or("jump_width_deg", reading == StiffnessReading::literal ? usual_width : 0.0,
+                            Range::from(0.0, 180.0), degree);
+    if (from.empty() || stiffness.empty() || damping.empty() || !reading || !(width >= 0.0)) return std::nullopt;
+    if (stiffness.size() != from.size())
+      table.fail("stiffness_Nm_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
+    if (damping.size() != from.size())
+      table.fail("damping_Nms_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
+    if (stiffness.size() != from.size() || damping.size() != from.size()) return std::nullopt;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (i == 0 ? from[0] != 0.0 : !(from[i] > from[i - 1])) {
+        table.fail_element("from_deg", i, i == 0 ? "must be 0" : "must be larger than the number before");
+        return std::nullopt;
+      }
+      if (i > 0 && width >= from[i] - from[i - 1]) {
+        table.fail("jump_width_deg", fmt::format("must be less than the narrowest piece, {:.4g} deg here",
+                                                 (from[i] - from[i - 1]) / degree));
+        return std::nullopt;
+      }
+      pieces.push_back({from[i], stiffness[i], damping[i], 0.0});
+    }
+  } else {
+    const double stiffness = table.number("stiffness_Nm_rad", Range::above(0.0));
+    const double damping = table.number("damping_Nms_rad", Range::from(0.0));
+    const double gap =
+        *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
+    if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
+    if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0, 0.0});
+    pieces.push_back({gap, stiffness, damping, 0.0});
+  }
+  return DeflectionLaw(std::move(pieces), *reading, *rate, width);
+}
+
+double motor_inertia_of(const TomlTable& table) {
+  if (!table.has("rotor_inertia_kg_m2")) return table.number("motor_inertia_kg_m2", Range::above(0.0));
+  if (table.has("motor_inertia_kg_m2")) {
+    table.fail("motor_inertia_kg_m2", "must not stand beside rotor_inertia_kg_m2");
+    know(table, {"gear_ratio"});
+    return 0.0;
+  }
+  const double ratio = table.number("gear_ratio", Range::from(1.0, 1e6));
+  return ratio * ratio * table.number("rotor_inertia_kg_m2", Range::above(0.0));
+}
+
+JointFriction friction_of(const TomlTable& table) {
+  JointFriction law;
+  law.coulomb = table.number_or("coulomb_Nm", 0.0, Range::from(0.0));
+  law.breakaway = table.number_or("breakaway_Nm", law.coulomb, Range::from(0.0));
+  law.stribeck_velocity = table.number_or("stribeck_velocity_rad_s", 1e-3, Range::above(0.0));
+  law.viscous = table.number_or("viscous_Nms_rad", 0.0, Range::from(0.0));
+  if (law.breakaway < law.coulomb) table.fail("breakaway_Nm", "must not be smaller than coulomb_Nm");
+  return law;
+}
+
+Drive drive_of(const TomlTable& table) {
+  Drive drive;
+  const auto mode = table.choice("drive", drive_modes);
+  drive.mode = mode.value_or(DriveMode::limp);
+  if (!mode) know(table, {"proportional_Nm_rad", "derivative_Nms_rad", "limit_Nm"});
+  if (drive.mode != DriveMode::servo) return drive;
+  drive.proportional = table.number("proportional_Nm_rad", Range::above(0.0));
+  drive.derivative = table.number("derivative_Nms_rad", Range::from(0.0));
+  drive.limit = table.number_or("limit_Nm", drive.limit, Range::above(0.0));
+  return drive;
+}
+
+ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
+  constexpr Choice<bool> schemas[] = {{"snare-arm/1", true}};
+  ArmDescription description;
+  description.file = file;
+  const std::filesystem::path folder = file.parent_path();
+  const TomlTable root = document.root();
+  static_cast<void>(root.choice("schema", schemas));
+  description.title = root.text("title");
+  description.source = root.text("source");
+  Tree& tree = description.arm.tree;
+  if (root.has("gravity_m_s2")) {
+    const auto g = root.numbers("gravity_m_s2", 3, 3, Range::finite());
+    if (g.size() == 3) tree.gravity = {g[0], g[1], g[2]};
+  }
+
+  // The base, the arm on it, and what the arm carries.
+  int mount = 0;
+  RootJoint arm_root = RootJoint::fixed;
+  if (root.has("base")) {
+    const TomlTable base = root.table("base");
+    const auto kind = base.choice("kind", base_kinds);
+    const RootJoint joint = kind == BaseKind::free ? RootJoint::free : RootJoint::fixed;
+    if (base.has("urdf")) {
+      const auto robot = robot_of(document, base, folder, description.input);
+      if (robot && put(base, tree, 0, joint, *robot)) mount = frame_of(base, "frame", tree);
+      if (!robot) static_cast<void>(base.text("frame"));
+    } else {
+      arm_root = joint;
+    }
+  }
+  // Without its bodies nothing else in the file has a meaning: their problems are reported alone.
+  const std::string urdf = root.text("urdf");
+  if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
+  const std::optional<RobotDescription> robot = read_urdf(folder / urdf);
+  description.input += robot->text + document.canonical();
+  const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
+  if (whole) {
+    for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;
+  }
+  for (const TomlTable& load : root.tables("payload")) {
+    const auto carried = robot_of(document, load, folder, description.input);
+    const int frame = whole ? frame_of(load, "on", tree) : (static_cast<void>(load.text("on")), -1);
+    if (carried && frame >= 0) static_cast<void>(put(load, tree, frame, RootJoint::fixed, *carried));
+  }
+  // The tip may be a link of what the arm carries.
+  if (whole) {
+    description.tip = frame_of(root, "tip", tree);
+  } else {
+    static_cast<void>(root.text("tip"));
+  }
+
+  // Motors, in the order of the arm's moving joints.
+  const TomlTable joints = root.table("joint");
+  const TomlTable common = root.table("every_joint");
+  if (whole) {
+    for (const RobotJoint& joint : robot->joints) {
+      if (!joint.kind || *joint.kind == JointKind::free) continue;
+      const TomlTable own = joints.table(joint.name).over(common);
+      ElasticJoint elastic;
+      elastic.name = joint.name;
+      elastic.body = tree.frame(tree.find_frame(joint.child)).body;
+      elastic.motor_inertia = motor_inertia_of(own);
+      if (const auto law = law_of(own)) elastic.spring = *law;
+      elastic.friction = friction_of(own);
+      elastic.back_drive = own.number_or("back_drive_Nm", 0.0, Range::from(0.0));
+      description.drives.push_back(drive_of(own));
+      description.arm.joints.push_back(elastic);
+      description.joints.push_back(joint);
+    }
+  }
+  const std::size_t count = description.joints.size();
+  if (whole && count == 0)
+    root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
+  for (const TomlTable& pose : root.tables("pose")) {
+    ArmPose one;
+    one.name = pose.text("name");
+    if (whole) {
+      const auto angles = pose.numbers("angles_deg", count, count, Range::from(-720.0, 720.0), degree);
+      one.angles = Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size()));
+      for (std::size_t k = 0; k < angles.size(); ++k) {
+        const RobotJoint& joint = description.joints[k];
+        if (angles[k] >= joint.lower - 1e-9 && angles[k] <= joint.upper + 1e-9) continue;
+        pose.fail_element("angles_deg", k,
+                          fmt::format("must be {:.4g} to {:.4g}, the limits of {}", joint.lower / degree,
+                                      joint.upper / degree, joint.name));
+      }
+    } else {
+      static_cast<void>(pose.has("angles_deg"));
+    }
+    description.poses.push_back(one);
+  }
+  document.finish();
+  return description;
+}
+
+}  // namespace
+
+ArmDescription read_arm(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  return read(document, file);
+}
+
+ArmDescription parse_arm(const std::filesystem::path& file, const std::string& text,
+                         const std::vector<base::Override>& overrides) {
+  TomlDocument document(file.string(), text, overrides);
+  return read(document, file);
+}
+
+Eigen::VectorXd ArmDescription::coordinates(const Eigen::VectorXd& angles) const {
+  Eigen::VectorXd q = zero_state(arm.tree).q;
+  for (int k = 0; k < arm.motors(); ++k) q[arm.tree.body(arm.joints[at(k)].body).q_index] = angles[k];
+  return q;
+}
+
+double reach(const ArmDescription& description) {
+  const Tree& tree = description.arm.tree;
+  const TreeFrame& tip = tree.frame(description.tip);
+  double sum = tip.X_BF.p.norm();
+  const int first = description.arm.joints.front().body;
+  for (int i = tip.body; i >= 0 && i != first; i = tree.body(i).parent) sum += tree.body(i).X_PJ.p.norm();
+  return sum;
+}
+
+}  // namespace snare::multibody

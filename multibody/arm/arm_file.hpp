@@ -1,0 +1,47 @@
+#pragma once
+
+#include "multibody/arm/elastic_arm.hpp"
+#include "multibody/urdf.hpp"
+#include "base/toml_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace snare::multibody {
+
+/// A pose with a name.
+struct ArmPose {
+  std::string name;
+  Eigen::VectorXd angles;  ///< of the elastic joints [rad]
+};
+
+/// An arm as its file tells it: URDF for the bodies, TOML for what URDF cannot say.              docs/arm_files.md
+struct ArmDescription {
+  std::string title, source;
+  std::filesystem::path file;
+  std::string input;  ///< canonical text of everything that was read: equal for equal arms
+  ElasticArm arm;
+  std::vector<RobotJoint> joints;  ///< the moving joints of the arm, one an elastic joint
+  std::vector<Drive> drives;       ///< at rest, held where they are
+  std::vector<ArmPose> poses;
+  int tip = 0;            ///< frame
+  double arm_mass = 0.0;  ///< of the arm's own URDF [kg]
+
+  /// Coordinates with the elastic joints at the given angles; a free base at the origin.
+  [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& angles) const;
+};
+
+/// Reads an arm file. Throws InputError with everything that is wrong in it or in the URDF files it names.
+[[nodiscard]] ArmDescription read_arm(const std::filesystem::path& file,
+                                      const std::vector<base::Override>& overrides = {});
+/// The same from text in memory; `file` stands in messages and other files are looked for beside it.
+[[nodiscard]] ArmDescription parse_arm(const std::filesystem::path& file, const std::string& text,
+                                       const std::vector<base::Override>& overrides = {});
+
+/// Length of the longest straight line from the first moving joint of the arm to the tip: the sum of the offsets [m].
+[[nodiscard]] double reach(const ArmDescription& description);
+
+}  // namespace snare::multibody

@@ -1,0 +1,403 @@
+#include "multibody/arm/arm_part.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace snare::multibody {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Unknowns with which the equations of a joint are coupled: its own row of motion, of the motor, and the works.
+constexpr int slots_per_joint = 19;
+
+}  // namespace
+
+BaseEquations best_base_equations(const Tree& tree) {
+  bool one_base = tree.size() > 0 && tree.body(0).joint == JointKind::free && tree.gravity.isZero(0.0);
+  for (int i = 1; i < tree.size(); ++i) one_base = one_base && tree.body(i).parent >= 0;
+  return one_base ? BaseEquations::momentum : BaseEquations::newton_euler;
+}
+
+double TimedLoad::share(double time) const {
+  if (time < begin || time > begin + duration) return 0.0;
+  return shape == Shape::constant ? 1.0 : std::sin(std::numbers::pi * (time - begin) / duration);
+}
+
+/// Torques at a joint and their derivatives, in its present mode.
+struct ElasticArmPart::Terms {
+  double deflection, deflection_rate, motor_rate;
+  double damping;  // of the present branch
+  double torque;              // of spring and damper on the motor
+  double motor_loss,
+      motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
+  double drive, drive_by_angle, drive_by_rate;
+  double gear_damping;          // damping on the deflection rate, 0 where it acts on the motor
+  double torque_by_deflection;  // at fixed rates
+  double loss_by_deflection;    // of the torque against the motor
+  double gear_damping_slope;    // by the deflection
+};
+
+ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
+                               const ArmTolerances& tolerances, BaseEquations base)
+    : arm_(arm),
+      drives_(std::move(drives)),
+      loads_(std::move(loads)),
+      modes_(at(arm.motors())),
+      tolerances_(tolerances),
+      base_(base),
+      interval_begin_(-std::numeric_limits<double>::infinity()),
+      interval_end_(std::numeric_limits<double>::infinity()),
+      workspace_(arm.tree),
+      derivatives_(arm.tree),
+      kinematics_(arm.tree),
+      q_values_(arm.tree.coordinates()),
+      v_values_(arm.tree.velocities()),
+      a_values_(arm.tree.velocities()) {
+  assert(static_cast<int>(drives_.size()) == arm.motors());
+  wrenches_.reserve(at(arm.tree.size()));
+}
+
+void ElasticArmPart::declare(numerics::DaeLayout& layout) {
+  const int m = arm_.motors();
+  const double motion = tolerances_.motion;
+  q_ = layout.add({"arm coordinate", {}, arm_.tree.coordinates(), numerics::DaeKind::differential, motion});
+  v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), numerics::DaeKind::differential, motion});
+  motor_ = layout.add({"motor angle [rad]", {}, m, numerics::DaeKind::differential, motion});
+  rate_ = layout.add({"motor rate [rad/s]", {}, m, numerics::DaeKind::differential, motion});
+  work_ = layout.add(
+      {"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
+  if (base_ == BaseEquations::momentum) {
+    momentum_ = layout.add({"momentum", {}, 6, numerics::DaeKind::differential, motion * arm_.tree.mass()});
+  }
+}
+
+void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
+  for (const TreeBody& body : arm_.tree.bodies()) {
+    const int q = q_ + body.q_index, v = v_ + body.v_index;
+    for (int i = 0; i < body.coordinates(); ++i) {
+      for (int j = 0; j < body.coordinates(); ++j) entries.emplace_back(q + i, q + j);
+      for (int j = 0; j < body.velocities(); ++j) entries.emplace_back(q + i, v + j);
+    }
+  }
+  for (int i = 0; i < arm_.tree.velocities(); ++i) {
+    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(v_ + i, q_ + j);
+    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(v_ + i, v_ + j);
+  }
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
+    for (const int row : {v_ + body.v_index, rate_ + k, work_, work_ + 2}) {
+      for (const int column : {q_ + body.q_index, v_ + body.v_index, motor_ + k, rate_ + k})
+        entries.emplace_back(row, column);
+    }
+    entries.emplace_back(motor_ + k, motor_ + k);
+    entries.emplace_back(motor_ + k, rate_ + k);
+  }
+  for (int i = 0; i < 3; ++i) entries.emplace_back(work_ + i, work_ + i);
+  if (!loads_.empty()) {
+    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(work_ + 1, q_ + j);
+    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(work_ + 1, v_ + j);
+  }
+  if (base_ == BaseEquations::momentum) {
+    for (int i = 0; i < 6; ++i) {
+      entries.emplace_back(v_ + i, momentum_ + i);
+      entries.emplace_back(momentum_ + i, momentum_ + i);
+      for (int j = 0; i < 3 && !loads_.empty() && j < arm_.tree.coordinates(); ++j)
+        entries.emplace_back(momentum_ + i, q_ + j);
+    }
+  }
+}
+
+void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
+  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_,
+                      &work_by_v_, &momentum_slots_, &momentum_by_q_}) {
+    slots->clear();
+  }
+  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) {
+    slots.push_back(pattern.slot(i, j));
+  };
+  for (const TreeBody& body : arm_.tree.bodies()) {
+    const int q = q_ + body.q_index, v = v_ + body.v_index;
+    for (int i = 0; i < body.coordinates(); ++i) {
+      for (int j = 0; j < body.coordinates(); ++j) keep(coordinate_slots_, q + i, q + j);
+      for (int j = 0; j < body.velocities(); ++j) keep(coordinate_slots_, q + i, v + j);
+    }
+  }
+  for (int j = 0; j < arm_.tree.coordinates(); ++j) {
+    for (int i = 0; i < arm_.tree.velocities(); ++i) keep(motion_by_q_, v_ + i, q_ + j);
+  }
+  for (int j = 0; j < arm_.tree.velocities(); ++j) {
+    for (int i = 0; i < arm_.tree.velocities(); ++i) keep(motion_by_v_, v_ + i, v_ + j);
+  }
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
+    const int q = q_ + body.q_index, v = v_ + body.v_index, motor = motor_ + k, rate = rate_ + k;
+    for (const int row : {v, rate}) {
+      for (const int column : {q, v, motor, rate}) keep(joint_slots_, row, column);
+    }
+    keep(joint_slots_, motor, motor);
+    keep(joint_slots_, motor, rate);
+    keep(joint_slots_, work_, motor);
+    keep(joint_slots_, work_, rate);
+    keep(joint_slots_, work_ + 2, v);
+    keep(joint_slots_, work_ + 2, rate);
+    for (int i = 0; i < 3; ++i) keep(joint_slots_, work_ + i, work_ + i);
+    keep(joint_slots_, work_ + 2, q);
+    keep(joint_slots_, work_ + 2, motor);
+    assert(static_cast<int>(joint_slots_.size()) == slots_per_joint * (k + 1));
+  }
+  if (arm_.motors() == 0) {
+    for (int i = 0; i < 3; ++i) keep(joint_slots_, work_ + i, work_ + i);
+  }
+  if (!loads_.empty()) {
+    for (int j = 0; j < arm_.tree.coordinates(); ++j) keep(work_by_q_, work_ + 1, q_ + j);
+    for (int j = 0; j < arm_.tree.velocities(); ++j) keep(work_by_v_, work_ + 1, v_ + j);
+  }
+  if (base_ == BaseEquations::momentum) {
+    for (int i = 0; i < 6; ++i) {
+      keep(momentum_slots_, v_ + i, momentum_ + i);
+      keep(momentum_slots_, momentum_ + i, momentum_ + i);
+    }
+    for (int j = 0; !loads_.empty() && j < arm_.tree.coordinates(); ++j) {
+      for (int i = 0; i < 3; ++i) keep(momentum_by_q_, momentum_ + i, q_ + j);
+    }
+  }
+}
+
+double ElasticArmPart::inside(double time) const {
+  const double margin = 1e-12 * (1.0 + std::abs(time));  // far below every time that matters
+  return std::clamp(time, interval_begin_ + margin,
+                    std::max(interval_begin_ + margin, interval_end_ - margin));
+}
+
+JointFriction ElasticArmPart::friction(int joint) const {
+  const ElasticJoint& j = arm_.joints[at(joint)];
+  return drives_[at(joint)].mode == DriveMode::limp ? j.friction.with_back_drive(j.back_drive) : j.friction;
+}
+
+bool ElasticArmPart::fixed(int joint) const {
+  return drives_[at(joint)].mode == DriveMode::locked || modes_[at(joint)].turning == 0;
+}
+
+ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y, int joint) const {
+  const ElasticJoint& j = arm_.joints[at(joint)];
+  const TreeBody& body = arm_.tree.body(j.body);
+  const JointMode& mode = modes_[at(joint)];
+  const Drive& drive = drives_[at(joint)];
+  Terms t{};
+  t.motor_rate = y[rate_ + joint];
+  t.deflection = y[q_ + body.q_index] - y[motor_ + joint];
+  t.deflection_rate = y[v_ + body.v_index] - t.motor_rate;
+  t.damping = j.spring.damping(mode.branch, t.deflection);
+  const double slope = j.spring.damping_slope(mode.branch, t.deflection);
+  const bool in_gear = j.spring.damping_rate() == DampingRate::deflection;
+  t.gear_damping = in_gear ? t.damping : 0.0;
+  t.gear_damping_slope = in_gear ? slope : 0.0;
+  t.torque = j.spring.torque(mode.branch, t.deflection) + t.gear_damping * t.deflection_rate;
+  t.torque_by_deflection = j.spring.stiffness(mode.branch) + t.gear_damping_slope * t.deflection_rate;
+  if (!fixed(joint)) {
+    const JointFriction law = friction(joint);
+    const double motor_damping = t.damping - t.gear_damping;
+    t.motor_loss = law.torque(mode.turning, t.motor_rate) + motor_damping * t.motor_rate;
+    t.motor_loss_slope = law.slope(mode.turning, t.motor_rate) + motor_damping;
+    t.loss_by_deflection = in_gear ? 0.0 : slope * t.motor_rate;
+  }
+  if (drive.mode == DriveMode::servo) {
+    if (mode.saturated != 0) {
+      t.drive = mode.saturated * drive.limit;
+    } else {
+      t.drive = drive.demand(inside(time), y[motor_ + joint], t.motor_rate);
+      t.drive_by_angle = -drive.proportional;
+      t.drive_by_rate = -drive.derivative;
+    }
+  }
+  return t;
+}
+
+bool ElasticArmPart::place_loads(double time, numerics::VectorView y) {
+  wrenches_.clear();
+  for (const TimedLoad& load : loads_) {
+    const double share = load.share(inside(time));
+    if (share == 0.0 || arm_.tree.frame(load.frame).body < 0) continue;
+    if (wrenches_.empty()) {
+      wrenches_.assign(at(arm_.tree.size()), {});
+      q_values_ = y.segment(q_, arm_.tree.coordinates());
+      v_values_ = y.segment(v_, arm_.tree.velocities());
+      place(arm_.tree, q_values_, kinematics_);
+      set_moving(arm_.tree, v_values_, kinematics_);
+    }
+    const Wrench now{share * load.peak.moment, share * load.peak.force};
+    const BodyWrench on_body = world_wrench_on_frame(arm_.tree, kinematics_, load.frame, now);
+    wrenches_[at(on_body.body)] += on_body.F_B;
+  }
+  return !wrenches_.empty();
+}
+
+void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen::VectorXd> rows) {
+  const Tree& tree = arm_.tree;
+  const bool loaded = place_loads(point.time, point.y);
+  q_values_ = point.y.segment(q_, tree.coordinates());
+  v_values_ = point.y.segment(v_, tree.velocities());
+  a_values_ = point.rate.segment(v_, tree.velocities());
+  rows.segment(q_, tree.coordinates()) += point.rate.segment(q_, tree.coordinates());
+  for (const TreeBody& body : tree.bodies()) {
+    if (body.joint == JointKind::free) {
+      rows.segment<7>(q_ + body.q_index) -= free_coordinate_rate(body, q_values_, v_values_);
+    } else {
+      rows[q_ + body.q_index] -= v_values_[body.v_index];
+    }
+  }
+  rows.segment(v_, tree.velocities()) +=
+      inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
+  rows.segment(work_, 3) += point.rate.segment(work_, 3);
+  if (base_ == BaseEquations::momentum) use_momentum(point, loaded, rows);
+
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const Terms t = terms(point.time, point.y, k);
+    const ElasticJoint& joint = arm_.joints[at(k)];
+    rows[v_ + tree.body(joint.body).v_index] += t.torque;
+    rows[motor_ + k] += point.rate[motor_ + k] - t.motor_rate;
+    rows[rate_ + k] += joint.motor_inertia * point.rate[rate_ + k];
+    if (!fixed(k)) rows[rate_ + k] += t.motor_loss - t.torque - t.drive;
+    rows[work_] -= t.drive * t.motor_rate;
+    rows[work_ + 2] -= t.gear_damping * t.deflection_rate * t.deflection_rate + t.motor_loss * t.motor_rate;
+  }
+  if (loaded) {
+    for (int i = 0; i < tree.size(); ++i) rows[work_ + 1] -= dot(kinematics_.V_B[at(i)], wrenches_[at(i)]);
+  }
+}
+
+void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::vector<double>& values) {
+  const Tree& tree = arm_.tree;
+  const int nq = tree.coordinates(), nv = tree.velocities();
+  const bool loaded = place_loads(point.time, point.y);
+  q_values_ = point.y.segment(q_, nq);
+  v_values_ = point.y.segment(v_, nv);
+  a_values_ = point.rate.segment(v_, nv);
+
+  std::size_t slot = 0;
+  for (const TreeBody& body : tree.bodies()) {
+    if (body.joint != JointKind::free) {
+      values[at(coordinate_slots_[slot++])] += c;
+      values[at(coordinate_slots_[slot++])] -= 1.0;
+      continue;
+    }
+    const FreeRateDerivatives d = differentiate_free_coordinate_rate(body, q_values_, v_values_);
+    for (int i = 0; i < 7; ++i) {
+      for (int j = 0; j < 7; ++j) {
+        values[at(coordinate_slots_[slot++])] += (i == j ? c : 0.0) - d.by_coordinates(i, j);
+      }
+      for (int j = 0; j < 6; ++j) values[at(coordinate_slots_[slot++])] -= d.by_velocities(i, j);
+    }
+  }
+
+  differentiate_inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, derivatives_);
+  if (loaded) add_load_derivatives(point.time, values);
+  if (base_ == BaseEquations::momentum) add_momentum_derivatives(point.time, c, values);
+  for (const TreeBody& body : tree.bodies()) {
+    for (int i = 0; i < nv; ++i) {
+      if (body.joint != JointKind::free) {
+        values[at(motion_by_q_[at(body.q_index * nv + i)])] += derivatives_.position(i, body.v_index);
+        continue;
+      }
+      const Eigen::Matrix<double, 6, 7> motion = free_coordinate_motion(body, q_values_);
+      const Eigen::Matrix<double, 1, 7> row = derivatives_.position.row(i).segment<6>(body.v_index) * motion;
+      for (int j = 0; j < 7; ++j) values[at(motion_by_q_[at((body.q_index + j) * nv + i)])] += row[j];
+    }
+  }
+  for (int j = 0; j < nv; ++j) {
+    for (int i = 0; i < nv; ++i) {
+      values[at(motion_by_v_[at(j * nv + i)])] += derivatives_.velocity(i, j) + c * derivatives_.mass(i, j);
+    }
+  }
+
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const Terms t = terms(point.time, point.y, k);
+    const int* s = &joint_slots_[at(slots_per_joint * k)];
+    const auto add = [&](int index, double value) { values[at(s[index])] += value; };
+    // Row of the link: q, v, qm, qm'.
+    add(0, t.torque_by_deflection);
+    add(1, t.gear_damping);
+    add(2, -t.torque_by_deflection);
+    add(3, -t.gear_damping);
+    // Row of the motor.
+    add(7, c * arm_.joints[at(k)].motor_inertia);
+    if (!fixed(k)) {
+      add(4, t.loss_by_deflection - t.torque_by_deflection);
+      add(5, -t.gear_damping);
+      add(6, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
+      add(7, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
+    }
+    add(8, c);
+    add(9, -1.0);
+    // Works of the drives and losses.
+    add(10, -t.drive_by_angle * t.motor_rate);
+    add(11, -t.drive_by_rate * t.motor_rate - t.drive);
+    add(12, -2.0 * t.gear_damping * t.deflection_rate);
+    add(13, 2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
+    const double loss_by_deflection = t.gear_damping_slope * t.deflection_rate * t.deflection_rate +
+                                      t.loss_by_deflection * t.motor_rate;
+    add(17, -loss_by_deflection);
+    add(18, loss_by_deflection);
+  }
+  const std::size_t works = arm_.motors() > 0 ? 14 : 0;
+  for (std::size_t i = 0; i < 3; ++i) values[at(joint_slots_[works + i])] += c;
+}
+
+void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& values) {
+  // The loads keep their directions in the world; the derivatives above let them turn with the bodies. theory.md (A.8)
+  const Tree& tree = arm_.tree;
+  for (const TimedLoad& load : loads_) {
+    const double share = load.share(inside(time));
+    if (share == 0.0 || tree.frame(load.frame).body < 0) continue;
+    const Eigen::Vector3d M = share * load.peak.moment, F = share * load.peak.force;
+    const Matrix6X J = frame_jacobian(tree, kinematics_, load.frame);
+    const Matrix6X J_rate = frame_jacobian_rate(tree, kinematics_, load.frame);
+    const FrameMotion motion = frame_motion(tree, kinematics_, load.frame);
+    Eigen::VectorXd power_by_motion = Eigen::VectorXd::Zero(tree.velocities());
+    for (int j = 0; j < tree.velocities(); ++j) {
+      const Eigen::Vector3d w = J.col(j).head<3>();
+      const Eigen::Vector3d turned_M = w.cross(M), turned_F = w.cross(F);
+      for (int i = 0; i < tree.velocities(); ++i) {
+        derivatives_.position(i, j) += J.col(i).head<3>().dot(turned_M) + J.col(i).tail<3>().dot(turned_F);
+      }
+    }
+    // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates of
+    // coordinates,
+    // and with the turn of the angular velocity by the axis.
+    for (const TreeBody& body : tree.bodies()) {
+      for (int l = 0; l < body.velocities(); ++l) {
+        const int j = body.v_index + l;
+        Vector6 change = J_rate.col(j);
+        change.head<3>() += J.col(j).head<3>().cross(motion.angular);
+        if (body.joint == JointKind::free) {
+          Twist unit;
+          (l < 3 ? unit.angular : unit.linear) = Eigen::Vector3d::Unit(l % 3);
+          const Twist own{v_values_.segment<3>(body.v_index), v_values_.segment<3>(body.v_index + 3)};
+          change -= J.middleCols<6>(body.v_index) * cross(own, unit).vector();
+        }
+        power_by_motion[j] = M.dot(change.head<3>()) + F.dot(change.tail<3>());
+      }
+    }
+    for (const TreeBody& body : tree.bodies()) {
+      if (body.joint != JointKind::free) {
+        values[at(work_by_q_[at(body.q_index)])] -= power_by_motion[body.v_index];
+      } else {
+        const Eigen::Matrix<double, 1, 7> row =
+            power_by_motion.segment<6>(body.v_index).transpose() * free_coordinate_motion(body, q_values_);
+        for (int i = 0; i < 7; ++i) values[at(work_by_q_[at(body.q_index + i)])] -= row[i];
+      }
+    }
+    for (int j = 0; j < tree.velocities(); ++j) {
+      values[at(work_by_v_[at(j)])] -= J.col(j).head<3>().dot(M) + J.col(j).tail<3>().dot(F);
+    }
+  }
+}
+
+}  // namespace snare::multibody

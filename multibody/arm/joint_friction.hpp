@@ -1,0 +1,25 @@
+#pragma once
+
+namespace snare::multibody {
+
+/// Dry and viscous friction of a motor with its gear, on the output side.                           theory.md (A.11)
+///
+///   turning:  T = sgn(w) [T_c + (T_s - T_c) exp(-(w/w_s)^2)] + d w      (Stribeck)
+///   sticking: any |T| <= T_s; the motor does not turn
+/// Sticking is exact: no creep. With T_s = T_c = 0 the motor never sticks.
+struct JointFriction {
+  double coulomb = 0.0;             ///< T_c [N m], >= 0
+  double breakaway = 0.0;           ///< T_s [N m], >= T_c
+  double stribeck_velocity = 1e-3;  ///< w_s [rad/s], > 0
+  double viscous = 0.0;             ///< d [N m s/rad], >= 0
+
+  [[nodiscard]] bool sticks() const { return breakaway > 0.0; }
+  /// Torque against the turning, direction +1 or -1 (also at w = 0) [N m].
+  [[nodiscard]] double torque(int direction, double velocity) const;
+  /// d torque / d velocity [N m s/rad].
+  [[nodiscard]] double slope(int direction, double velocity) const;
+  /// The same with a torque that the load needs to drive the gear backwards on top of the dry friction.
+  [[nodiscard]] JointFriction with_back_drive(double torque) const;
+};
+
+}  // namespace snare::multibody

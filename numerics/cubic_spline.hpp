@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace snare::numerics {
+
+/// What a cubic spline does at its upper end; at the lower end it is always "not a knot".
+enum class SplineEnd {
+  not_a_knot,  ///< the last two pieces are one cubic
+  level        ///< slope zero: mirror symmetry
+};
+
+/// Matrix D with which the slopes of the interpolating C2 cubic spline at its knots are D v.      theory.md (R.3)
+/// knots: strictly ascending, >= 1 of them; one knot has slope 0, two a straight line, three a parabola.
+[[nodiscard]] Eigen::MatrixXd spline_slopes(const std::vector<double>& knots,
+                                            SplineEnd upper = SplineEnd::not_a_knot);
+
+/// The cell [knots[i], knots[i+1]] that holds x, or the first or last where x is outside. One knot: 0.
+[[nodiscard]] inline std::size_t find_cell(const double* knots, std::size_t count, double x) noexcept {
+  std::size_t low = 0;
+  std::size_t high = count > 1 ? count - 1 : 1;
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (x >= knots[middle] ? low : high) = middle;
+  }
+  return low;
+}
+
+/// A piecewise cubic with given values and slopes at its knots: C1.
+class HermiteCurve {
+ public:
+  HermiteCurve(std::vector<double> knots, std::vector<double> values, std::vector<double> slopes);
+  /// Through values with the slopes of the C2 spline.
+  HermiteCurve(std::vector<double> knots, std::vector<double> values);
+
+  [[nodiscard]] double value(double x) const noexcept;
+  [[nodiscard]] double slope(double x) const noexcept;
+  /// Integral from the first knot to x, exact for the piecewise cubic.
+  [[nodiscard]] double integral(double x) const noexcept;
+  [[nodiscard]] const std::vector<double>& knots() const noexcept { return knots_; }
+  [[nodiscard]] const std::vector<double>& slopes() const noexcept { return slopes_; }
+
+ private:
+  std::vector<double> knots_, values_, slopes_;
+  std::vector<double> area_;  // integral up to each knot
+};
+
+/// Slopes held to [0, 3 secants] where the values ascend, so that the cubic through them ascends too (Fritsch and
+/// Carlson 1980); those at turns of the values become 0; elsewhere unchanged where they cannot overshoot.
+[[nodiscard]] std::vector<double> monotone_slopes(const std::vector<double>& knots,
+                                                  const std::vector<double>& values,
+                                                  std::vector<double> slopes);
+
+}  // namespace snare::numerics

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "multibody/arm/arm_file.hpp"
+#include "multibody/arm/arm_run.hpp"
+
+#include <vector>
+
+namespace snare::scenario {
+
+/// The step test of one joint (Abiko et al., sec. 3.1): its motor jumps by `step` at the start and is then held by
+/// its brake,
+/// the other motors are locked; the link, at rest, finds its spring wound up by -step and swings.        theory.md
+/// (A.17)
+/// joint: index; step [rad].
+[[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                     int joint, double step, double end);
+
+/// The same with the motor driven by its servo to the new angle, as a command would.
+[[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                         int joint, double step, double end);
+
+/// Who answers a push at the tip.
+enum class Hold { as_described, limp };
+
+/// An arm at rest, pushed at its tip by half a sine of force, in the world's axes.
+/// impulse: of the force [N s]; duration > 0 [s], from t = 0.
+[[nodiscard]] multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                      Hold hold, const Eigen::Vector3d& impulse, double duration, double end);
+
+/// The joints go from one pose to another under their servos; a free base answers.
+/// Throws std::invalid_argument when a joint has no servo.
+[[nodiscard]] multibody::ArmScenario joint_motion(const multibody::ArmDescription& description, const Eigen::VectorXd& from,
+                                       const Eigen::VectorXd& to, double duration, double end);
+
+/// One swing of a joint's deflection from zero to zero.
+struct Swing {
+  double begin = 0.0, end = 0.0;  ///< zeros of the deflection [s]
+  double peak = 0.0;              ///< largest deflection between them, with its sign [rad]
+  /// Of the vibration of which this is one half [Hz].
+  [[nodiscard]] double frequency() const { return 0.5 / (end - begin); }
+};
+
+/// The swings of a joint, by Hermite's cubics between the samples; what comes before the first zero is none.
+[[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm, int joint);
+
+}  // namespace snare::scenario

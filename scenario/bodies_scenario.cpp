@@ -1,0 +1,287 @@
+#include "scenario/bodies_scenario.hpp"
+
+#include "scenario/motion_reader.hpp"
+#include "coupling/contact/mesh_shape.hpp"
+#include "coupling/contact/revolved_shape.hpp"
+#include "scenario/push_reader.hpp"
+#include "base/archive.hpp"
+#include "base/toml_reader.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace snare::scenario {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using base::Choice;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double far = 1e5;  // [mm]
+
+// Axis times angle.
+Matrix3d read_rotation(const TomlTable& table) {
+  const Vector3d turn = read_vector_or_zero(table, "rotation_deg", Range::from(-360.0, 360.0), degree);
+  const double angle = turn.norm();
+  return angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
+}
+
+/// Names of one kind, each once.
+class Names {
+ public:
+  explicit Names(std::string what) : what_(std::move(what)) {}
+  std::string take(const TomlTable& table) {
+    std::string name = table.text("name");
+    if (!index_.try_emplace(name, static_cast<int>(index_.size())).second)
+      table.fail("name", fmt::format("is taken by another {}", what_));
+    list_ += fmt::format("{}\"{}\"", list_.empty() ? "" : ", ", name);
+    return name;
+  }
+  [[nodiscard]] std::optional<int> find(const std::string& name) const {
+    const auto found = index_.find(name);
+    return found == index_.end() ? std::nullopt : std::optional(found->second);
+  }
+  [[nodiscard]] std::string requirement() const { return fmt::format("must be the name of a {}: {}", what_, list_); }
+
+ private:
+  std::string what_, list_;
+  std::map<std::string, int> index_;
+};
+
+/// A wire as it stands in the file; its shape at rest is found when all of the file is known to be right.
+struct DeclaredWire {
+  wire::WireSpecification specification;
+  coupling::MotionWire wire;
+  Vector3d from = Vector3d::Zero(), to = Vector3d::UnitX(), bulge = Vector3d::UnitY();
+  double span = 0.0;
+};
+
+DeclaredWire read_declared_wire(const TomlTable& table, Names& names, const wire::RodDamping& damping) {
+  DeclaredWire w;
+  w.wire.name = names.take(table);
+  w.specification = read_wire(table);
+  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
+    if (table.has(key)) table.fail(key, "the wire is elastic and naturally straight in motion");
+  }
+  static constexpr Choice<wire::SpatialEnd::Kind> mounts[] = {{"clamped", wire::SpatialEnd::Kind::clamp},
+                                                              {"pinned", wire::SpatialEnd::Kind::twisting_pin}};
+  const auto kind = table.has("mount") ? table.choice("mount", mounts) : wire::SpatialEnd::Kind::clamp;
+  w.from = read_vector(table, "from_mm", Range::from(-far, far), mm).value_or(w.from);
+  w.to = read_vector(table, "to_mm", Range::from(-far, far), mm).value_or(w.to);
+  w.span = (w.to - w.from).norm();
+  if (!(w.span > 0.0)) table.fail("to_mm", "must not be from_mm");
+  check_wire_between_mounts(w.specification, w.span, table);
+  if (const auto bulge = table.has("bulge") ? read_vector(table, "bulge", Range::from(-1e3, 1e3), 1.0) : std::nullopt) {
+    w.bulge = *bulge;
+  }
+  const Vector3d across = w.bulge - w.bulge.dot(w.to - w.from) / (w.span * w.span) * (w.to - w.from);
+  if (across.norm() < 1e-3 * w.bulge.norm() || w.bulge.norm() == 0.0)
+    table.fail(table.has("bulge") ? "bulge" : "", "must have a bulge, a direction across the chord");
+  else
+    w.bulge = across.normalized();
+  w.wire.rod = coupling::rod_in_motion(w.specification, w.span, table.integer_or("elements", 60, 8, 20000));
+  w.wire.rod.damping = damping;
+  w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind.value_or(wire::SpatialEnd::Kind::clamp);
+  return w;
+}
+
+// The wire of its own frame (chord along x, bulge to y) turned to where its mounts are.
+coupling::MotionWire place(DeclaredWire w) {
+  const Matrix3d rest_frame = (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
+  const Eigen::Matrix3Xd rest = coupling::resting_wire(w.wire.rod);
+  w.wire.positions = (rest_frame * rest).colwise() + w.from;
+  for (auto* end : {&w.wire.rod.properties.left, &w.wire.rod.properties.right}) {
+    end->position = rest_frame * end->position + w.from;
+    end->direction = rest_frame * end->direction;
+    end->director = rest_frame * end->director;
+  }
+  w.wire.positions.col(0) = w.wire.rod.properties.left.position;
+  w.wire.positions.rightCols<1>() = w.wire.rod.properties.right.position;
+  return w.wire;
+}
+
+coupling::MotionBody read_body(const TomlTable& table, Names& names) {
+  coupling::MotionBody body;
+  body.name = names.take(table);
+  body.driven = table.boolean_or("driven", false);
+  if (body.driven) {
+    for (const char* key : {"mass_kg", "inertia_kg_m2", "spin_rad_s", "drag_Ns_m", "drag_Nms_rad", "force_N"}) {
+      if (table.has(key)) table.fail(key, "a driven body moves at a constant velocity_m_s whatever it meets");
+    }
+  } else {
+    body.properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
+    const auto inertia = read_vector(table, "inertia_kg_m2", Range::above(0.0, 1e12), 1.0);
+    if (inertia) {
+      body.properties.inertia = inertia->asDiagonal();
+      if (2.0 * inertia->maxCoeff() > inertia->sum())
+        table.fail("inertia_kg_m2", "must satisfy the triangle inequality: none larger than the other two together");
+    }
+    body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
+    body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
+    body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
+    body.force = read_vector_or_zero(table, "force_N", Range::from(-1e9, 1e9), 1.0);
+  }
+  body.start.position = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
+  body.start.orientation = Eigen::Quaterniond(read_rotation(table));
+  body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
+  return body;
+}
+
+enum class ShapeKind { knife_edge, cylinder, sphere, capsule, cone, grapple_shaft, mesh };
+
+// The document is told what a maker of shapes finds wrong.
+template <class Make>
+std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::string_view key, const Make& make) {
+  try {
+    return make();
+  } catch (const base::InputError& error) {
+    for (const base::InputProblem& p : error.problems())
+      table.fail(key, p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
+  }
+  return nullptr;
+}
+
+std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder, std::string& input) {
+  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge}, {"cylinder", ShapeKind::cylinder},
+                                                {"sphere", ShapeKind::sphere},         {"capsule", ShapeKind::capsule},
+                                                {"cone", ShapeKind::cone},             {"grapple_shaft", ShapeKind::grapple_shaft},
+                                                {"mesh", ShapeKind::mesh}};
+  const Range size = Range::above(0.0, far);
+  const auto kind = table.choice("kind", kinds);
+  if (!kind) return nullptr;
+  switch (*kind) {
+    case ShapeKind::knife_edge:
+      return std::make_shared<coupling::Capsule>(0.0, table.number("length_mm", size, mm));
+    case ShapeKind::sphere:
+      return std::make_shared<coupling::Ball>(table.number("radius_mm", size, mm));
+    case ShapeKind::capsule: {
+      const double radius = table.number("radius_mm", size, mm);
+      return std::make_shared<coupling::Capsule>(radius, table.number("length_mm", size, mm));
+    }
+    case ShapeKind::cylinder: {
+      const double radius = table.number("radius_mm", size, mm);
+      const double length = table.number("length_mm", size, mm);
+      if (!(radius > 0.0 && length > 0.0)) return nullptr;  // reported
+      return coupling::finite_cylinder(radius, length);
+    }
+    case ShapeKind::cone: {
+      const double lower = table.number("lower_radius_mm", Range::from(0.0, far), mm);
+      const double upper = table.number("upper_radius_mm", Range::from(0.0, far), mm);
+      const double length = table.number("length_mm", size, mm);
+      if (lower == 0.0 && upper == 0.0) table.fail("upper_radius_mm", "must be > 0 where lower_radius_mm is 0");
+      if (!(std::max(lower, upper) > 0.0 && lower >= 0.0 && upper >= 0.0 && length > 0.0)) return nullptr;
+      return coupling::truncated_cone(lower, upper, length);
+    }
+    case ShapeKind::grapple_shaft: {
+      coupling::GrappleShaft s;
+      const Range from_zero = Range::from(0.0, far);
+      s.shaft_radius = table.number_or("shaft_radius_mm", s.shaft_radius, size, mm);
+      s.shaft_length = table.number_or("shaft_length_mm", s.shaft_length, size, mm);
+      s.cam_radius = table.number_or("cam_radius_mm", s.cam_radius, size, mm);
+      s.underside_length = table.number_or("underside_length_mm", s.underside_length, from_zero, mm);
+      s.cam_length = table.number_or("cam_length_mm", s.cam_length, size, mm);
+      s.end_radius = table.number_or("end_radius_mm", s.end_radius, size, mm);
+      s.bulge = table.number_or("bulge_mm", s.bulge, from_zero, mm);
+      return made(table, "kind", [&s] { return grapple_shaft(s); });
+    }
+    case ShapeKind::mesh: {
+      static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
+      const std::string name = table.text("file");
+      const auto unit = table.choice("unit", units);
+      if (name.empty() || !unit) return nullptr;
+      return made(table, "file", [&] {
+        coupling::TriangleMesh mesh = coupling::read_triangle_mesh(folder / name, *unit);
+        base::ByteWriter bytes;
+        bytes(mesh.points);
+        for (std::array<int, 3>& triangle : mesh.triangles) {
+          for (int& corner : triangle) bytes(corner);
+        }
+        input += fmt::format("{:x};", base::fingerprint(bytes.bytes()));
+        return std::make_shared<coupling::MeshShape>(mesh);
+      });
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool lists_bodies(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  return root.has("bodies") || root.has("wires") || root.has("shapes");
+}
+
+MotionScenario read_motion_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  MotionScenario scenario;
+  scenario.file = file;
+  if (root.text("schema") != "snare-scenario/1") root.fail("schema", "must be \"snare-scenario/1\"");
+  static constexpr Choice<bool> kinds[] = {{"contact", true}};
+  static_cast<void>(root.choice("kind", kinds));
+  scenario.title = root.text("title");
+  scenario.source = root.text_or("source", "");
+  read_motion_options(root, scenario.options);
+  for (const char* key : {"body", "wire", "mount", "pusher", "models"}) {
+    if (root.has(key)) root.fail(key, "not beside lists of bodies, wires and shapes");
+  }
+  const TomlTable gravity = root.table("gravity");
+  scenario.motion.gravity = read_vector_or_zero(gravity, "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
+  const wire::RodDamping damping = read_damping(root.table("damping"));
+
+  Names wires("wire"), bodies("body"), shapes("shape");
+  std::vector<DeclaredWire> declared;
+  for (const TomlTable& table : root.tables("wires")) declared.push_back(read_declared_wire(table, wires, damping));
+  for (const TomlTable& table : root.tables("bodies")) scenario.motion.bodies.push_back(read_body(table, bodies));
+  for (const char* key : {"wires", "bodies", "shapes"}) {
+    if (!root.has(key)) root.fail(key, "must be given, one table or more");
+  }
+  for (const TomlTable& table : root.tables("shapes")) {
+    coupling::MotionContact contact;
+    const std::string name = shapes.take(table);
+    contact.shape = read_shape(table, file.parent_path(), scenario.input);
+    const std::string body = table.text("body");
+    const std::optional<int> of_body = bodies.find(body);
+    if (!of_body && !body.empty()) table.fail("body", bodies.requirement());
+    contact.body = of_body.value_or(0);
+    contact.shape_position = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
+    contact.shape_rotation = read_rotation(table);
+    contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
+    contact.points = table.integer_or("points", contact.points, 1, 100);
+    std::vector<std::string> met = table.texts_or_none("wires");
+    if (!table.has("wires")) {
+      for (const DeclaredWire& w : declared) met.push_back(w.wire.name);
+    }
+    for (std::size_t k = 0; k < met.size(); ++k) {
+      const std::optional<int> index = wires.find(met[k]);
+      if (!index) {
+        table.fail_element("wires", k, wires.requirement());
+        continue;
+      }
+      contact.wire = *index;
+      contact.name = fmt::format("{} on {}", name, met[k]);
+      contact.wire_radius = 0.5 * declared[static_cast<std::size_t>(*index)].specification.diameter;
+      scenario.motion.contacts.push_back(contact);
+    }
+  }
+  scenario.output = read_motion_output(root.table("output"), scenario.options);
+  scenario.input += document.canonical();
+  document.finish();
+  for (DeclaredWire& w : declared) scenario.motion.wires.push_back(place(std::move(w)));
+  return scenario;
+}
+
+}  // namespace snare::scenario

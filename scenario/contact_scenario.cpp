@@ -1,0 +1,219 @@
+#include "scenario/contact_scenario.hpp"
+
+#include "scenario/motion_reader.hpp"
+#include "scenario/push_reader.hpp"
+#include "base/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace snare::scenario {
+
+using Eigen::Vector3d;
+using base::Choice;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
+
+namespace {
+
+constexpr std::string_view schema = "snare-scenario/1";
+constexpr double mm = 1e-3;
+
+void require_schema(const TomlTable& root) {
+  const std::string given = root.text("schema");
+  if (given != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
+}
+
+enum class ModelKind { wire, spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
+
+WireModel read_model(const TomlTable& table) {
+  static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
+                                                {"spring_dashpot", ModelKind::spring_dashpot},
+                                                {"power", ModelKind::power},
+                                                {"step_damped", ModelKind::step_damped},
+                                                {"quadratic", ModelKind::quadratic},
+                                                {"stretched_wire", ModelKind::stretched_wire},
+                                                {"stretched_wire_linear", ModelKind::stretched_wire_linear}};
+  const Range stiffness = Range::above(0.0, 1e15);
+  const Range damping = Range::from(0.0, 1e15);
+  WireModel model;
+  model.name = table.text("name");
+  model.kind = table.text("model");
+  const std::optional<ModelKind> kind = table.choice("model", kinds);
+  if (!kind) return model;
+  switch (*kind) {
+    case ModelKind::wire:
+      break;
+    case ModelKind::spring_dashpot:
+      model.law = coupling::spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
+      break;
+    case ModelKind::power: {
+      const double p = table.number("p", Range::from(1.0, 10.0));
+      const double n = table.number_or("n", p, Range::from(0.0, 10.0));
+      if (n > 0.0 && n < 1.0) table.fail("n", "must be 0 or >= 1: between, the force would rise infinitely fast");
+      model.law = coupling::power_law(table.number("k", stiffness), p, table.number_or("c", 0.0, damping),
+                            table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
+      break;
+    }
+    case ModelKind::step_damped:
+      model.law = coupling::step_damped_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
+                                  table.number("c_Ns_m", damping), table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
+      break;
+    case ModelKind::quadratic: {
+      const Range coefficient = Range::from(-1e12, 1e12);
+      model.law = coupling::quadratic_law(table.number("A_N_m2", coefficient), table.number("B_N_m", coefficient),
+                                table.number("C_N", coefficient));
+      break;
+    }
+    case ModelKind::stretched_wire:
+    case ModelKind::stretched_wire_linear: {
+      const double k = table.number("half_stiffness_N_m", stiffness);
+      const double length = table.number("half_length_mm", Range::above(0.0, 1e5), mm);
+      const double span = table.number("half_span_mm", Range::above(0.0, 1e5), mm);
+      if (length < span)
+        table.fail("half_length_mm", "must be >= half_span_mm");
+      else
+        model.law = *kind == ModelKind::stretched_wire ? coupling::stretched_wire_law(k, length, span)
+                                                       : coupling::stretched_wire_tangent(k, length, span);
+    }
+  }
+  return model;
+}
+
+void read_body(const TomlTable& table, ContactScenario& scenario) {
+  coupling::MotionBody& body = scenario.body;
+  body.name = table.text_or("name", "body");
+  body.properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
+  const std::vector<double> inertia = table.numbers("inertia_kg_m2", 3, 3, Range::above(0.0, 1e12));
+  if (inertia.size() == 3) {
+    body.properties.inertia = Vector3d(inertia[0], inertia[1], inertia[2]).asDiagonal();
+    const double largest = std::max({inertia[0], inertia[1], inertia[2]});
+    if (2.0 * largest > inertia[0] + inertia[1] + inertia[2])
+      table.fail("inertia_kg_m2",
+                 "must satisfy the triangle inequality: none larger than the other two together");
+  }
+  scenario.probe = read_vector_or_zero(table, "probe_mm", Range::from(-1e5, 1e5), mm);
+  const Vector3d velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
+  body.start.velocity = velocity;
+  body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
+  body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
+  body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
+  body.start.position.y() =
+      -table.number_or("distance_mm", 0.1 * mm, Range::from(1e-3, 1e4), mm);  // moved on in motion_of
+}
+
+}  // namespace
+
+std::string scenario_kind(const std::filesystem::path& file,
+                          const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  if (root.text("schema") != schema) {
+    throw base::InputError(
+        {file.string(), 0, "schema", root.text("schema"), fmt::format("must be \"{}\"", schema)});
+  }
+  return root.text("kind");
+}
+
+ContactScenario read_contact_scenario(const std::filesystem::path& file,
+                                      const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  ContactScenario scenario;
+  scenario.file = file;
+  require_schema(root);
+  static constexpr Choice<bool> kinds[] = {{"contact", true}};
+  static_cast<void>(root.choice("kind", kinds));
+  scenario.title = root.text("title");
+  scenario.source = root.text_or("source", "");
+  coupling::MotionOptions& o = scenario.options;
+  read_motion_options(root, o);
+
+  const PushTables tables = push_tables(root);
+  scenario.push = read_push_problem(tables);
+  scenario.push.contact_position = root.number("contact_position_mm", Range::above(0.0, 1e5), mm);
+  const double position = scenario.push.contact_position;
+  if (std::isfinite(position) && std::isfinite(scenario.push.mount.span)) {  // else reported already
+    if (const auto problem = position_problem(position, scenario.push.mount.span)) root.fail("contact_position_mm", *problem);
+  }
+  require_simple_motion(tables, scenario.push);
+
+  scenario.damping = read_damping(root.table("damping"));
+  read_body(root.table("body"), scenario);
+  scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction, "pusher.friction");
+
+  std::set<std::string> names;
+  for (const TomlTable& table : root.tables("models")) {
+    scenario.models.push_back(read_model(table));
+    if (!names.insert(scenario.models.back().name).second) table.fail("name", "is taken by another model");
+  }
+  if (scenario.models.empty() && !root.has("models")) scenario.models.push_back({"wire", "wire", {}});
+
+  scenario.elements = root.table("solver").integer_or("elements", 60, 8, 20000);
+  scenario.output = read_motion_output(root.table("output"), o);
+  scenario.input = document.canonical();
+  document.finish();
+  return scenario;
+}
+
+coupling::MotionOptions options_of(const ContactScenario& scenario, const WireModel& model) {
+  coupling::MotionOptions options = scenario.options;
+  const coupling::MotionBody& body = scenario.body;
+  const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
+  constexpr double resolved_travel = 1e-4;  // [m]
+  if (model.law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
+  return options;
+}
+
+coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
+  const coupling::PushProblem& push = scenario.push;
+  const wire::WireSpecification& w = push.wire;
+  wire::RodInMotion rod = coupling::rod_in_motion(w, push.mount.span, scenario.elements);
+  const auto end = push.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
+                                                               : wire::SpatialEnd::Kind::twisting_pin;
+  rod.properties.left.kind = rod.properties.right.kind = end;
+  rod.damping = scenario.damping;
+  rod.strands.time = scenario.strand_time;
+  const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
+
+  // The probe stands below the wire (above it for a push against the bulge) at the asked place.
+  const double side = push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+  Eigen::Index k = 1;
+  while (k + 1 < rest.cols() && rest(0, k) < push.contact_position) ++k;
+  const double share = (push.contact_position - rest(0, k - 1)) / (rest(0, k) - rest(0, k - 1));
+  const Vector3d slope = (rest.col(k) - rest.col(k - 1)).normalized();
+  const double height = rest(1, k - 1) + share * (rest(1, k) - rest(1, k - 1));
+  const double reach = (push.pusher.radius + 0.5 * w.diameter) / slope.x();  // along y, to a wire that slopes
+  const Vector3d touch(push.contact_position, height - side * reach, 0.0);
+
+  coupling::Motion motion;
+  motion.gravity = {push.gravity[0], push.gravity[1], push.gravity[2]};
+  coupling::MotionBody body = scenario.body;
+  body.start.position = touch + side * Vector3d(0.0, scenario.body.start.position.y(), 0.0) - scenario.probe;
+  motion.bodies.push_back(body);
+  if (model.law) {
+    coupling::PointContactLaw spring;
+    spring.name = model.name;
+    spring.point = scenario.probe;
+    spring.origin = touch;
+    spring.direction = {0.0, side, 0.0};
+    spring.law = model.law;
+    motion.springs.push_back(spring);
+    return motion;
+  }
+  motion.wires.push_back({"wire", rod, rest, {}});
+  coupling::MotionContact contact;
+  contact.name = model.name;
+  contact.shape = std::make_shared<coupling::EndlessCylinder>(push.pusher.radius);
+  contact.shape_position = scenario.probe;
+  contact.wire_radius = 0.5 * w.diameter;
+  contact.friction = scenario.friction;
+  motion.contacts.push_back(contact);
+  return motion;
+}
+
+}  // namespace snare::scenario

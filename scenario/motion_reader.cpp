@@ -1,0 +1,93 @@
+#include "scenario/motion_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace snare::scenario {
+
+using Eigen::Vector3d;
+using base::Choice;
+using base::Range;
+using base::TomlTable;
+
+std::optional<Vector3d> read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
+  const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
+  if (v.size() != 3) return std::nullopt;
+  return Vector3d(v[0], v[1], v[2]);
+}
+
+Vector3d read_vector_or_zero(const TomlTable& table, std::string_view key, Range range, double unit) {
+  if (!table.has(key)) return Vector3d::Zero();
+  return read_vector(table, key, range, unit).value_or(Vector3d::Zero());
+}
+
+void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
+  o.duration = root.number("duration_s", Range::above(0.0, 1e6));
+  o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
+  constexpr double most_outputs = 1e6;
+  if (o.duration / o.output_interval > most_outputs)
+    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
+  const TomlTable solver = root.table("solver");
+  const auto tolerance = [&solver](std::string_view key, double& value, double most) {
+    value = solver.number_or(key, value, Range::above(0.0, most));
+  };
+  o.relative_tolerance = solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
+  tolerance("position_tolerance_m", o.position_tolerance, 1e-3);
+  tolerance("velocity_tolerance_m_s", o.velocity_tolerance, 1.0);
+  tolerance("body_position_tolerance_m", o.body_position_tolerance, 1e-3);
+  tolerance("body_velocity_tolerance_m_s", o.body_velocity_tolerance, 1.0);
+  tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
+  tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
+  o.max_order = solver.integer_or("max_order", 2, 1, 5);
+  o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
+}
+
+double default_checkpoint_interval(double duration) {
+  return std::min(1.0, duration / 10.0);
+}
+
+MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions& o) {
+  MotionOutput output;
+  output.paraview = table.boolean_or("paraview", output.paraview);
+  o.checkpoint_interval =
+      table.number_or("checkpoint_interval_s", default_checkpoint_interval(o.duration), Range::above(0.0, 1e6));
+  output.checkpoint_wall_time =
+      table.number_or("checkpoint_wall_time_s", output.checkpoint_wall_time, Range::from(0.0, 1e6));
+  return output;
+}
+
+wire::RodDamping read_damping(const TomlTable& table) {
+  wire::RodDamping damping;
+  damping.bending_time = table.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
+  damping.axial_time = table.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  damping.mass_rate = table.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
+  return damping;
+}
+
+coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, std::string_view dynamic_key) {
+  static constexpr Choice<coupling::ContactFriction> laws[] = {{"stick_slip", coupling::ContactFriction::stick_slip}, {"smooth", coupling::ContactFriction::smooth}};
+  coupling::MotionFriction f;
+  if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
+  f.dynamic_coefficient = dynamic;
+  f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
+  f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
+  f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
+  f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
+  f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
+  f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
+  const bool at_once = f.law == coupling::ContactFriction::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  if (f.dynamic_speed <= f.static_speed && !at_once)
+    table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
+  if (f.law == coupling::ContactFriction::smooth) {
+    if (f.static_speed == 0.0) table.fail("static_speed_m_s", "must be > 0 with the smooth law");
+    for (const char* key : {"bristle_displacement_m", "bristle_force_N", "bristle_time_s"}) {
+      if (table.has(key)) table.fail(key, "belongs to law = \"stick_slip\"");
+    }
+  } else if (f.static_coefficient < dynamic) {
+    table.fail("static_friction", fmt::format("must be at least {} with law = \"stick_slip\"", dynamic_key));
+  }
+  return f;
+}
+
+}  // namespace snare::scenario

@@ -1,0 +1,197 @@
+#include "scenario/push_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace snare::scenario {
+
+namespace {
+
+using base::Choice;
+using base::Range;
+using base::TomlTable;
+
+constexpr double mm = 1e-3;                          // [m]
+constexpr double GPa = 1e9;                          // [Pa]
+constexpr double degree = std::numbers::pi / 180.0;  // [rad]
+
+// Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
+constexpr double largest_length = 1e5;                // [mm]
+constexpr double largest_force = 1e9;                 // [N]
+constexpr double largest_stiffness = 1e15;            // [N/m], [N m/rad], [N]
+constexpr double smallest_bending_stiffness = 1e-15;  // [N m^2]; a glass fibre of 10 um has 3e-11
+constexpr double shortest_length = 0.99;              // of the span, between clamps or pins
+constexpr double mount_margin = 0.01;                 // of the span, between contact and mount
+constexpr double thickest_wire = 0.2;                 // of the span
+
+/// Length for a message, in mm without rounding noise.
+std::string in_mm(double metres) {
+  return fmt::format("{:.6g}", metres / mm);
+}
+
+}  // namespace
+
+wire::WireSpecification read_wire(const TomlTable& table) {
+  static constexpr Choice<wire::Construction> constructions[] = {{"solid", wire::Construction::solid},
+                                                                 {"strand", wire::Construction::strand}};
+  wire::WireSpecification wire;
+  wire.construction = table.choice("construction", constructions).value_or(wire.construction);
+  wire.diameter = table.number("diameter_mm", Range::above(0.0, 100.0), mm);
+  wire.length = table.number("length_mm", Range::above(0.0, largest_length), mm);
+  wire.youngs_modulus = table.number("youngs_modulus_GPa", Range::above(0.0, 1e4), GPa);
+  wire.poisson_ratio = table.number("poisson_ratio", Range::above(-1.0, 0.5));
+  wire.density = table.number("density_kg_m3", Range::above(0.0, 1e5));
+  const Range bending = Range::from(smallest_bending_stiffness, 1e9);
+  wire.bending_stiffness_override = table.optional_number("bending_stiffness_Nm2", bending);
+  wire.axial_stiffness_override =
+      table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
+  wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
+  wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
+  if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
+    wire::Yielding yielding;
+    yielding.yield_stress = 1e6 * *stress;
+    yielding.hardening_ratio =
+        table.number_or("hardening_ratio", wire::Yielding::usual_hardening, Range::from(0.002, 0.9));
+    wire.yielding = yielding;
+  } else if (table.has("hardening_ratio")) {
+    table.fail("hardening_ratio", "only beside yield_stress_MPa");
+  }
+  const auto extra = table.optional_number("strand_extra_stiffness_Nm2", bending);
+  const auto slip = table.optional_number("strand_slip_curvature_1_m", Range::from(1e-4, 1e4));
+  if (extra && slip)
+    wire.strand_friction = wire::StrandFriction{*extra, *slip};
+  else if (extra)
+    table.fail("strand_extra_stiffness_Nm2", "needs strand_slip_curvature_1_m beside it");
+  else if (slip)
+    table.fail("strand_slip_curvature_1_m", "needs strand_extra_stiffness_Nm2 beside it");
+  if (wire.bending_stiffness() < smallest_bending_stiffness)
+    table.fail("diameter_mm", fmt::format("gives a bending stiffness of {:.3g} N m^2, must be >= {}",
+                                          wire.bending_stiffness(), smallest_bending_stiffness));
+  return wire;
+}
+
+namespace {
+
+wire::MountSpecification read_mount(const TomlTable& table) {
+  static constexpr Choice<wire::MountKind> kinds[] = {{"clamped", wire::MountKind::clamped},
+                                                      {"pinned", wire::MountKind::pinned},
+                                                      {"supports", wire::MountKind::supports}};
+  const Range stiffness = Range::above(0.0, largest_stiffness);
+  wire::MountSpecification mount;
+  const std::optional<wire::MountKind> kind = table.choice("kind", kinds);
+  mount.kind = kind.value_or(mount.kind);
+  mount.span = table.number("span_mm", Range::above(0.0, largest_length), mm);
+  const Range radius = Range::from(0.0, 1000.0);
+  if (kind == wire::MountKind::supports)
+    mount.support_radius = table.number("support_radius_mm", radius, mm);
+  else
+    mount.support_radius = table.number_or("support_radius_mm", 0.0, radius, mm);
+  mount.translational_stiffness = table.optional_number("translational_stiffness_N_m", stiffness);
+  mount.rotational_stiffness = table.optional_number("rotational_stiffness_Nm_rad", stiffness);
+  mount.slip_tension = table.optional_number("slip_tension_N", Range::above(0.0, largest_force));
+
+  const auto refuse = [&](std::string_view key, std::string_view kinds_that_have_it) {
+    if (table.has(key)) table.fail(key, fmt::format("only for a mount of kind {}", kinds_that_have_it));
+  };
+  if (!kind) return mount;
+  if (*kind != wire::MountKind::supports) refuse("support_radius_mm", "\"supports\"");
+  if (*kind != wire::MountKind::clamped) refuse("rotational_stiffness_Nm_rad", "\"clamped\"");
+  if (*kind == wire::MountKind::supports) {
+    refuse("translational_stiffness_N_m", "\"clamped\" or \"pinned\"");
+    refuse("slip_tension_N", "\"clamped\" or \"pinned\"");
+  }
+  return mount;
+}
+
+coupling::PusherSpecification read_pusher(const TomlTable& table) {
+  static constexpr Choice<bool> shapes[] = {{"cylinder", true}};  // the only one; a knife edge has radius 0
+  static constexpr Choice<coupling::PushDirection> directions[] = {{"outward", coupling::PushDirection::outward},
+                                                         {"inward", coupling::PushDirection::inward}};
+  coupling::PusherSpecification pusher;
+  static_cast<void>(table.choice("shape", shapes));
+  pusher.radius = table.number("radius_mm", Range::from(0.0, 100.0), mm);
+  pusher.friction = table.number("friction", Range::from(0.0, 2.0));
+  pusher.direction = table.choice("direction", directions).value_or(pusher.direction);
+  pusher.compliance = table.number_or("compliance_m_N", 0.0, Range::from(0.0, 1e-3));
+  pusher.tilt = table.number_or("tilt_deg", 0.0, Range::from(-45.0, 45.0), degree);
+  pusher.misalignment = table.number_or("misalignment_deg", 0.0, Range::from(-45.0, 45.0), degree);
+  return pusher;
+}
+
+coupling::BulgeSpecification read_bulge(const TomlTable& table) {
+  coupling::BulgeSpecification bulge;
+  bulge.mode = table.integer_or("mode", bulge.mode, 1, 4);
+  bulge.plane = table.number_or("plane_deg", 0.0, Range::from(-90.0, 90.0), degree);
+  return bulge;
+}
+
+std::array<double, 3> read_gravity(const TomlTable& table) {
+  if (!table.has("vector_m_s2")) return {0.0, 0.0, 0.0};
+  const std::vector<double> values = table.numbers("vector_m_s2", 3, 3, Range::from(-1000.0, 1000.0));
+  if (values.size() != 3) return {0.0, 0.0, 0.0};
+  return {values[0], values[1], values[2]};
+}
+
+// What no key can say alone. A number that was refused is NaN, and no comparison with it holds.
+void check_length_and_diameter(const wire::WireSpecification& wire, double span, bool rests, const TomlTable& table) {
+  const double shortest = (rests ? 1.0 : shortest_length) * span;
+  if (wire.length < shortest)
+    table.fail("length_mm", rests ? fmt::format("must be >= {}, the span of the supports", in_mm(span))
+                                  : fmt::format("must be >= {}, {:g} % of the span of {} mm", in_mm(shortest),
+                                                100.0 * shortest_length, in_mm(span)));
+  if (wire.diameter >= thickest_wire * span)
+    table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the span of {} mm", in_mm(thickest_wire * span), in_mm(span)));
+}
+
+}  // namespace
+
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const TomlTable& table) {
+  check_length_and_diameter(wire, span, false, table);
+}
+
+coupling::PushProblem read_wire_and_mounts(const PushTables& tables) {
+  coupling::PushProblem test;
+  test.wire = read_wire(tables.wire);
+  test.mount = read_mount(tables.mount);
+  check_length_and_diameter(test.wire, test.mount.span, test.mount.kind == wire::MountKind::supports, tables.wire);
+  return test;
+}
+
+coupling::PushProblem read_push_problem(const PushTables& tables) {
+  coupling::PushProblem test = read_wire_and_mounts(tables);
+  test.pusher = read_pusher(tables.pusher);
+  test.bulge = read_bulge(tables.bulge);
+  test.gravity = read_gravity(tables.gravity);
+  return test;
+}
+
+PushTables push_tables(const TomlTable& root) {
+  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"),
+          root.table("gravity")};
+}
+
+void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test) {
+  if (test.mount.kind == wire::MountKind::supports)
+    tables.mount.fail("kind",
+                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
+  for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+    if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
+  }
+  for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
+    if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+  }
+}
+
+std::optional<std::string> position_problem(double position, double span) {
+  const double margin = mount_margin * span;
+  if (position >= margin && position <= span - margin) return std::nullopt;
+  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount",
+                     in_mm(margin), in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
+}
+
+}  // namespace snare::scenario

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "coupling/statics/push_problem.hpp"
+#include "base/toml_reader.hpp"
+
+#include <optional>
+#include <string>
+
+namespace snare::scenario {
+
+/// The tables that describe one push in a file: keys, units and ranges in docs/experiment_file.md.
+struct PushTables {
+  base::TomlTable wire, mount, pusher, bulge, gravity;
+};
+
+/// Those of a file, or of one of its tables.
+[[nodiscard]] PushTables push_tables(const base::TomlTable& root);
+
+/// Reads and checks wire, mounts, pusher, bulge and gravity; what is wrong is reported to the tables' document.
+/// Contact position and travel are left to the caller.
+[[nodiscard]] coupling::PushProblem read_push_problem(const PushTables& tables);
+
+/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural curvature.
+void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test);
+
+/// Reads and checks a wire alone, of a table with the keys of [wire].
+[[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table);
+/// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const base::TomlTable& table);
+/// The same of wire and mounts alone.
+[[nodiscard]] coupling::PushProblem read_wire_and_mounts(const PushTables& tables);
+
+/// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
+[[nodiscard]] std::optional<std::string> position_problem(double position, double span);
+
+}  // namespace snare::scenario

@@ -1,0 +1,304 @@
+// Balances of energy, momentum and angular momentum along a motion, and going on from a state.
+
+#include "coupling/dynamics/motion.hpp"
+#include "base/errors.hpp"
+#include "tests/support/soft_wire.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+namespace snare::coupling {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double length = 0.2;
+
+wire::RodInMotion soft_rod(wire::SpatialEnd::Kind left, wire::SpatialEnd::Kind right) {
+  wire::RodInMotion rod = test::soft_wire(16);
+  rod.properties.left.kind = left;
+  rod.properties.right.kind = right;
+  return rod;
+}
+
+/// A ball on a body of 50 g that comes obliquely from below, beside its centre of mass and out of the plane.
+Motion oblique_impact(const wire::RodInMotion& rod) {
+  Motion motion;
+  motion.wires.push_back({"wire", rod, straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}), {}});
+  MotionBody body;
+  body.properties.mass = 0.05;
+  body.properties.inertia = Vector3d(2e-5, 3e-5, 4e-5).asDiagonal();
+  body.start.position = {0.065, -0.0125, 0.004};
+  body.start.velocity = {0.1, 0.3, 0.02};
+  motion.bodies.push_back(body);
+  MotionContact contact;
+  contact.shape = std::make_shared<Ball>(0.01);
+  contact.shape_position = {0.015, 0.0, -0.004};
+  contact.wire_radius = 0.001;
+  contact.friction = {0.3, 0.1, 0.01, 1.0};
+  motion.contacts.push_back(contact);
+  return motion;
+}
+
+using End = wire::SpatialEnd::Kind;
+class MotionReactions : public testing::TestWithParam<std::pair<End, End>> {};
+
+// At default tolerances: with friction, weight, damping in the wire and against the world, drag, constant forces.
+TEST_P(MotionReactions, BalanceMomentumAndAngularMomentum) {
+  wire::RodInMotion rod = soft_rod(GetParam().first, GetParam().second);
+  rod.damping.mass_rate = 5.0;
+  Motion motion = oblique_impact(rod);
+  motion.gravity = {0.3, -0.5, 0.2};
+  motion.bodies[0].force = {0.01, 0.0, -0.02};
+  motion.bodies[0].linear_drag = 0.01;
+  motion.bodies[0].angular_drag = 1e-5;
+  motion.bodies[0].start.spin = {1.0, -2.0, 3.0};
+  MotionOptions options;
+  options.duration = 0.08;
+  const MotionResult result = simulate(motion, options);
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  ASSERT_FALSE(result.events.empty());
+  const double impulse = result.impulse[0].norm();
+  EXPECT_GT(impulse, 1e-3);
+  EXPECT_LT(result.momentum_error.norm(), 1e-6 * impulse);
+  EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * impulse * length);
+}
+INSTANTIATE_TEST_SUITE_P(Mounts, MotionReactions,
+                         testing::Values(std::pair{End::clamp, End::clamp}, std::pair{End::clamp, End::pin},
+                                         std::pair{End::twisting_pin, End::clamp}, std::pair{End::pin, End::pin},
+                                         std::pair{End::clamp, End::free}));
+
+// A body that is moved as prescribed pushes the wire: its force comes from outside and works.
+TEST(MotionBalance, ADrivenBodyIsAccountedFor) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  motion.bodies[0].driven = true;
+  motion.contacts[0].friction = {};
+  MotionOptions options;
+  options.duration = 0.03;
+  const MotionResult result = simulate(motion, options);
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  const double impulse = result.impulse[0].norm();
+  EXPECT_GT(result.energy.work, 1e-5);
+  EXPECT_LT(result.momentum_error.norm(), 1e-6 * impulse);
+  EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * impulse * length);
+  EXPECT_LT(std::abs(result.energy.integrator), 1e-3 * result.energy.work);
+}
+
+// Bent, spinning about its chord and tumbling, with damping of the material: only the shape is damped.
+TEST(MotionBalance, AFreeDampedWireKeepsItsAngularMomentum) {
+  for (const double bending_time : {2e-4, 0.0}) {
+    wire::RodInMotion rod = soft_rod(End::free, End::free);
+    rod.damping.bending_time = bending_time;
+    Motion motion;
+    Matrix3Xd x(3, 17);
+    Matrix3Xd v(3, 17);
+    const Vector3d spin(30.0, 5.0, -8.0);
+    for (int i = 0; i <= 16; ++i) {
+      const double s = length * i / 16;
+      x.col(i) = Vector3d(s, 0.02 * std::sin(M_PI * s / length), 0.01 * std::sin(2.0 * M_PI * s / length));
+      v.col(i) = spin.cross(x.col(i) - Vector3d(0.1, 0.0, 0.0)) + Vector3d(0.0, 0.2 * std::cos(M_PI * s / length), 0.0);
+    }
+    motion.wires.push_back({"wire", rod, x, v});
+    MotionOptions options;
+    options.relative_tolerance = 1e-10;
+    options.position_tolerance = 1e-13;
+    options.velocity_tolerance = 1e-10;
+    options.twist_tolerance = 1e-12;
+    options.max_order = 5;
+    options.duration = 0.02;
+    options.output_interval = 0.002;
+    Vector3d start;
+    double worst = 0.0;
+    const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+      if (s.time == 0.0) start = s.angular_momentum;
+      worst = std::max(worst, (s.angular_momentum - start).norm() / start.norm());
+      return false;
+    });
+    ASSERT_TRUE(result.report.usable()) << result.report.message;
+    EXPECT_LT(worst, 1e-9) << "with a bending time of " << bending_time;
+    EXPECT_LT(result.momentum_error.norm(), 1e-9 * 0.01 * length);
+    // What the wire lost is what its damping took.
+    const double scale = result.last.sums.start_energy;
+    EXPECT_GT(result.energy.dissipated, 1e-3 * scale);
+    EXPECT_LT(std::abs(result.energy.integrator), 1e-6 * scale);
+  }
+}
+
+// Without damping and friction: kinetic and strain energy of wire and body, through contact and lift-off.
+TEST(MotionBalance, EnergyOfAConservativeImpactStays) {
+  wire::RodInMotion rod = soft_rod(End::clamp, End::clamp);
+  rod.damping = {};
+  Motion motion = oblique_impact(rod);
+  motion.contacts[0].friction = {};
+  MotionOptions options;
+  options.duration = 0.1;
+  const MotionResult result = simulate(motion, options);
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  EXPECT_EQ(result.events.back().kind, MotionEvent::Kind::lift_off);
+  EXPECT_LT(std::abs(result.energy.integrator), 1e-3 * 0.5 * 0.05 * motion.bodies[0].start.velocity.squaredNorm());
+}
+
+// A hook hangs on the wire by a bar of 4 mm, swings and slides to and fro for a minute.
+TEST(SlowMotionBalance, NothingDriftsInAMinute) {
+  wire::RodInMotion rod = soft_rod(End::clamp, End::clamp);
+  rod.elements = 12;
+  Motion motion = oblique_impact(rod);
+  motion.gravity = {0.0, -9.81, 0.0};
+  motion.bodies[0].start.position = {0.08, 0.003 - 0.05, 0.0};
+  motion.bodies[0].start.velocity = {0.1, 0.0, 0.0};
+  motion.contacts[0].shape = std::make_shared<EndlessCylinder>(0.002);
+  motion.contacts[0].shape_position = {0.0, 0.05, 0.0};
+  motion.contacts[0].friction = {};
+  MotionOptions options;
+  options.duration = 60.0;
+  options.output_interval = 0.01;
+  double swing = 0.0;
+  double closed = 0.0;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    if (s.time > 50.0) swing = std::max(swing, std::abs(s.bodies[0].spin.z()));
+    closed += s.contacts[0].closed ? 0.01 : 0.0;
+    return false;
+  });
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  EXPECT_GT(closed, 55.0);  // [s]: it is a test of the constraint,
+  EXPECT_GT(swing, 0.1);    // and of one that moves [rad/s]
+  EXPECT_LT(result.largest_gap, 1e-9);
+  EXPECT_LT(result.largest_drift, 1e-9);
+  EXPECT_LT(result.largest_penetration, 1e-6);
+  const double weight = 0.052 * 9.81;
+  EXPECT_LT(result.momentum_error.norm(), 1e-6 * weight * options.duration);
+  EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * weight * options.duration * length);
+}
+
+/// Everything that a sample has, to compare bits.
+std::vector<double> numbers(const MotionSample& s) {
+  std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated, s.energy.integrator};
+  for (const auto& b : s.bodies) {
+    for (int k = 0; k < 3; ++k) list.insert(list.end(), {b.position[k], b.velocity[k], b.spin[k], b.orientation.vec()[k]});
+  }
+  for (const auto& c : s.contacts) list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.x(), c.force.y()});
+  for (const auto& w : s.wires) list.insert(list.end(), w.data(), w.data() + w.size());
+  return list;
+}
+
+TEST(MotionState, GoingOnFromACheckpointGivesTheSameBits) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::pin));
+  motion.bodies[0].start.spin = {1.0, -2.0, 3.0};
+  MotionOptions options;
+  options.duration = 0.05;
+  options.checkpoint_interval = 0.012;
+  std::vector<std::vector<double>> whole;
+  std::vector<MotionState> states;
+  const MotionResult through = simulate(
+      motion, options,
+      [&](const MotionSample& s) {
+        whole.push_back(numbers(s));
+        return false;
+      },
+      nullptr, [&](const MotionState& s) { states.push_back(s); });
+  ASSERT_TRUE(through.report.usable()) << through.report.message;
+  ASSERT_EQ(states.size(), 4u);
+  EXPECT_EQ(states[1].time, 0.024);
+  for (const MotionState& from : states) {
+    std::vector<std::vector<double>> parts(whole.begin(), whole.begin() + from.sums.samples);
+    const MotionResult on = simulate(
+        motion, options,
+        [&](const MotionSample& s) {
+          parts.push_back(numbers(s));
+          return false;
+        },
+        &from);
+    ASSERT_TRUE(on.report.usable()) << on.report.message;
+    EXPECT_EQ(parts, whole) << "from " << from.time << " s";
+    EXPECT_EQ(on.last.unknowns, through.last.unknowns);
+    EXPECT_EQ(on.last.integrals, through.last.integrals);
+    EXPECT_EQ(on.last.memory, through.last.memory);
+    EXPECT_EQ(on.statistics.steps, through.statistics.steps);
+    EXPECT_EQ(on.events.size(), through.events.size());
+    EXPECT_EQ(on.largest_gap, through.largest_gap);
+    EXPECT_EQ(on.peak_force, through.peak_force);
+  }
+}
+
+// Runs share nothing that they change, the motion with its shapes included.
+TEST(MotionState, RunsAtTheSameTimeGiveTheSameBits) {
+  const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  MotionOptions options;
+  options.duration = 0.02;
+  const MotionResult alone = simulate(motion, options);
+  std::array<MotionResult, 2> both;
+  {
+    std::vector<std::jthread> threads;
+    for (MotionResult& r : both) threads.emplace_back([&] { r = simulate(motion, options); });
+  }
+  for (const MotionResult& r : both) {
+    EXPECT_EQ(r.last.unknowns, alone.last.unknowns);
+    EXPECT_EQ(r.last.integrals, alone.last.integrals);
+  }
+}
+
+TEST(MotionState, AnEndedMotionGoesOn) {
+  const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  MotionOptions options;
+  options.duration = 0.02;
+  const MotionResult half = simulate(motion, options);
+  options.duration = 0.04;
+  const MotionResult on = simulate(motion, options, {}, &half.last);
+  const MotionResult through = simulate(motion, options);
+  ASSERT_TRUE(on.report.usable()) << on.report.message;
+  EXPECT_EQ(on.report.time, 0.04);
+  // The start at first order in between costs some errors of a step.
+  EXPECT_LT((on.impulse[0] - through.impulse[0]).norm(), 1e-4 * through.impulse[0].norm());
+  EXPECT_LT((on.last.unknowns.head(3 * 17) - through.last.unknowns.head(3 * 17)).lpNorm<Eigen::Infinity>(), 1e-6);
+}
+
+TEST(MotionState, AFailureKeepsWhatWasReached) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  motion.contacts[0].friction = {};
+  // A law that breaks down at some depth.
+  motion.contacts[0].law = [](double depth, double) -> Vector3d {
+    if (depth > 2e-5) return Vector3d::Constant(std::nan(""));
+    return {std::max(0.0, 1e3 * depth), depth > 0.0 ? 1e3 : 0.0, 0.0};
+  };
+  MotionOptions options;
+  options.duration = 0.05;
+  options.output_interval = 1e-4;
+  double written = 0.0;
+  const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
+    written = s.time;
+    return false;
+  });
+  EXPECT_FALSE(result.report.usable());
+  EXPECT_GT(result.report.time, 1e-3);
+  EXPECT_LT(result.report.time, 0.02);
+  EXPECT_NEAR(written, result.report.time, options.output_interval);
+  EXPECT_EQ(result.last.time, result.report.time);
+  EXPECT_TRUE(result.last.unknowns.allFinite());
+  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact point 1 normal force")));
+}
+
+TEST(MotionState, OfAnotherMotionIsRefused) {
+  const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
+  MotionOptions options;
+  options.duration = 0.001;
+  MotionState state = simulate(motion, options).last;
+  state.memory.pop_back();
+  options.duration = 0.002;
+  EXPECT_THROW((void)simulate(motion, options, {}, &state), base::InputError);
+  state.unknowns.conservativeResize(10);
+  try {
+    (void)simulate(motion, options, {}, &state);
+    FAIL() << "accepted";
+  } catch (const base::InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("state = 10 unknowns, must be that of the same motion"));
+  }
+}
+
+}  // namespace
+}  // namespace snare::coupling

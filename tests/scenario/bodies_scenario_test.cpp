@@ -1,0 +1,225 @@
+#include "scenario/bodies_scenario.hpp"
+
+#include "base/errors.hpp"
+#include "tests/support/mesh_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace snare::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+
+const fs::path shipped = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/grapple_shaft.toml";
+
+/// One wire, one body, and one shape of every kind.
+constexpr const char* every_kind = R"(schema = "snare-scenario/1"
+kind = "contact"
+title = "every kind"
+duration_s = 0.01
+[gravity]
+vector_m_s2 = [0.0, 0.0, -9.81]
+[[wires]]
+name = "a"
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 100.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [0.0, 0.0, 0.0]
+to_mm = [0.0, 0.0, 99.0]
+bulge = [1.0, 0.0, 0.2]
+mount = "pinned"
+elements = 20
+[[bodies]]
+name = "target"
+mass_kg = 2.0
+inertia_kg_m2 = [0.1, 0.2, 0.25]
+position_mm = [-200.0, 0.0, 0.0]
+rotation_deg = [0.0, 0.0, 90.0]
+[[bodies]]
+name = "machine"
+driven = true
+velocity_m_s = [0.0, 0.1, 0.0]
+position_mm = [-300.0, 0.0, 0.0]
+[[shapes]]
+name = "edge"
+body = "target"
+kind = "knife_edge"
+length_mm = 10.0
+[[shapes]]
+name = "pin"
+body = "target"
+kind = "cylinder"
+radius_mm = 3.0
+length_mm = 10.0
+points = 2
+[[shapes]]
+name = "ball"
+body = "machine"
+kind = "sphere"
+radius_mm = 3.0
+wires = ["a"]
+friction = 0.1
+static_friction = 0.3
+[[shapes]]
+name = "rod"
+body = "target"
+kind = "capsule"
+radius_mm = 3.0
+length_mm = 10.0
+position_mm = [0.0, 20.0, 0.0]
+rotation_deg = [90.0, 0.0, 0.0]
+[[shapes]]
+name = "taper"
+body = "target"
+kind = "cone"
+lower_radius_mm = 3.0
+upper_radius_mm = 0.0
+length_mm = 10.0
+[[shapes]]
+name = "shaft"
+body = "target"
+kind = "grapple_shaft"
+[[shapes]]
+name = "box"
+body = "target"
+kind = "mesh"
+file = "box.stl"
+unit = "mm"
+)";
+
+class MotionScenarios : public testing::Test {
+ protected:
+  MotionScenarios() : folder_(fs::temp_directory_path() / ("snare_scenarios_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+    test::write_mesh(folder_ / "box.stl", test::cuboid(8e-3, 6e-3, 4e-3), 1e-3);
+    std::ofstream(folder_ / "every_kind.toml") << every_kind;
+  }
+  ~MotionScenarios() override { fs::remove_all(folder_); }
+  [[nodiscard]] MotionScenario read(const std::vector<std::string>& settings) const {
+    std::vector<base::Override> overrides;
+    for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
+    return read_motion_scenario(folder_ / "every_kind.toml", overrides);
+  }
+  fs::path folder_;
+};
+
+TEST_F(MotionScenarios, ReadEveryKindOfShape) {
+  const MotionScenario s = read({});
+  ASSERT_EQ(s.motion.wires.size(), 1u);
+  ASSERT_EQ(s.motion.bodies.size(), 2u);
+  ASSERT_EQ(s.motion.contacts.size(), 7u);
+  const auto shape = [&s](std::size_t k) -> const coupling::ContactShape& { return *s.motion.contacts[k].shape; };
+  EXPECT_NEAR(shape(0).distance({0.0, 4e-3, 5e-3}), 4e-3, 1e-15);
+  EXPECT_NEAR(shape(1).distance({0.0, 7e-3, 8e-3}), 5e-3, 1e-15);
+  EXPECT_NEAR(shape(2).distance({0.0, 7e-3, 0.0}), 4e-3, 1e-15);
+  EXPECT_NEAR(shape(3).distance({0.0, 7e-3, 5e-3}), 4e-3, 1e-15);
+  EXPECT_NEAR(shape(4).distance({0.0, 0.0, 6e-3}), 1e-3, 1e-15);
+  EXPECT_NEAR(shape(5).distance({0.0, 7e-3, 30e-3}), 1e-3, 1e-15);
+  EXPECT_NEAR(shape(6).distance({0.0, 0.0, 7e-3}), 5e-3, 1e-15);
+  EXPECT_EQ(s.motion.contacts[1].points, 2);
+  EXPECT_EQ(s.motion.contacts[2].body, 1);
+  EXPECT_EQ(s.motion.contacts[2].friction.static_coefficient, 0.3);
+  EXPECT_EQ(s.motion.contacts[2].name, "ball on a");
+  EXPECT_EQ(s.motion.contacts[2].wire_radius, 0.75e-3);
+  EXPECT_TRUE(s.motion.bodies[1].driven);
+  EXPECT_LT((s.motion.bodies[0].start.orientation * Vector3d::UnitX() - Vector3d::UnitY()).norm(), 1e-14);
+  EXPECT_LT((s.motion.contacts[3].shape_rotation * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), 1e-14);
+  EXPECT_EQ(s.motion.gravity, Vector3d(0.0, 0.0, -9.81));
+  // The wire stands between its mounts and bulges where it was told, across its chord.
+  const coupling::MotionWire& w = s.motion.wires[0];
+  EXPECT_LT(w.positions.col(0).norm(), 1e-15);
+  EXPECT_LT((w.positions.col(20) - Vector3d(0.0, 0.0, 0.099)).norm(), 1e-15);
+  EXPECT_GT(w.positions(0, 10), 5e-3);
+  EXPECT_LT(w.positions.row(1).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(w.rod.properties.left.kind, wire::SpatialEnd::Kind::twisting_pin);
+  EXPECT_LT((w.rod.properties.left.direction - Vector3d::UnitZ()).norm(), 1e-14);
+  // At rest it stays at rest: the turned mounts fit the turned wire.
+  coupling::Motion still = s.motion;
+  still.gravity.setZero();
+  still.contacts.clear();
+  still.bodies.clear();
+  coupling::MotionOptions options;
+  options.duration = 0.01;
+  const coupling::MotionResult result = coupling::simulate(still, options);
+  ASSERT_TRUE(result.report.usable()) << result.report.message;
+  EXPECT_LT(result.energy.kinetic, 1e-9);
+}
+
+TEST_F(MotionScenarios, SayWhatIsWrong) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"schema=\"snare-scenario/2\"", "must be \"snare-scenario/1\""},
+      {"kind=\"push\"", "kind"},
+      {"duration_s=-1", "duration_s = -1, must be > 0"},
+      {"output_interval_s=1e-9", "gives more than 1e+06 lines"},
+      {"body.mass_kg=1", "not beside lists of bodies, wires and shapes"},
+      {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
+      {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
+      {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be from_mm"},
+      {"wires[a].bulge=[0.0, 0.0, 1.0]", "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
+      {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
+      {"wires[a].yield_stress_MPa=500", "the wire is elastic and naturally straight in motion"},
+      {"wires[a].elements=4", "wires[a].elements = 4"},
+      {"bodies[target].mass_kg=0", "bodies[target].mass_kg = 0, must be > 0"},
+      {"bodies[target].inertia_kg_m2=[1.0, 1.0, 3.0]", "triangle inequality"},
+      {"bodies[machine].mass_kg=1", "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
+      {"bodies[machine].name=\"target\"", "is taken by another body"},
+      {"shapes[ball].body=\"moon\"", "shapes[ball].body = \"moon\", must be the name of a body: \"target\", \"machine\""},
+      {"shapes[ball].wires=[\"b\"]", "must be the name of a wire: \"a\""},
+      {"shapes[ball].kind=\"cube\"", "shapes[ball].kind = \"cube\", must be \"knife_edge\", \"cylinder\""},
+      {"shapes[ball].radius_mm=-1", "shapes[ball].radius_mm = -1, must be > 0"},
+      {"shapes[ball].length_mm=1", "shapes[ball].length_mm = 1, unknown key"},
+      {"shapes[ball].points=0", "shapes[ball].points = 0"},
+      {"shapes[ball].static_speed_m_s=2", "must be > static_speed_m_s"},
+      {"shapes[taper].lower_radius_mm=0", "shapes[taper].upper_radius_mm = 0.0, must be > 0 where lower_radius_mm is 0"},
+      {"shapes[shaft].cam_radius_mm=5", "grapple shaft cam_radius = 0.005, must be > shaft_radius"},
+      {"shapes[box].file=\"none.stl\"", "none.stl"},
+      {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},
+      {"gravity.vector_m_s2=[1.0]", "gravity.vector_m_s2"},
+  };
+  for (const auto& [setting, message] : wrong) {
+    try {
+      (void)read({setting});
+      ADD_FAILURE() << setting;
+    } catch (const base::InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
+    }
+  }
+  // What is wrong with a mesh is said at the shape, with the mesh's own file and triangles.
+  coupling::TriangleMesh hole = test::cuboid(8e-3, 6e-3, 4e-3);
+  hole.triangles.pop_back();
+  test::write_mesh(folder_ / "hole.obj", hole, 1e-3);
+  try {
+    (void)read({"shapes[box].file=\"hole.obj\""});
+    ADD_FAILURE();
+  } catch (const base::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("shapes[box].file = \"hole.obj\""));
+    EXPECT_THAT(error.what(), HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
+  }
+}
+
+TEST(ShippedScenarios, GrappleShaftIsReadAndKnownAsAList) {
+  EXPECT_TRUE(lists_bodies(shipped, {}));
+  EXPECT_FALSE(lists_bodies(fs::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml", {}));
+  const MotionScenario s = read_motion_scenario(shipped);
+  EXPECT_EQ(s.motion.wires.size(), 3u);
+  EXPECT_EQ(s.motion.contacts.size(), 6u);
+  // The three wires are one wire turned: bulges of 18.88 mm at 120 degrees (the digest of the declared wire).
+  for (const coupling::MotionWire& w : s.motion.wires) {
+    const Vector3d middle = w.positions.col(20);
+    EXPECT_NEAR(middle.head<2>().norm(), 0.02 + 0.01888, 2e-5) << w.name;
+  }
+}
+
+}  // namespace
+}  // namespace snare::scenario
