@@ -1,5 +1,6 @@
 #include "app/arm_command.hpp"
 
+#include "base/units.hpp"
 #include "app/experiment_input.hpp"
 #include "multibody/arm/arm_file.hpp"
 #include "base/toml_reader.hpp"
@@ -16,7 +17,7 @@ namespace snare::app {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 const char* to_string(multibody::DriveMode mode) {
   switch (mode) {

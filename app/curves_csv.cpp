@@ -1,12 +1,13 @@
 #include "app/curves_csv.hpp"
 
+#include "base/units.hpp"
 #include "base/csv.hpp"
 
 namespace snare::app {
 
 void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,
                   const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more) {
-  constexpr double mm = 1e-3;
+  using base::mm;
   std::vector<std::string> columns{
       "series",          "displacement_mm", "force_N",          "tension_left_N", "tension_right_N",
       "contact_arc_mm",  "iterations",      "converged",        "discretisation_error_N",

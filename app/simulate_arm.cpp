@@ -1,3 +1,4 @@
+#include "base/units.hpp"
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/report/report_page.hpp"
@@ -22,7 +23,7 @@ using multibody::ArmSample;
 using scenario::ArmScenarioFile;
 using nlohmann::json;
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 void write_history(const std::filesystem::path& file, const ArmScenarioFile& asked,
                    const ArmHistory& history) {

@@ -1,3 +1,4 @@
+#include "base/units.hpp"
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/motion_json.hpp"
@@ -28,7 +29,7 @@ using coupling::MotionSample;
 using Eigen::Vector3d;
 using nlohmann::json;
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 struct ModelRun {
   std::string name;

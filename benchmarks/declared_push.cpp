@@ -1,5 +1,6 @@
 #include "benchmarks/declared_push.hpp"
 
+#include "base/units.hpp"
 #include "coupling/statics/contact_switch.hpp"
 #include "coupling/statics/push_setup.hpp"
 #include "validation/declared_wire.hpp"
@@ -15,7 +16,7 @@ namespace snare::benchmarks {
 
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 
 /// A in x(L) = integral of cos(A sin(2 pi S/L)) dS = span, for which x(L)/L = J_0(A).
 double shape_amplitude(double ratio) {

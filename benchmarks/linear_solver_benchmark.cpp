@@ -1,6 +1,7 @@
 // One linear system of the push by every solver at hand. The yardstick is a bare klu_refactor + klu_solve of the
 // whole bordered matrix, in its smallest pattern.
 
+#include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
 #include "numerics/bordered_pattern.hpp"
 #include "numerics/cholmod.hpp"
@@ -19,7 +20,7 @@
 namespace snare::benchmarks {
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double travel = 0.75 * mm;
 
 using numerics::SparseMatrix;

@@ -1,6 +1,7 @@
 // A body of 8.9 kg at 0.1 m/s meets the declared wire: real-time factor with 60 elements, where the time goes, error against
 // cost, time a step against the number of elements, ten runs at once on one and two threads.
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "validation/declared_wire.hpp"
@@ -15,7 +16,7 @@
 namespace snare::benchmarks {
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double span = 175.0 * mm;
 
 coupling::Motion impact(int elements) {

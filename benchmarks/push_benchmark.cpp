@@ -1,6 +1,7 @@
 // The 20-point outward curve, error beside time; one equilibrium by our Newton's method and by KINSOL; the cost of a
 // Newton iteration against the number of elements.
 
+#include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "numerics/bordered_pattern.hpp"
@@ -17,7 +18,7 @@
 namespace snare::benchmarks {
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 
 // Median over all points but the first, whose iterations include those of the buckled initial state.
 double iterations_per_point(const coupling::PushCurve& curve) {

@@ -1,5 +1,6 @@
 #include "multibody/dynamics.hpp"
 
+#include "base/index.hpp"
 #include "multibody/kinematics.hpp"
 
 #include <Eigen/Cholesky>
@@ -10,9 +11,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 /// V x VJ, the acceleration that the joint's velocity brings because its axis turns with the body.
 Twist velocity_product(const TreeBody& body, const Twist& V, const Eigen::VectorXd& v) {

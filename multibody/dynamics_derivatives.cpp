@@ -1,14 +1,14 @@
 #include "multibody/dynamics_derivatives.hpp"
 
+#include "base/index.hpp"
+
 #include <cassert>
 
 namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 /// Axis k of a body's joint as a motion in the world.
 Twist axis_in_world(const TreeBody& body, const Pose& X_WB, int k) {

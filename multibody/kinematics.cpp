@@ -1,14 +1,14 @@
 #include "multibody/kinematics.hpp"
 
+#include "base/index.hpp"
+
 #include <cassert>
 
 namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 /// Calls `each(column, S)` with the axis of every velocity that moves the frame's body, as a motion in the world,
 /// and the

@@ -1,5 +1,6 @@
 #include "reduction/wire_file.hpp"
 
+#include "base/units.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
 #include "coupling/statics/spatial_push.hpp"
@@ -20,7 +21,7 @@ using base::Range;
 using base::TomlDocument;
 using base::TomlTable;
 
-constexpr double mm = 1e-3;                    // [m]
+using base::mm;
 constexpr double proof_strain = 0.002;         // [-]
 constexpr double default_low_position = 0.2;   // of the span
 constexpr double default_slack_spread = 0.25;  // of the nominal slack, either way

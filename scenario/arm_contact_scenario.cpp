@@ -1,5 +1,6 @@
 #include "scenario/arm_contact_scenario.hpp"
 
+#include "base/units.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/arm_scenario_file.hpp"
 #include "base/toml_reader.hpp"
@@ -24,8 +25,8 @@ using base::TomlTable;
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double degree = std::numbers::pi / 180.0;
+using base::mm;
+using base::degree;
 constexpr std::string_view prefix = "contact.";
 
 /// Runs a reader of another file; its problems go to the document.

@@ -1,5 +1,6 @@
 #include "scenario/arm_scenario_file.hpp"
 
+#include "base/units.hpp"
 #include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ using base::TomlTable;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 enum class Kind { joint_step, tip_impulse, joint_motion };
 

@@ -1,5 +1,7 @@
 #include "scenario/arm_scenarios.hpp"
 
+#include "base/index.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,9 +11,7 @@ namespace snare::scenario {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 multibody::ArmScenario standing(const multibody::ArmDescription& description, const Eigen::VectorXd& angles, double end) {
   multibody::ArmScenario scenario;

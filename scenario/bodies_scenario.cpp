@@ -1,5 +1,6 @@
 #include "scenario/bodies_scenario.hpp"
 
+#include "base/units.hpp"
 #include "scenario/motion_reader.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_shape.hpp"
@@ -27,8 +28,8 @@ using base::TomlTable;
 
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double degree = std::numbers::pi / 180.0;
+using base::mm;
+using base::degree;
 constexpr double far = 1e5;  // [mm]
 
 // Axis times angle.

@@ -1,5 +1,6 @@
 #include "scenario/contact_scenario.hpp"
 
+#include "base/units.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
 #include "base/toml_reader.hpp"
@@ -21,7 +22,7 @@ using base::TomlTable;
 namespace {
 
 constexpr std::string_view schema = "snare-scenario/1";
-constexpr double mm = 1e-3;
+using base::mm;
 
 void require_schema(const TomlTable& root) {
   const std::string given = root.text("schema");

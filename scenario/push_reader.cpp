@@ -1,5 +1,7 @@
 #include "scenario/push_reader.hpp"
 
+#include "base/units.hpp"
+
 #include <fmt/format.h>
 
 #include <numbers>
@@ -16,9 +18,9 @@ using base::Choice;
 using base::Range;
 using base::TomlTable;
 
-constexpr double mm = 1e-3;                          // [m]
-constexpr double GPa = 1e9;                          // [Pa]
-constexpr double degree = std::numbers::pi / 180.0;  // [rad]
+using base::mm;
+using base::GPa;
+using base::degree;
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
 constexpr double largest_length = 1e5;                // [mm]

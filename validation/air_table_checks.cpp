@@ -1,5 +1,6 @@
 #include "validation/air_table_checks.hpp"
 
+#include "base/units.hpp"
 #include "scenario/contact_scenario.hpp"
 #include "validation/declared_wire.hpp"
 
@@ -15,7 +16,7 @@ using scenario::ContactScenario;
 using coupling::MotionResult;
 using Eigen::Vector3d;
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double mass = 8.9;      // [kg], Table 5
 constexpr double inertia = 0.16;  // [kg m^2], Table 5
 

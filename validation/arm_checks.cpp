@@ -1,5 +1,6 @@
 #include "validation/arm_checks.hpp"
 
+#include "base/units.hpp"
 #include "scenario/arm_scenarios.hpp"
 #include "multibody/dynamics.hpp"
 #include "validation/planar_arm.hpp"
@@ -27,7 +28,7 @@ using multibody::ElasticArm;
 using multibody::StiffnessReading;
 using std::numbers::pi;
 
-constexpr double degree = pi / 180.0;
+using base::degree;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Three links with axes z, y, x, so that nothing stays in a plane; on the world or on a free body of 100 kg.

@@ -1,5 +1,7 @@
 #include "validation/blind_set.hpp"
 
+#include "base/units.hpp"
+
 #include <Eigen/QR>
 
 #include <fmt/format.h>
@@ -14,7 +16,7 @@ namespace snare::validation {
 
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double sigma = 0.05;           // of a reading [N]
 constexpr int readings_a_leg = 20;
 constexpr double diameter = 1.5 * mm;

@@ -1,5 +1,6 @@
 #include "validation/friction_checks.hpp"
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
@@ -22,9 +23,9 @@ using coupling::MotionSample;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double g = 9.81;
-constexpr double degree = pi / 180.0;
+using base::degree;
 
 constexpr double thickness = 6.0 * mm;
 constexpr double span = 40.0 * mm;

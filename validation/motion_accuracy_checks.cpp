@@ -1,5 +1,6 @@
 #include "validation/motion_accuracy_checks.hpp"
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
@@ -23,7 +24,7 @@ using coupling::MotionSample;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double span = 175.0 * mm;
 constexpr double radius = 6.0 * mm;
 constexpr double body_mass = 8.9;  // [kg]

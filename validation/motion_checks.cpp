@@ -1,5 +1,6 @@
 #include "validation/motion_checks.hpp"
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
@@ -24,7 +25,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double mm = 1e-3;
+using base::mm;
 
 /// A wire of another length than its specification's.
 wire::RodInMotion rod_of(const wire::WireSpecification& w, double length, double span, int elements) {

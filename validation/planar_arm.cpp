@@ -1,5 +1,7 @@
 #include "validation/planar_arm.hpp"
 
+#include "base/units.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +12,7 @@ using multibody::ElasticArm;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 void add_joint(ElasticArm& arm, double motor_inertia, const DeflectionLaw& law) {
   multibody::ElasticJoint joint;

@@ -1,5 +1,6 @@
 #include "validation/push_checks.hpp"
 
+#include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 #include "validation/closed_forms.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using coupling::PushProblem;
 
-constexpr double mm = 1e-3;
+using base::mm;
 const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
 
 /// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.

@@ -1,5 +1,6 @@
 #include "identification/fitting/experiment.hpp"
 
+#include "base/units.hpp"
 #include "scenario/push_reader.hpp"
 #include "identification/fitting/parameter.hpp"
 #include "base/csv.hpp"
@@ -26,7 +27,7 @@ using base::TomlTable;
 
 constexpr std::string_view schema = "snare-experiment/1";
 
-constexpr double mm = 1e-3;  // [m]
+using base::mm;
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
 constexpr double largest_length = 1e5;                // [mm]

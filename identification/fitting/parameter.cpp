@@ -1,5 +1,6 @@
 #include "identification/fitting/parameter.hpp"
 
+#include "base/units.hpp"
 #include "base/errors.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace {
 
 using coupling::PushProblem;
 
-constexpr double degree = std::numbers::pi / 180.0;
+using base::degree;
 
 double none(const PushProblem&) { return 0.0; }
 

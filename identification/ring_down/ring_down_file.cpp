@@ -1,5 +1,6 @@
 #include "identification/ring_down/ring_down_file.hpp"
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "scenario/push_reader.hpp"
 #include "base/csv.hpp"
@@ -24,7 +25,7 @@ using base::TomlTable;
 namespace {
 
 constexpr std::string_view schema = "snare-ringdown/1";
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double longest = 1e6;  // [s]
 constexpr std::size_t most_rows = 200000;
 constexpr int most_modes = 6;

@@ -1,5 +1,7 @@
 #include "multibody/arm/arm_file.hpp"
 
+#include "base/index.hpp"
+#include "base/units.hpp"
 #include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -17,10 +19,8 @@ using base::Range;
 using base::TomlDocument;
 using base::TomlTable;
 
-constexpr double degree = std::numbers::pi / 180.0;
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::degree;
+using base::at;
 
 constexpr Choice<StiffnessReading> readings[] = {{"continuous", StiffnessReading::continuous},
                                                  {"literal", StiffnessReading::literal}};

@@ -1,5 +1,7 @@
 #include "multibody/arm/arm_part.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,9 +12,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 // Unknowns with which the equations of a joint are coupled: its own row of motion, of the motor, and the works.
 constexpr int slots_per_joint = 19;

@@ -1,3 +1,4 @@
+#include "base/index.hpp"
 #include "multibody/arm/arm_part.hpp"
 
 #include <Eigen/Cholesky>
@@ -9,9 +10,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 /// What an event function shows that is not watched.
 constexpr double never = 1.0;

@@ -1,3 +1,4 @@
+#include "base/index.hpp"
 #include "multibody/arm/arm_part.hpp"
 
 // A tree on one free body, its momentum an unknown: the six rows of the base say P(q, v) - h = 0, and h' = loads is
@@ -10,9 +11,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 }  // namespace
 

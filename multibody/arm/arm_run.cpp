@@ -1,5 +1,6 @@
 #include "multibody/arm/arm_run.hpp"
 
+#include "base/index.hpp"
 #include "multibody/arm/event_crowding.hpp"
 
 #include <algorithm>
@@ -10,9 +11,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 const char* name_of_event(int event) {
   switch (event % ElasticArmPart::events_per_joint) {

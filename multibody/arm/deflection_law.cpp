@@ -1,5 +1,7 @@
 #include "multibody/arm/deflection_law.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -10,9 +12,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 double sign(int branch) {
   return branch < 0 ? -1.0 : 1.0;
 }

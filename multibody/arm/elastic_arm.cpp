@@ -1,5 +1,6 @@
 #include "multibody/arm/elastic_arm.hpp"
 
+#include "base/index.hpp"
 #include "multibody/dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -12,9 +13,7 @@ namespace snare::multibody {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using base::at;
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 #include "validation/elastica_push.hpp"
@@ -8,7 +9,7 @@
 
 namespace snare::test {
 
-constexpr double mm = 1e-3;
+using base::mm;
 
 using validation::declared_wire;
 

@@ -1,3 +1,4 @@
+#include "base/units.hpp"
 #include "coupling/contact/contact_law.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,7 @@
 namespace snare::coupling {
 namespace {
 
-constexpr double mm = 1e-3;
+using base::mm;
 
 /// Derivatives of a law against central differences.
 void expect_derivatives(const ContactLaw& law, double d, double rate) {

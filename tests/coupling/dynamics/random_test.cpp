@@ -1,5 +1,6 @@
 // Bodies of every shape that meet a loose steel wire anyhow.
 
+#include "base/units.hpp"
 #include "coupling/dynamics/motion.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_shape.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double mm = 1e-3;
+using base::mm;
 constexpr double wire_radius = 0.75 * mm;
 
 std::shared_ptr<const ContactShape> random_shape(int kind, const std::function<double(double, double)>& between) {

@@ -1,5 +1,6 @@
 // The tilted pusher, against the planar push, energy, symmetry.
 
+#include "base/units.hpp"
 #include "coupling/statics/spatial_push.hpp"
 #include "validation/declared_wire.hpp"
 #include "wire/loose_wire.hpp"
@@ -12,8 +13,8 @@
 namespace snare::coupling {
 namespace {
 
-constexpr double mm = 1e-3;
-constexpr double degree = std::numbers::pi / 180.0;
+using base::mm;
+using base::degree;
 
 using validation::declared_wire;
 
