@@ -1,9 +1,9 @@
 #include "app/arm_command.hpp"
 
-#include "base/units.hpp"
 #include "app/experiment_input.hpp"
-#include "multibody/arm/arm_file.hpp"
 #include "base/toml_reader.hpp"
+#include "base/units.hpp"
+#include "multibody/arm/arm_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,8 +46,7 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
   while (sound && at <= end) {
     double value = 0.0;
     const auto [stopped, error] = std::from_chars(at, end, value);
-    sound =
-        error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
+    sound = error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
     if (sound) angles[found++] = value * degree;
     at = stopped + 1;
   }
@@ -55,8 +54,8 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
     std::string names;
     for (const multibody::ArmPose& known : arm.poses) names += (names.empty() ? "" : ", ") + known.name;
     throw base::InputError({"", 0, "--pose", pose,
-                                fmt::format("must be {} angles in degrees separated by commas{}", count,
-                                            names.empty() ? "" : ", or one of: " + names)});
+                            fmt::format("must be {} angles in degrees separated by commas{}", count,
+                                        names.empty() ? "" : ", or one of: " + names)});
   }
   return angles;
 }
@@ -125,8 +124,8 @@ std::string listed(const nlohmann::json& values) {
 
 }  // namespace
 
-ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose,
-                        const CommonOptions& options, Console&) {
+ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options,
+                        Console&) {
   const std::vector<base::Override> overrides = overrides_of(options);
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const nlohmann::json result = describe(arm, angles_of(pose, arm));
@@ -135,29 +134,27 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
     return ExitStatus::done;
   }
   std::cout << fmt::format(
-      "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
-      arm.title, result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
-      result["reach_m"].get<double>(), result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(),
-      result["tip_m"][2].get<double>());
+      "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n", arm.title,
+      result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(), result["reach_m"].get<double>(),
+      result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(), result["tip_m"][2].get<double>());
   std::cout << fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
                            "motor [kg m2]", "stiffness [N m/rad]", "drive");
   for (const nlohmann::json& joint : result["joints"]) {
     const double first = joint["stiffness_first_Nm_rad"], outer = joint["stiffness_outer_Nm_rad"];
     std::cout << fmt::format(
         "{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
-        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
-        joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
+        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(), joint["link_mass_kg"].get<double>(),
+        joint["motor_inertia_kg_m2"].get<double>(),
         first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
         joint["drive"].get<std::string>());
   }
-  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n",
-                           listed(result["frequencies_locked_Hz"]));
+  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {
     std::cout << fmt::format("  the same, large deflections  {}\n",
                              listed(result["frequencies_locked_large_deflection_Hz"]));
   }
-  std::cout << fmt::format("  as driven      {}\n  limp           {}\n",
-                           listed(result["frequencies_driven_Hz"]), listed(result["frequencies_limp_Hz"]));
+  std::cout << fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
+                           listed(result["frequencies_limp_Hz"]));
   return ExitStatus::done;
 }
 

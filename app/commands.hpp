@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/console.hpp"
+#include "app/report/version.hpp"
 
 #include <filesystem>
-#include <string>
 
 namespace snare::app {
 
@@ -20,30 +20,32 @@ namespace snare::app {
                                        Console& console);
 
 /// Calibrates the declared model's free numbers: fit.json, curves.csv.
-[[nodiscard]] ExitStatus run_fit(const std::filesystem::path& experiment, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_fit(const std::filesystem::path& experiment, const CommonOptions& options,
+                                 Console& console);
 
 /// Finds what the declared model lacks: trace.json, curves.csv, report.html.
-[[nodiscard]] ExitStatus run_trace(const std::filesystem::path& experiment, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_trace(const std::filesystem::path& experiment, const CommonOptions& options,
+                                   Console& console);
 
 /// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other languages.
 [[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options, Console& console);
 
 /// Every wire model on the same case: compare.json, report.html.
-[[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options,
+                                     Console& console);
 
 /// A dynamic scenario: history.csv, summary.json, report.html, ParaView files on request.
-[[nodiscard]] ExitStatus run_simulate(const std::filesystem::path& scenario, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_simulate(const std::filesystem::path& scenario, const CommonOptions& options,
+                                      Console& console);
 
 /// Frequency and damping from free vibrations: ringdown.json, ringdown.csv, report.html.
-[[nodiscard]] ExitStatus run_ringdown(const std::filesystem::path& ringdown, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_ringdown(const std::filesystem::path& ringdown, const CommonOptions& options,
+                                      Console& console);
 
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 
 /// The shipped data, beside the sources or where they were installed.
 [[nodiscard]] std::filesystem::path data_directory();
-
-/// Of this build.
-[[nodiscard]] std::string version();
 
 }  // namespace snare::app

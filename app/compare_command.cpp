@@ -1,10 +1,11 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/report/compare_report.hpp"
-#include "identification/fitting/experiment.hpp"
-#include "identification/fitting/prediction.hpp"
 #include "base/files.hpp"
 #include "base/toml_tree.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/fitting/experiment.hpp"
+#include "identification/fitting/prediction.hpp"
 #include "reduction/compare.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +34,8 @@ struct Comparison {
 
 /// Every series of an experiment with its readings or its published law.
 Comparison from_experiment(const std::filesystem::path& file, const Overrides& overrides) {
-  const identification::Experiment experiment = identification::read_experiment(file, overrides);
+  const identification::Experiment experiment =
+      identification::read_experiment(file, identification::parameters(), overrides);
   Comparison result;
   result.title = experiment.title;
   result.settings.elements = experiment.solver.elements;
@@ -50,8 +52,7 @@ Comparison from_experiment(const std::filesystem::path& file, const Overrides& o
     one.wire.law_positions = {series.test.contact_position};
     if (series.law) {
       const identification::QuadraticLaw law = *series.law;
-      one.given.push_back(
-          {"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
+      one.given.push_back({"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
     }
     result.cases.push_back(std::move(one));
   }
@@ -68,13 +69,11 @@ Comparison from_wire(const std::filesystem::path& file, const Overrides& overrid
   for (std::size_t c = 0; c < wire.cases.size(); ++c) {
     for (const double position : wire.cases[c].law_positions) {
       StaticCase one;
-      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "",
-                             1e3 * position);
+      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "", 1e3 * position);
       one.wire = wire.cases[c];
       one.wire.law_positions = {position};
       for (int i = 0; i < points; ++i) one.travel.push_back(one.wire.travel.high * i / (points - 1));
-      if (one.wire.dissipates())
-        one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
+      if (one.wire.dissipates()) one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
       result.cases.push_back(std::move(one));
     }
   }
@@ -96,9 +95,9 @@ Comparison read(const std::filesystem::path& file, const Overrides& overrides) {
     if (schema != nullptr && schema->text == kind.schema) return kind.read(file, overrides);
     allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " or ", kind.schema);
   }
-  throw base::InputError(base::InputProblem{
-      file.string(), schema != nullptr ? schema->line : 0, "schema", schema != nullptr ? schema->written : "",
-      (schema != nullptr ? "must be " : "missing, must be ") + allowed});
+  throw base::InputError(base::InputProblem{file.string(), schema != nullptr ? schema->line : 0, "schema",
+                                            schema != nullptr ? schema->written : "",
+                                            (schema != nullptr ? "must be " : "missing, must be ") + allowed});
 }
 
 nlohmann::json case_json(const CaseComparison& one) {
@@ -163,10 +162,9 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
   }
   for (const CaseComparison& one : results) {
     for (const reduction::ModelResult& m : one.models) {
-      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers",
-                              one.name, m.model, m.largest_error,
-                              m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-", m.seconds,
-                              m.parameters));
+      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name,
+                              m.model, m.largest_error, m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-",
+                              m.seconds, m.parameters));
     }
   }
   console.say(fmt::format("wrote {}/compare.json", options.out.string()));

@@ -20,7 +20,9 @@ extern "C" void on_signal(int number) {
 
 }  // namespace
 
-bool interrupted() noexcept { return interrupt_flag.load(); }
+bool interrupted() noexcept {
+  return interrupt_flag.load();
+}
 
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);

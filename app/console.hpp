@@ -9,13 +9,7 @@
 namespace snare::app {
 
 /// Exit statuses of the command.
-enum class ExitStatus : int {
-  done = 0,
-  failure = 1,
-  wrong_input = 2,
-  solver_stopped = 3,
-  row_out_of_limit = 4
-};
+enum class ExitStatus : int { done = 0, failure = 1, wrong_input = 2, solver_stopped = 3, row_out_of_limit = 4 };
 
 /// Options that every verb has.
 struct CommonOptions {
@@ -23,7 +17,7 @@ struct CommonOptions {
   int threads = 0;                     ///< 0: one a processor
   std::vector<std::string> overrides;  ///< "key=value"
   bool quiet = false;
-  bool json = false;                   ///< the result on standard output
+  bool json = false;  ///< the result on standard output
 };
 
 /// What the command says to a person, on standard error: messages, and progress on a terminal.

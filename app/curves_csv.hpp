@@ -18,6 +18,7 @@ struct CurveColumn {
 /// Writes curves.csv: a row a point of every prediction, in the order in which the points were reached.
 /// Columns: docs/curves_csv.md.
 void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,
-                  const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more = {});
+                  const std::vector<identification::Prediction>& predictions,
+                  const std::vector<CurveColumn>& more = {});
 
 }  // namespace snare::app

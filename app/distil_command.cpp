@@ -1,11 +1,11 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/report/distil_report.hpp"
 #include "app/law_json.hpp"
+#include "app/report/distil_report.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "reduction/law_export.hpp"
 #include "base/parallel.hpp"
+#include "reduction/law_export.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,25 +18,24 @@ namespace {
 
 /// Every node of every table: places and forces, in SI-based units and in dimensionless groups.
 void write_table(const std::filesystem::path& file, const reduction::Distillation& distillation) {
-  base::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m",
-                                 "unloading_N", "d_over_L", "s_over_L", "slack_over_L", "F_L2_over_EI",
-                                 "EA_L2_over_EI", "R_over_L", "friction"});
+  base::CsvWriter csv(
+      file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m", "unloading_N", "d_over_L",
+             "s_over_L", "slack_over_L", "F_L2_over_EI", "EA_L2_over_EI", "R_over_L", "friction"});
   for (std::size_t c = 0; c < distillation.cases.size(); ++c) {
     const reduction::DistilledCase& one = distillation.cases[c];
-    const reduction::ForceTable& t = *one.table.loading;
+    const coupling::ForceTable& t = *one.table.loading;
     const double span = t.span();
     std::size_t node = 0;
     for (const double e : t.axes()[2]) {
       for (const double s : t.axes()[1]) {
         for (const double d : t.axes()[0]) {
-          const double* numbers = &t.nodes()[reduction::ForceTable::numbers_a_node * node];
+          const double* numbers = &t.nodes()[coupling::ForceTable::numbers_a_node * node];
           base::CsvCell back;
           if (one.table.unloading)
-            back =
-                t.force_scale() * one.table.unloading->nodes()[reduction::ForceTable::numbers_a_node * node];
+            back = t.force_scale() * one.table.unloading->nodes()[coupling::ForceTable::numbers_a_node * node];
           csv.row({static_cast<long long>(c + 1), 1e3 * d * span, 1e3 * s * span, 1e3 * e * span,
-                   t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e,
-                   numbers[0], one.groups.axial, one.groups.radius, one.groups.friction});
+                   t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e, numbers[0],
+                   one.groups.axial, one.groups.radius, one.groups.friction});
           ++node;
         }
       }
@@ -70,8 +69,8 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
       });
   console.end_progress();
   if (!result.report.usable()) {
-    console.complain(fmt::format("{}; the curves that were reached are kept in {}", result.report.message,
-                                 journal.string()));
+    console.complain(
+        fmt::format("{}; the curves that were reached are kept in {}", result.report.message, journal.string()));
     return ExitStatus::solver_stopped;
   }
   const nlohmann::json json = law_json(wire, result);
@@ -89,19 +88,17 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   for (const reduction::DistilledCase& one : result.cases) {
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();
-    console.say(
-        fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire",
-                    axes[0].size(), axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range,
-                    e.force_range, one.table.curves));
+    console.say(fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire",
+                            axes[0].size(), axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range,
+                            e.force_range, one.table.curves));
     if (e.bound > wire.settings.tolerance * e.force_range) {
       console.say(fmt::format("  above the tolerance of {:g} %: the largest number of knots is reached",
                               100.0 * wire.settings.tolerance));
     }
     for (const reduction::DistilledPlace& place : one.places) {
       for (const reduction::FittedLaw& law : place.laws) {
-        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N",
-                                1e3 * place.position, law.form->name(), law.error.largest_force,
-                                law.error.force_range));
+        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N", 1e3 * place.position,
+                                law.form->name(), law.error.largest_force, law.error.force_range));
       }
     }
   }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "app/console.hpp"
-#include "identification/fitting/experiment.hpp"
 #include "base/toml_tree.hpp"
+#include "identification/fitting/experiment.hpp"
 
 #include <filesystem>
 #include <vector>

@@ -12,6 +12,4 @@ std::filesystem::path data_directory() {
   return command.parent_path() / SNARE_INSTALLED_DATA_DIR;
 }
 
-std::string version() { return SNARE_VERSION; }
-
 }  // namespace snare::app

@@ -1,6 +1,6 @@
 #include "app/law_json.hpp"
 
-#include "app/commands.hpp"
+#include "app/report/version.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -38,18 +38,15 @@ json law_entry(const FittedLaw& law) {
   json covariance = json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    parameters[names[i].name] = {{"value", law.values[k]},
-                                 {"unit", names[i].unit},
-                                 {"stderr", std::sqrt(std::max(0.0, law.covariance(k, k)))}};
+    parameters[names[i].name] = {
+        {"value", law.values[k]}, {"unit", names[i].unit}, {"stderr", std::sqrt(std::max(0.0, law.covariance(k, k)))}};
     json row = json::array();
-    for (std::size_t j = 0; j < names.size(); ++j)
-      row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
+    for (std::size_t j = 0; j < names.size(); ++j) row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
     covariance.push_back(row);
   }
-  return {
-      {"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
-      {"covariance", covariance},      {"travel_mm", interval(law.range, 1e-3)}, {"converged", law.converged},
-      {"error", error_json(law.error)}};
+  return {{"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
+          {"covariance", covariance},      {"travel_mm", interval(law.range, 1e-3)}, {"converged", law.converged},
+          {"error", error_json(law.error)}};
 }
 
 json place_json(const DistilledPlace& place) {
@@ -121,27 +118,25 @@ json table_error_json(const TableError& e) {
 }
 
 json table_json(const BuiltTable& built) {
-  const ForceTable& t = *built.loading;
-  json result{
-      {"interpolation",
-       "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
-       "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
-      {"travel", t.axes()[0]},
-      {"position", t.axes()[1]},
-      {"slack", t.axes()[2]},
-      {"span_m", t.span()},
-      {"force_scale_N", t.force_scale()},
-      {"mirrored", t.mirrored()},
-      {"nodes", t.nodes()},
-      {"monotone", t.proven_monotone()           ? "proven"
-                   : t.least_stiffness(4) >= 0.0 ? "sampled"
-                                                 : "no"},
-      {"error", table_error_json(built.loading_error)},
-      {"refinements", built.rounds},
-      {"curves", built.curves}};
+  const coupling::ForceTable& t = *built.loading;
+  json result{{"interpolation",
+               "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
+               "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
+              {"travel", t.axes()[0]},
+              {"position", t.axes()[1]},
+              {"slack", t.axes()[2]},
+              {"span_m", t.span()},
+              {"force_scale_N", t.force_scale()},
+              {"mirrored", t.mirrored()},
+              {"nodes", t.nodes()},
+              {"monotone", t.proven_monotone()           ? "proven"
+                           : t.least_stiffness(4) >= 0.0 ? "sampled"
+                                                         : "no"},
+              {"error", table_error_json(built.loading_error)},
+              {"refinements", built.rounds},
+              {"curves", built.curves}};
   if (built.unloading) {
-    result["unloading"] = {{"nodes", built.unloading->nodes()},
-                           {"error", table_error_json(built.unloading_error)}};
+    result["unloading"] = {{"nodes", built.unloading->nodes()}, {"error", table_error_json(built.unloading_error)}};
   }
   return result;
 }
@@ -158,10 +153,8 @@ json map_json(const LawMap& map) {
     add("tensioned_wire_mm", &LawMapRow::tensioned);
     rows.push_back(entry);
   }
-  return {{"position_mm", 1e3 * map.position},
-          {"to_mm", 1e3 * map.travel.back()},
-          {"within", map_share},
-          {"rows", rows}};
+  return {
+      {"position_mm", 1e3 * map.position}, {"to_mm", 1e3 * map.travel.back()}, {"within", map_share}, {"rows", rows}};
 }
 
 json case_json(const DistilledCase& one) {
@@ -169,9 +162,7 @@ json case_json(const DistilledCase& one) {
   for (const DistilledPlace& place : one.places) places.push_back(place_json(place));
   const wire::WireSpecification& w = one.wire.test.wire;
   return {{"groups",
-           {{"EA_L2_over_EI", one.groups.axial},
-            {"R_over_L", one.groups.radius},
-            {"friction", one.groups.friction}}},
+           {{"EA_L2_over_EI", one.groups.axial}, {"R_over_L", one.groups.radius}, {"friction", one.groups.friction}}},
           {"wire",
            {{"bending_stiffness_Nm2", w.bending_stiffness()},
             {"axial_stiffness_N", w.axial_stiffness()},

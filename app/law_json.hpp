@@ -7,7 +7,6 @@
 namespace snare::app {
 
 /// law.json: ranges, table, simple laws with their errors, the map of the closed forms. Fields: docs/law_json.md.
-[[nodiscard]] nlohmann::json law_json(const reduction::WireFile& file,
-                                      const reduction::Distillation& distillation);
+[[nodiscard]] nlohmann::json law_json(const reduction::WireFile& file, const reduction::Distillation& distillation);
 
 }  // namespace snare::app

@@ -2,8 +2,8 @@
 #include "app/commands.hpp"
 #include "base/errors.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <exception>
@@ -25,7 +25,9 @@ void add_common(CLI::App& verb, CommonOptions& options, const std::string& defau
   verb.add_option("--threads", options.threads, "number of threads; 0: one a processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  verb.add_option("--set", options.overrides, "override a key of the file: key=value (repeatable)")->expected(1)->take_all();
+  verb.add_option("--set", options.overrides, "override a key of the file: key=value (repeatable)")
+      ->expected(1)
+      ->take_all();
   verb.add_flag("--quiet", options.quiet, "no messages but errors");
   verb.add_flag("--json", options.json, "the result on standard output");
 }
@@ -46,7 +48,8 @@ const Verb verbs[] = {
      "experiment file; the published tests when left out", false,
      "snare reproduce --out out/reproduce --set series[s40].law.to_mm=5", snare::app::run_reproduce},
     {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml", "experiment file", true,
-     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2", snare::app::run_push},
+     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2",
+     snare::app::run_push},
     {"fit", "calibrate the declared model's free numbers", "EXPERIMENT.toml", "experiment file", true,
      "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit},
     {"trace", "find the effect that the declared model lacks", "EXPERIMENT.toml", "experiment file", true,
@@ -56,8 +59,9 @@ const Verb verbs[] = {
     {"compare", "the same case with every wire model: accuracy and cost side by side", "SCENARIO.toml",
      "experiment or wire file", true, "snare compare data/experiments/published_static.toml --out out/compare",
      snare::app::run_compare},
-    {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml", "scenario file",
-     true, "snare simulate data/scenarios/air_table.toml --out out/air_table", snare::app::run_simulate},
+    {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml",
+     "scenario file", true, "snare simulate data/scenarios/air_table.toml --out out/air_table",
+     snare::app::run_simulate},
     {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,
      "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
@@ -113,7 +117,9 @@ int run(int argc, char** argv) {
   CLI::App* arm_show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
   arm_show->add_option("FILE", arm_file, "arm file")->required();
   arm_show->add_option("--pose", arm_pose, "a pose of the file, or angles in degrees: 0,30,-40");
-  arm_show->add_option("--set", arm_options.overrides, "override a key of the file: key=value (repeatable)")->expected(1)->take_all();
+  arm_show->add_option("--set", arm_options.overrides, "override a key of the file: key=value (repeatable)")
+      ->expected(1)
+      ->take_all();
   arm_show->add_flag("--json", arm_options.json, "as JSON");
   arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
 
@@ -127,11 +133,13 @@ int run(int argc, char** argv) {
   snare::app::catch_interrupts();
   ExitStatus status = ExitStatus::failure;
   if (arm_show->parsed()) {
-    status = guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
+    status =
+        guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     const Parsed& p = parsed[k];
-    if (p.command->parsed()) status = guarded(p.options, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
+    if (p.command->parsed())
+      status = guarded(p.options, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
   return static_cast<int>(status);
 }

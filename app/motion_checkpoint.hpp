@@ -1,7 +1,6 @@
 #pragma once
 
-#include "app/motion_runs.hpp"
-#include "coupling/dynamics/motion.hpp"
+#include "app/report/motion_record.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -10,7 +9,7 @@
 
 namespace snare::app {
 
-/// How far some motions have come.
+/// How far some motions have come.                                                      theory.md (M.13)
 struct MotionProgress {
   std::vector<MotionRecord> finished;
   std::vector<coupling::MotionSample> samples;  ///< of the motion at hand, up to its state

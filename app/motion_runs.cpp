@@ -17,22 +17,23 @@ namespace {
 
 using coupling::MotionResult;
 using coupling::MotionSample;
+using scenario::NamedMotion;
 
 class Runs {
  public:
-  Runs(const std::vector<MotionTask>& tasks, const CheckpointPolicy& policy, Console& console)
-      : tasks_(tasks), policy_(policy), console_(console), written_(Clock::now()) {
+  Runs(const std::vector<NamedMotion>& motions, const CheckpointPolicy& policy, Console& console)
+      : motions_(motions), policy_(policy), console_(console), written_(Clock::now()) {
     LoadedCheckpoint loaded = read_motion_checkpoint(policy.file, policy.input);
     if (!loaded.refusal.empty()) console.complain(loaded.refusal);
-    if (!loaded.progress || loaded.progress->finished.size() >= tasks.size()) return;
+    if (!loaded.progress || loaded.progress->finished.size() >= motions.size()) return;
     progress_ = std::move(*loaded.progress);
-    console.say(fmt::format("goes on from {}: {} at {:.6g} s", policy.file.string(), tasks[progress_.finished.size()].name,
-                            progress_.state ? progress_.state->time : 0.0));
+    console.say(fmt::format("goes on from {}: {} at {:.6g} s", policy.file.string(),
+                            motions[progress_.finished.size()].name, progress_.state ? progress_.state->time : 0.0));
   }
 
   [[nodiscard]] std::vector<MotionRecord> all() {
     bool stopped = false;
-    while (!stopped && progress_.finished.size() < tasks_.size()) stopped = !run_next();
+    while (!stopped && progress_.finished.size() < motions_.size()) stopped = !run_next();
     if (!stopped) {
       std::error_code ignored;
       std::filesystem::remove(policy_.file, ignored);
@@ -49,20 +50,20 @@ class Runs {
 
   /// False when it was interrupted.
   bool run_next() {
-    const MotionTask& task = tasks_[progress_.finished.size()];
-    const double duration = task.options.duration;
+    const NamedMotion& asked = motions_[progress_.finished.size()];
+    const double duration = asked.options.duration;
     const std::optional<coupling::MotionState> from = progress_.state;
     const double begun = from ? from->time : 0.0;
     std::vector<MotionSample> samples = progress_.samples;
     const auto begin = Clock::now();
-    coupling::MotionOptions options = task.options;
+    coupling::MotionOptions options = asked.options;
     options.stop = interrupted;
     MotionResult result = coupling::simulate(
-        task.motion, options,
+        asked.motion, options,
         [&](const MotionSample& s) {
           samples.push_back(s);
           const double share = (s.time - begun) / (duration - begun);
-          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", task.name, s.time, duration,
+          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", asked.name, s.time, duration,
                                         share > 0.0 ? seconds_since(begin) * (1.0 - share) / share : 0.0));
           return false;
         },
@@ -76,7 +77,7 @@ class Runs {
     console_.end_progress();
     const bool stopped = result.report.termination == numerics::Termination::interrupted;
     if (!result.report.usable()) {
-      console_.complain(fmt::format("{}: {} (what was reached is kept{})", task.name, result.report.message,
+      console_.complain(fmt::format("{}: {} (what was reached is kept{})", asked.name, result.report.message,
                                     stopped ? "; the same command goes on from the last checkpoint" : ""));
     }
     if (stopped) write();  // before the motion counts as finished: it goes on from its last checkpoint
@@ -93,7 +94,7 @@ class Runs {
     written_ = Clock::now();
   }
 
-  const std::vector<MotionTask>& tasks_;
+  const std::vector<NamedMotion>& motions_;
   const CheckpointPolicy& policy_;
   Console& console_;
   MotionProgress progress_;
@@ -102,12 +103,14 @@ class Runs {
 
 }  // namespace
 
-std::vector<MotionRecord> run_motions(const std::vector<MotionTask>& tasks, const CheckpointPolicy& policy, Console& console) {
-  return Runs(tasks, policy, console).all();
+std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions, const CheckpointPolicy& policy,
+                                      Console& console) {
+  return Runs(motions, policy, console).all();
 }
 
 ExitStatus status_of(const std::vector<MotionRecord>& records) {
-  const bool fine = std::all_of(records.begin(), records.end(), [](const MotionRecord& r) { return r.result.report.usable(); });
+  const bool fine =
+      std::all_of(records.begin(), records.end(), [](const MotionRecord& r) { return r.result.report.usable(); });
   return fine ? ExitStatus::done : ExitStatus::solver_stopped;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/console.hpp"
-#include "coupling/dynamics/motion.hpp"
+#include "app/report/motion_record.hpp"
 
 #include <filesystem>
 #include <string>
@@ -9,31 +9,18 @@
 
 namespace snare::app {
 
-/// A motion to be run.
-struct MotionTask {
-  std::string name;  ///< for messages
-  coupling::Motion motion;
-  coupling::MotionOptions options;
-};
-
-/// What a motion has given.
-struct MotionRecord {
-  std::vector<coupling::MotionSample> samples;
-  coupling::MotionResult result;
-};
-
 /// Where checkpoints go and to what they belong.
 struct CheckpointPolicy {
   std::filesystem::path file;
-  std::string input;       ///< text that is equal for equal tasks
+  std::string input;       ///< text that is equal for equal motions
   double wall_time = 0.0;  ///< least between two that are written [s], >= 0
 };
 
 /// Runs motions in turn and shows their progress. After a kill or an interruption the same call goes on from the last checkpoint,
-/// and ends with the same bits. An interrupted run gives fewer records than tasks, the last one unfinished; what has failed is told
+/// and ends with the same bits. An interrupted run gives fewer records than motions, the last one unfinished; what has failed is told
 /// to the console.                                                    docs/decisions/0015-checkpoints-of-a-motion.md
-[[nodiscard]] std::vector<MotionRecord> run_motions(const std::vector<MotionTask>& tasks, const CheckpointPolicy& policy,
-                                                    Console& console);
+[[nodiscard]] std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions,
+                                                    const CheckpointPolicy& policy, Console& console);
 
 /// Worst status of some records.
 [[nodiscard]] ExitStatus status_of(const std::vector<MotionRecord>& records);

@@ -1,9 +1,9 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/report/report_page.hpp"
-#include "identification/ring_down/ring_down_file.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
+#include "identification/ring_down/mode_match.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,10 +25,8 @@ using nlohmann::json;
 constexpr double per_mm = 1e3;
 
 json estimate_json(const Estimate& e, double unit = 1.0) {
-  return {{"value", unit * e.value},
-          {"stderr", unit * e.error},
-          {"lower", unit * e.lower()},
-          {"upper", unit * e.upper()}};
+  return {
+      {"value", unit * e.value}, {"stderr", unit * e.error}, {"lower", unit * e.lower()}, {"upper", unit * e.upper()}};
 }
 
 std::string with_error(const Estimate& e, double unit = 1.0) {
@@ -53,8 +51,7 @@ json series_json(const identification::RingDown& data, const RingDownFit& fit) {
           {"friction_bic", fit.friction_bic},
           {"rmse_mm", per_mm * fit.rmse},
           {"nrmse", fit.nrmse},
-          {"residual",
-           {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
+          {"residual", {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
 }
 
 json damping_json(const DampingSplit& split) {
@@ -66,15 +63,14 @@ json damping_json(const DampingSplit& split) {
           {"statement", split.statement}};
 }
 
-std::string report_of(const RingDownFile& file, const std::vector<RingDownFit>& fits,
-                      const DampingSplit& split) {
+std::string report_of(const RingDownFile& file, const std::vector<RingDownFit>& fits, const DampingSplit& split) {
   ReportPage page(file.title, file.source);
   page.heading("Damping");
   page.callout(split.statement, split.separated ? Tone::good : Tone::plain);
-  page.key_figures({{"bending_time", with_error(split.bending_time) + " s",
-                     split.separated ? "95 %" : "if all were material"},
-                    {"mass_rate", with_error(split.mass_rate) + " 1/s",
-                     split.separated ? "95 %" : "if all were mass-proportional"}});
+  page.key_figures(
+      {{"bending_time", with_error(split.bending_time) + " s", split.separated ? "95 %" : "if all were material"},
+       {"mass_rate", with_error(split.mass_rate) + " 1/s",
+        split.separated ? "95 %" : "if all were mass-proportional"}});
   Table table{"",
               {{"Series", ColumnKind::code},
                {"Frequency [Hz]", ColumnKind::number},
@@ -87,14 +83,12 @@ std::string report_of(const RingDownFile& file, const std::vector<RingDownFit>& 
     for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
       const RingDownMode& mode = fits[s].modes[m];
       const bool rubs = fits[s].friction && m == fits[s].largest;
-      table.rows.push_back({file.series[s].data.name, with_error(mode.frequency),
-                            with_error(mode.damping_ratio), with_error(mode.decay),
-                            with_error(mode.amplitude, per_mm),
+      table.rows.push_back({file.series[s].data.name, with_error(mode.frequency), with_error(mode.damping_ratio),
+                            with_error(mode.decay), with_error(mode.amplitude, per_mm),
                             rubs ? with_error(*fits[s].friction, per_mm) : std::string("none seen")});
     }
     if (!fits[s].noise_only()) {
-      page.callout(file.series[s].data.name + ": what is left is no noise, so the errors are too small",
-                   Tone::bad);
+      page.callout(file.series[s].data.name + ": what is left is no noise, so the errors are too small", Tone::bad);
     }
   }
   page.table(table);
@@ -115,8 +109,7 @@ std::string report_of(const RingDownFile& file, const std::vector<RingDownFit>& 
     plot.curves = {measured, fitted, left};
     page.line_plot(plot);
   }
-  page.footer(fmt::format(
-      "Written by snare {}. The numbers are in ringdown.json and ringdown.csv beside this page.", version()));
+  page.footer(written_by(version(), "ringdown.json and ringdown.csv"));
   return page.html();
 }
 
@@ -126,10 +119,8 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   const RingDownFile file = identification::read_ring_down_file(path, overrides_of(options));
   std::vector<RingDownFit> fits;
   ExitStatus status = ExitStatus::done;
-  json result{{"schema", "snare-ringdown-result/1"},
-              {"title", file.title},
-              {"source", file.source},
-              {"series", json::array()}};
+  json result{
+      {"schema", "snare-ringdown-result/1"}, {"title", file.title}, {"source", file.source}, {"series", json::array()}};
   for (const identification::RingDownSeries& s : file.series) {
     fits.push_back(identification::fit_ring_down(s.data));
     result["series"].push_back(series_json(s.data, fits.back()));
@@ -150,8 +141,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   for (std::size_t s = 0; s < fits.size(); ++s) {
     const identification::RingDown& data = file.series[s].data;
     for (Eigen::Index i = 0; i < data.time.size(); ++i) {
-      csv.row({std::string_view(data.name), data.time[i], per_mm * data.displacement[i],
-               per_mm * fits[s].fitted[i]});
+      csv.row({std::string_view(data.name), data.time[i], per_mm * data.displacement[i], per_mm * fits[s].fitted[i]});
     }
   }
   csv.commit();
@@ -162,16 +152,15 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   for (std::size_t s = 0; s < fits.size(); ++s) {
     for (const RingDownMode& m : fits[s].modes) {
-      console.say(fmt::format("{}: {} Hz, damping ratio {}{}", file.series[s].data.name,
-                              with_error(m.frequency), with_error(m.damping_ratio),
+      console.say(fmt::format("{}: {} Hz, damping ratio {}{}", file.series[s].data.name, with_error(m.frequency),
+                              with_error(m.damping_ratio),
                               m.significant() ? "" : " (does not stand out of the noise)"));
     }
     if (fits[s].friction)
-      console.say(fmt::format("{}: friction takes {} mm of amplitude a second besides",
-                              file.series[s].data.name, with_error(*fits[s].friction, per_mm)));
+      console.say(fmt::format("{}: friction takes {} mm of amplitude a second besides", file.series[s].data.name,
+                              with_error(*fits[s].friction, per_mm)));
     if (!fits[s].noise_only())
-      console.say(
-          fmt::format("{}: what is left is no noise, so the errors are too small", file.series[s].data.name));
+      console.say(fmt::format("{}: what is left is no noise, so the errors are too small", file.series[s].data.name));
   }
   if (split.separated)
     console.say(fmt::format("bending_time_s = {}, mass_rate_1_s = {}", with_error(split.bending_time),

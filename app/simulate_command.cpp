@@ -1,50 +1,121 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
-#include "app/simulate_kinds.hpp"
-#include "scenario/contact_scenario.hpp"
-#include "scenario/bodies_scenario.hpp"
-#include "base/errors.hpp"
+#include "app/motion_history.hpp"
+#include "app/motion_runs.hpp"
+#include "app/motion_summary.hpp"
+#include "app/report/motion_page.hpp"
+#include "app/report/motion_pictures.hpp"
+#include "app/report/paraview.hpp"
+#include "base/files.hpp"
 #include "base/parallel.hpp"
+#include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
-#include <string>
-#include <vector>
+#include <chrono>
+#include <iostream>
+#include <variant>
 
 namespace snare::app {
 
 namespace {
 
-struct Kind {
-  const char* name;
-  ExitStatus (*run)(const std::filesystem::path& file, const CommonOptions& options, Console& console);
-};
+using nlohmann::json;
 
-constexpr Kind kinds[] = {{"contact", simulate_contact},
-                          {"arm_contact", simulate_arm_contact},
-                          {"joint_step", simulate_arm},
-                          {"tip_impulse", simulate_arm},
-                          {"joint_motion", simulate_arm}};
+/// One line for every model or contact.
+void tell(const scenario::WireMotions& motions, const std::vector<FinishedMotion>& finished, Console& console) {
+  for (const FinishedMotion& run : finished) {
+    const coupling::MotionResult& r = run.result;
+    if (!motions.probe) {
+      for (std::size_t k = 0; k < run.asked.motion.contacts.size(); ++k) {
+        console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time",
+                                run.asked.motion.contacts[k].name, touches_of(r, k).count, r.peak_force[k],
+                                most_points(run, k)));
+      }
+      continue;
+    }
+    const multibody::RigidBodyState& after = run.samples.back().bodies.front();
+    const std::string spin =
+        run.asked.motion.arms.empty() ? fmt::format(", spin {:.4g} rad/s", after.spin.z()) : std::string();
+    console.say(fmt::format(
+        "{}: peak {:.4g} N, impulse {:.4g} N s, velocity {:.4g} m/s{} after; {} steps, {:.3g} times real time",
+        run.asked.name, r.peak_force.front(), r.impulse.front().y(), after.velocity.y(), spin, r.statistics.steps,
+        real_time_factor(r)));
+  }
+}
+
+void write_results(const CommonOptions& options, const json& summary, const std::string& page) {
+  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  base::write_text(options.out / "report.html", page);
+  if (options.json) std::cout << summary.dump(1) << '\n';
+}
+
+void tell_files(const CommonOptions& options, Console& console) {
+  console.say(fmt::format("wrote {0}/history.csv, summary.json, report.html", options.out.string()));
+}
+
+ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions& motions, const CommonOptions& options,
+                    Console& console) {
+  const std::vector<MotionRecord> records = run_motions(
+      motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
+  const std::vector<FinishedMotion> finished = finished_motions(motions, records);
+  write_history(options.out / "history.csv", motions, finished);
+  write_results(options, motion_summary(asked, motions, finished), motion_page(asked, motions, finished, version()));
+  if (motions.output.paraview) {
+    for (const FinishedMotion& run : finished) {
+      write_paraview(options.out, motions.probe ? run.asked.name : "motion",
+                     paraview_frames(run.asked.motion, run.samples));
+    }
+  }
+  if (!options.json) {
+    tell(motions, finished, console);
+    tell_files(options, console);
+  }
+  return status_of(records);
+}
+
+ArmRecord run_arm(const scenario::ArmMotion& motion, Console& console) {
+  multibody::ArmScenario scenario = motion.scenario;
+  scenario.progress = [&console, end = scenario.end](double time) {
+    console.progress(fmt::format("{:.2f} of {:.2f} s", time, end));
+    return !interrupted();
+  };
+  ArmRecord record;
+  const auto begin = std::chrono::steady_clock::now();
+  record.history = multibody::simulate(scenario);
+  record.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  console.end_progress();
+  if (motion.joint >= 0) record.swings = scenario::swings(record.history, scenario.arm, motion.joint);
+  return record;
+}
+
+ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const CommonOptions& options,
+                    Console& console) {
+  const ArmRecord record = run_arm(motion, console);
+  const multibody::ArmHistory& history = record.history;
+  write_history(options.out / "history.csv", motion.scenario.arm, history);
+  write_results(options, arm_summary(asked, motion, record), arm_page(asked, motion, record, version()));
+  if (!history.report.usable()) {
+    console.complain(history.report.message + " (what was reached is kept)");
+    return ExitStatus::solver_stopped;
+  }
+  if (!options.json) {
+    console.say(fmt::format("{} steps, {} events, energy balance within {:.2g}, {:.3g} times real time",
+                            history.statistics.steps, history.events.size(), history.energy_error,
+                            record.real_time_factor()));
+    tell_files(options, console);
+  }
+  return ExitStatus::done;
+}
 
 }  // namespace
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  // Keys of another file that the scenario names are that file's matter.
-  std::vector<base::Override> own;
-  for (const base::Override& one : overrides_of(options)) {
-    if (!one.key.starts_with("contact.")) own.push_back(one);
-  }
-  const std::string asked = scenario::scenario_kind(file, own);
+  const std::vector<base::Override> overrides = overrides_of(options);
   if (options.threads > 0) base::set_thread_count(options.threads);
-  std::string known;
-  if (asked == "contact" && scenario::lists_bodies(file, overrides_of(options))) return simulate_bodies(file, options, console);
-  for (const Kind& kind : kinds) {
-    if (asked == kind.name) return kind.run(file, options, console);
-    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
-  }
-  throw base::InputError(
-      {file.string(), 0, "kind", fmt::format("\"{}\"", asked), "must be one of " + known});
+  const scenario::Scenario asked = scenario::read_scenario(file, overrides);
+  return std::visit([&](const auto& content) { return simulate(asked, content, options, console); }, asked.content);
 }
 
 }  // namespace snare::app

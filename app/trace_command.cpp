@@ -1,10 +1,11 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
-#include "app/trace_json.hpp"
+#include "app/report/trace_findings.hpp"
 #include "app/report/trace_report.hpp"
-#include "identification/tracing/trace.hpp"
+#include "app/trace_json.hpp"
 #include "base/files.hpp"
+#include "identification/tracing/trace.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,13 +58,14 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
   const nlohmann::json result = trace_json(experiment, trace);
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
   base::write_text(options.out / "trace.json", result.dump(1) + "\n");
-  base::write_text(options.out / "report.html", trace_report_html(result));
+  base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version()));
   if (options.json) {
     std::cout << result.dump(1) << '\n';
   } else {
     console.say(verdict(trace));
-    console.say(fmt::format("rmse: declared {:.4g} N, base {:.4g} N, final {:.4g} N; noise {:.3g} N ({})", trace.declared.rmse,
-                            trace.base.rmse, trace.final.rmse, result["noise"]["sigma_N"].get<double>(), trace.noise.source));
+    console.say(fmt::format("rmse: declared {:.4g} N, base {:.4g} N, final {:.4g} N; noise {:.3g} N ({})",
+                            trace.declared.rmse, trace.base.rmse, trace.final.rmse,
+                            result["noise"]["sigma_N"].get<double>(), trace.noise.source));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
     if (trace.next) console.say("next: " + trace.next->what);
     console.say(fmt::format("wrote {0}/curves.csv, {0}/trace.json, {0}/report.html", options.out.string()));
@@ -101,8 +103,8 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   if (options.json) {
     std::cout << result.dump(1) << '\n';
   } else {
-    console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)", trace.declared.rmse,
-                            trace.final.rmse, trace.final.chi2_dof));
+    console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",
+                            trace.declared.rmse, trace.final.rmse, trace.final.chi2_dof));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
     console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv", options.out.string()));
   }

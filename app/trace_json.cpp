@@ -1,12 +1,11 @@
 #include "app/trace_json.hpp"
 
 #include "app/commands.hpp"
+#include "app/report/trace_findings.hpp"
+#include "identification/effects/catalogue.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace snare::app {
@@ -20,12 +19,17 @@ using identification::Round;
 using identification::Trace;
 using nlohmann::json;
 
-json finite(double value) { return std::isfinite(value) ? json(value) : json(); }
-json finite(const std::optional<double>& value) { return value ? finite(*value) : json(); }
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+json finite(const std::optional<double>& value) {
+  return value ? finite(*value) : json();
+}
 
 json error_json(const Trace& trace, const ModelError& error) {
   json series = json::object();
-  for (std::size_t k = 0; k < error.series_rmse.size(); ++k) series[trace.series[k].name] = finite(error.series_rmse[k]);
+  for (std::size_t k = 0; k < error.series_rmse.size(); ++k)
+    series[trace.series[k].name] = finite(error.series_rmse[k]);
   return {{"rmse_N", finite(error.rmse)},
           {"nrmse", finite(error.nrmse)},
           {"chi2_dof", finite(error.chi2_dof)},
@@ -61,7 +65,7 @@ json candidate_json(const Candidate& c) {
           {"plausible", c.plausible},
           {"why_implausible", c.why_implausible.empty() ? json() : json(c.why_implausible)},
           {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
-          {"detectable", {{"key", effect.numbers.front().key}, {"size", finite(c.score.detectable)}}},
+          {"detectable", {{"key", effect.numbers.front().parameter.key}, {"size", finite(c.score.detectable)}}},
           {"class", c.class_index}};
 }
 
@@ -75,11 +79,16 @@ json round_json(const Round& round) {
 }
 
 json function_json(const identification::ChannelFunction& f) {
-  return {{"channel", to_string(f.channel)}, {"argument", f.argument},
-          {"effect", f.effect},              {"at", f.at},
-          {"value", f.value},                {"deviation", f.deviation},
-          {"carried_over", finite(f.carried_over)}, {"explained", finite(f.explained)},
-          {"chi2_dof", finite(f.chi2_dof)},  {"accepted", f.accepted},
+  return {{"channel", to_string(f.channel)},
+          {"argument", f.argument},
+          {"effect", f.effect},
+          {"at", f.at},
+          {"value", f.value},
+          {"deviation", f.deviation},
+          {"carried_over", finite(f.carried_over)},
+          {"explained", finite(f.explained)},
+          {"chi2_dof", finite(f.chi2_dof)},
+          {"accepted", f.accepted},
           {"shape", f.shape}};
 }
 
@@ -102,15 +111,17 @@ json series_json(const Trace& trace, std::size_t k) {
   model("base_N", trace.base_predictions);
   model("final_N", trace.final_predictions);
   if (s.law) {
-    std::vector<double> law;
-    for (const double d : s.readings->displacement) law.push_back(s.law->force(d));
     const auto rms = [&](const std::vector<identification::Prediction>& predictions) {
-      return predictions.size() > k ? finite(identification::misfit(law, predictions[k].force).rmse) : json();
+      return finite(law_distance(trace, k, predictions));
     };
-    result["law"] = {{"A_N_m2", s.law->a},        {"B_N_m", s.law->b},
-                     {"C_N", s.law->c},           {"R2", s.law->r_squared},
-                     {"scatter_N", s.law->scatter()}, {"declared_rmse_N", rms(trace.declared_predictions)},
-                     {"base_rmse_N", rms(trace.base_predictions)}, {"final_rmse_N", rms(trace.final_predictions)}};
+    result["law"] = {{"A_N_m2", s.law->a},
+                     {"B_N_m", s.law->b},
+                     {"C_N", s.law->c},
+                     {"R2", s.law->r_squared},
+                     {"scatter_N", s.law->scatter()},
+                     {"declared_rmse_N", rms(trace.declared_predictions)},
+                     {"base_rmse_N", rms(trace.base_predictions)},
+                     {"final_rmse_N", rms(trace.final_predictions)}};
   }
   return result;
 }
@@ -120,62 +131,11 @@ json series_json(const Trace& trace, std::size_t k) {
 json numbers_json(const std::vector<FittedNumber>& numbers) {
   json result = json::object();
   for (const FittedNumber& n : numbers) {
-    result[n.key] = {{"value", finite(n.value)},         {"stderr", finite(n.standard_error)}, {"declared", finite(n.declared)},
-                     {"unit", n.unit},                   {"lower95", finite(n.lower)},
-                     {"upper95", finite(n.upper)},       {"profiled", n.profiled}};
+    result[n.key] = {{"value", finite(n.value)}, {"stderr", finite(n.standard_error)}, {"declared", finite(n.declared)},
+                     {"unit", n.unit},           {"lower95", finite(n.lower)},         {"upper95", finite(n.upper)},
+                     {"profiled", n.profiled}};
   }
   return result;
-}
-
-std::string verdict(const Trace& t) {
-  if (t.explained && t.selected.empty()) {
-    return fmt::format("The base model explains the readings to the noise (rmse {:.3g} N); no effect is missing.", t.base.rmse);
-  }
-  if (t.explained) {
-    std::string text;
-    for (std::size_t k = 0; k < t.selected.size(); ++k) {
-      const std::vector<std::string>& members = t.selected_classes[k];
-      const identification::Effect& e = *identification::find_effect(t.selected[k]);
-      std::vector<std::string> known;
-      for (const std::string& m : members) {
-        if (!m.starts_with("outside:")) known.push_back(m);
-      }
-      const bool outside = known.size() < members.size();
-      if (members.size() == 1) {
-        text += fmt::format("{}: {}. ", e.name, e.meaning);
-      } else if (known.size() == 1) {
-        text += fmt::format("{} ({}), ", e.name, e.meaning);
-      } else {
-        text += fmt::format("One of {}, carried on as {}, {}", fmt::join(known, ", "), e.name,
-                            outside ? "" : "which these readings cannot tell apart. ");
-      }
-      if (outside) {
-        const identification::ChannelFunction& f = t.alternatives.front();
-        text += fmt::format("or a cause outside the catalogue: something in the {} that {}, as a function of {}. These readings cannot "
-                            "tell them apart. ",
-                            to_string(f.channel), f.effect, f.argument);
-      }
-    }
-    return fmt::format("{} {}The error falls from {:.3g} N to {:.3g} N.",
-                       t.alternatives.empty() ? "Explained." : "Explained, but not decided.", text, t.base.rmse, t.final.rmse);
-  }
-  std::string text =
-      t.rival_explanation
-          ? fmt::format("Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
-                        "does not have does so more simply.",
-                        fmt::join(t.partial, " and "), t.base.rmse)
-          : fmt::format("Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
-  if (!t.functions.empty()) {
-    const identification::ChannelFunction& f = t.functions.front();
-    if (f.accepted) {
-      text += fmt::format(" The residual comes through the {}: a function of {} that {} carries over from series to series ({:.0f} % of the excess); it is {}.",
-                          to_string(f.channel), f.argument, f.effect, 100.0 * f.carried_over, f.shape);
-    } else {
-      text += fmt::format(" No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} %).",
-                          to_string(f.channel), 100.0 * std::max(0.0, f.carried_over));
-    }
-  }
-  return text;
 }
 
 json trace_json(const identification::Experiment& experiment, const Trace& trace) {
@@ -195,26 +155,26 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
               {"verdict", verdict(trace)},
               {"interrupted", trace.interrupted},
               {"noise",
-               {{"sigma_N", trace.noise.sigma.empty() ? json() : finite(trace.noise.mean_sigma([&] {
-                   std::vector<identification::Series> fitted;
-                   for (std::size_t k = 0; k < trace.series.size(); ++k) {
-                     if (!trace.heldout[k]) fitted.push_back(trace.series[k]);
-                   }
-                   return fitted;
-                 }()))},
+               {{"sigma_N", finite(reading_noise(trace))},
                 {"source", trace.noise.source},
                 {"smooth_share", trace.noise.smooth},
                 {"correlation_length_mm", 1e3 * trace.noise.length},
                 {"drawn_about_published_laws", trace.drawn}}},
               {"declared", error_json(trace, trace.declared)},
               {"base", error_json(trace, trace.base)},
-              {"residual", {{"significant", trace.significant}, {"tests", tests_json(trace.base_tests)}, {"tests_after", tests_json(trace.final_tests)}}},
+              {"residual",
+               {{"significant", trace.significant},
+                {"tests", tests_json(trace.base_tests)},
+                {"tests_after", tests_json(trace.final_tests)}}},
               {"candidates", any ? round_json(trace.rounds.front())["candidates"] : json::array()},
               {"classes", any ? json(trace.rounds.front().classes) : json::array()},
               {"rounds", rounds},
               {"selected", trace.selected},
               {"selected_classes", trace.selected_classes},
-              {"partial", {{"effects", trace.partial}, {"rival_explanation", trace.rival_explanation}, {"rmse_N", trace.partial.empty() ? json() : finite(trace.partial_rmse)}}},
+              {"partial",
+               {{"effects", trace.partial},
+                {"rival_explanation", trace.rival_explanation},
+                {"rmse_N", trace.partial.empty() ? json() : finite(trace.partial_rmse)}}},
               {"final", error_json(trace, trace.final)},
               {"heldout",
                {{"rmse_base_N", trace.heldout_rmse ? finite(trace.heldout_rmse->first) : json()},

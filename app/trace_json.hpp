@@ -4,16 +4,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <string>
+#include <vector>
 
 namespace snare::app {
 
-/// A trace as trace.json (docs/trace_json.md). The curves of the series are among it, so that the report page can be
-/// made from it alone. What is not known is null.
-[[nodiscard]] nlohmann::json trace_json(const identification::Experiment& experiment, const identification::Trace& trace);
-
-/// The verdict in a sentence or three, for a person.
-[[nodiscard]] std::string verdict(const identification::Trace& trace);
+/// A trace as trace.json (docs/trace_json.md), the curves of the series among it. What is not known is null.
+[[nodiscard]] nlohmann::json trace_json(const identification::Experiment& experiment,
+                                        const identification::Trace& trace);
 
 /// "wire.length_mm": {"value", "stderr", "declared", "unit", "lower95", "upper95", "profiled"}, ... of fitted numbers.
 [[nodiscard]] nlohmann::json numbers_json(const std::vector<identification::FittedNumber>& numbers);

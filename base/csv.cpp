@@ -75,8 +75,7 @@ std::string_view next_cell(std::string_view line, std::size_t& at) noexcept {
     if (line[end] == ',' && !quoted) break;
   }
   std::string_view cell = trimmed(line.substr(at, end - at));
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
-    cell = trimmed(cell.substr(1, cell.size() - 2));
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
   at = end < line.size() ? end + 1 : std::string_view::npos;
   return cell;
 }
@@ -123,8 +122,7 @@ class CsvParser {
   }
 
   [[nodiscard]] CsvTable finish() {
-    if (problems_.empty() && !has_header_)
-      fail(0, "", "", "is empty, must have a header that names the columns");
+    if (problems_.empty() && !has_header_) fail(0, "", "", "is empty, must have a header that names the columns");
     if (problems_.empty() && table_.rows == 0) fail(0, "", "", "has a header but no rows");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(table_);
@@ -199,8 +197,7 @@ class CsvParser {
     if (cells != slots_.size()) {
       problems_.resize(problems_before);  // the cells were taken for the wrong columns
       stopped_ = false;
-      fail(line_, "", "",
-           fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
+      fail(line_, "", "", fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
     }
     if (problems_.size() != problems_before) return;
     for (const std::size_t slot : slots_)
@@ -219,8 +216,7 @@ class CsvParser {
       return fail(line_, column.name, shown(cell), "must be a number");
     if (error != std::errc() || !std::isfinite(value))
       return fail(line_, column.name, shown(cell), "must be a finite number");
-    if (!column.range.contains(value))
-      return fail(line_, column.name, shown(cell), "must be " + column.range.phrase());
+    if (!column.range.contains(value)) return fail(line_, column.name, shown(cell), "must be " + column.range.phrase());
     if (column.order == CsvColumn::Order::non_decreasing) {
       if (value < previous_[slot])
         return fail(line_, column.name, shown(cell),
@@ -337,8 +333,8 @@ void CsvWriter::row(const std::vector<CsvCell>& cells) {
     if (i > 0) buffer_ += ',';
     if (const double* number = std::get_if<double>(&cells[i])) {
       if (!std::isfinite(*number))
-        throw std::domain_error(fmt::format("{}: row {}, {} = {}: not finite, not written", path_.string(),
-                                            rows_, columns_[i], *number));
+        throw std::domain_error(
+            fmt::format("{}: row {}, {} = {}: not finite, not written", path_.string(), rows_, columns_[i], *number));
       fmt::format_to(std::back_inserter(buffer_), "{}", *number);
     } else if (const long long* count = std::get_if<long long>(&cells[i])) {
       fmt::format_to(std::back_inserter(buffer_), "{}", *count);

@@ -55,8 +55,7 @@ std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
 InputFile open_input(const std::filesystem::path& path) {
   // The system would cut a name at a zero byte and open another file than the one that was named.
   if (path.empty()) refuse(path, "the name of the file is empty");
-  if (path.native().find('\0') != std::string::npos)
-    refuse(path.c_str(), "a zero byte in the name of the file");
+  if (path.native().find('\0') != std::string::npos) refuse(path.c_str(), "a zero byte in the name of the file");
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (status.type() == std::filesystem::file_type::not_found) refuse(path, "no such file");
@@ -115,8 +114,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::string_view text) {
   assert(handle_ && "write after commit");
-  if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size())
-    fail(errno, path_, "cannot be written");
+  if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size()) fail(errno, path_, "cannot be written");
 }
 
 void AtomicFile::commit() {

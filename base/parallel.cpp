@@ -31,6 +31,8 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t index)
   if (failure) std::rethrow_exception(failure);
 }
 
-void set_thread_count(int threads) { omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs()); }
+void set_thread_count(int threads) {
+  omp_set_num_threads(threads > 0 ? threads : omp_get_num_procs());
+}
 
 }  // namespace snare::base

@@ -72,7 +72,10 @@ TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<
     : TomlDocument(file.string(), read_text(file, size_limit), overrides) {}
 
 TomlDocument::TomlDocument(std::string file, std::string_view text, const std::vector<Override>& overrides)
-    : file_(std::move(file)), root_(parse_toml(file_, text)) {
+    : TomlDocument(file, parse_toml(file, text), overrides) {}
+
+TomlDocument::TomlDocument(std::string file, TomlNode root, const std::vector<Override>& overrides)
+    : file_(std::move(file)), root_(std::move(root)) {
   for (const Override& change : overrides) apply_override(root_, change, problems_);
 }
 
@@ -95,8 +98,7 @@ void TomlDocument::report(const TomlNode& at, std::string key, std::string requi
 std::string TomlDocument::suggestion(std::string_view key, const Visit& visit) const {
   std::string nearest = nearest_word(key, {visit.asked.begin(), visit.asked.end()});
   for (const auto& [node, other] : visits_)  // the right key in the wrong table
-    if (nearest.empty() && !other.address.empty() && other.asked.contains(key))
-      nearest = dotted(other.address, key);
+    if (nearest.empty() && !other.address.empty() && other.asked.contains(key)) nearest = dotted(other.address, key);
   return nearest.empty() ? "unknown key" : fmt::format("unknown key; did you mean {}?", nearest);
 }
 
@@ -154,8 +156,7 @@ void TomlTable::missing(std::string_view key, const std::string& requirement) co
   // With several layers the last is the general one, where the key belongs.
   const Layer& layer = layers_.back();
   if (std::any_of(layers_.begin(), layers_.end(), [](const Layer& one) { return one.broken; })) return;
-  const bool nowhere =
-      std::all_of(layers_.begin(), layers_.end(), [](const Layer& one) { return !one.node; });
+  const bool nowhere = std::all_of(layers_.begin(), layers_.end(), [](const Layer& one) { return !one.node; });
   InputProblem problem{document_->file_, layer.node ? layer.node->line : 0, layer.address, "", ""};
   if (nowhere) {
     problem.requirement = "missing, must be a table";
@@ -170,12 +171,9 @@ std::optional<double> TomlTable::checked(const Found& found, Range range, double
   const TomlNode& node = *found.node;
   const bool is_number = node.kind == TomlNode::Kind::number;
   if (is_number && range.contains(node.number)) return to_si(node.number, unit);
-  const std::string_view kind = !is_number                    ? "a number"
-                                : !std::isfinite(node.number) ? "a finite number"
-                                                              : "";
+  const std::string_view kind = !is_number ? "a number" : !std::isfinite(node.number) ? "a finite number" : "";
   const std::string phrase = range.phrase();
-  document_->report(node, found.address,
-                    kind.empty() ? "must be " + phrase : number_requirement(kind, range));
+  document_->report(node, found.address, kind.empty() ? "must be " + phrase : number_requirement(kind, range));
   return std::nullopt;
 }
 
@@ -293,12 +291,15 @@ std::optional<std::size_t> TomlTable::choice_index(std::string_view key,
   return std::nullopt;
 }
 
+void require_schema(const TomlTable& root, std::string_view schema) {
+  const Choice<bool> only[] = {{schema, true}};
+  static_cast<void>(root.choice("schema", only));
+}
+
 TomlTable TomlTable::table(std::string_view key) const {
   const Found found = find(key);
-  if (found.node == nullptr)
-    return TomlTable(*document_, nullptr, dotted(address(), key), layers_.front().broken);
-  if (found.node->kind == TomlNode::Kind::table)
-    return TomlTable(*document_, found.node, found.address, false);
+  if (found.node == nullptr) return TomlTable(*document_, nullptr, dotted(address(), key), layers_.front().broken);
+  if (found.node->kind == TomlNode::Kind::table) return TomlTable(*document_, found.node, found.address, false);
   document_->report(*found.node, found.address, "must be a table");
   return TomlTable(*document_, nullptr, found.address, true);
 }
@@ -333,8 +334,7 @@ void TomlTable::fail(std::string_view key, std::string requirement) const {
 void TomlTable::fail_element(std::string_view key, std::size_t index, std::string requirement) const {
   const Found found = find(key);
   if (found.node == nullptr || index >= found.node->items.size()) return fail(key, std::move(requirement));
-  document_->report(found.node->items[index], fmt::format("{}[{}]", found.address, index + 1),
-                    std::move(requirement));
+  document_->report(found.node->items[index], fmt::format("{}[{}]", found.address, index + 1), std::move(requirement));
 }
 
 }  // namespace snare::base

@@ -36,6 +36,8 @@ class TomlDocument {
   explicit TomlDocument(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
   /// The same from text in memory; `file` stands in messages.
   TomlDocument(std::string file, std::string_view text, const std::vector<Override>& overrides = {});
+  /// The same from what has been parsed already.
+  TomlDocument(std::string file, TomlNode root, const std::vector<Override>& overrides = {});
   TomlDocument(const TomlDocument&) = delete;
   TomlDocument& operator=(const TomlDocument&) = delete;
 
@@ -95,25 +97,22 @@ class TomlTable {
   [[nodiscard]] bool has(std::string_view key) const;
 
   [[nodiscard]] double number(std::string_view key, Range range, double unit = 1.0) const;
-  [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range,
-                                 double unit = 1.0) const;
-  [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range range,
-                                                      double unit = 1.0) const;
+  [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range, double unit = 1.0) const;
+  [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range range, double unit = 1.0) const;
   [[nodiscard]] int integer(std::string_view key, int low, int high) const;
   [[nodiscard]] int integer_or(std::string_view key, int otherwise, int low, int high) const;
   [[nodiscard]] bool boolean_or(std::string_view key, bool otherwise) const;
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] std::string text_or(std::string_view key, std::string otherwise) const;
   /// An array of numbers, `least` to `most` of them; empty after a problem.
-  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most,
-                                            Range range, double unit = 1.0) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range,
+                                            double unit = 1.0) const;
   /// An array of texts; empty when the key is absent and after a problem.
   [[nodiscard]] std::vector<std::string> texts_or_none(std::string_view key) const;
 
   /// One of a few names; nothing after a problem.
   template <class Value, std::size_t count>
-  [[nodiscard]] std::optional<Value> choice(std::string_view key,
-                                            const Choice<Value> (&choices)[count]) const {
+  [[nodiscard]] std::optional<Value> choice(std::string_view key, const Choice<Value> (&choices)[count]) const {
     std::vector<std::string_view> names;
     for (const auto& one : choices) names.push_back(one.name);
     const std::optional<std::size_t> index = choice_index(key, names);
@@ -157,6 +156,20 @@ class TomlTable {
   TomlDocument* document_;
   std::vector<Layer> layers_;  // the first that has a key gives it; never empty
 };
+
+/// Asks for the line `schema = "..."` with which every file says what it is; anything else is reported.
+void require_schema(const TomlTable& root, std::string_view schema);
+
+/// Runs the reader of another file that a document names; what is wrong there goes to the document, and nothing comes back.
+template <class Read>
+auto read_beside(TomlDocument& document, const Read& read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    for (const InputProblem& problem : error.problems()) document.add(problem);
+    return std::nullopt;
+  }
+}
 
 /// The candidate nearest to `word` by edit distance (insertions, deletions, replacements, swaps of
 /// neighbours), or empty when none is near: more than a third of the word would have to change.

@@ -1,18 +1,20 @@
-// How often the tracing names the right class: blind sets of the continuous wire with an effect that the declared model
-// lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion matrix as JSON.
-//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--sets FILE] [--require]
-// --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended. It belongs to one
-// build: another one starts with a new file.
+// How often the tracing names the right class: blind sets of the continuous wire with an effect that the
+// declared model lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion
+// matrix as JSON.
+//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--sets FILE]
+//   [--require]
+// --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended.
+// It belongs to one build: another one starts with a new file.
 
-#include "identification/tracing/trace.hpp"
 #include "base/files.hpp"
+#include "identification/tracing/trace.hpp"
 #include "validation/blind_set.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <omp.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -32,20 +34,21 @@ struct Case {
 };
 
 struct Outcome {
-  bool right = false;       // the class holds the effect (nothing, where nothing is inside); see judge()
-  bool alarm = false;       // an effect was selected
-  bool channel = false;     // of an effect that is in no catalogue
-  bool alternative = false; // the class of the selected effect holds a cause outside the catalogue (the right one, if one is inside)
-  int covered = 0;          // base numbers within their intervals, of two
+  bool right = false;    // the class holds the effect (nothing, where nothing is inside); see judge()
+  bool alarm = false;    // an effect was selected
+  bool channel = false;  // of an effect that is in no catalogue
+  // The class of the selected effect holds a cause outside the catalogue (the right one, if one is inside).
+  bool alternative = false;
+  int covered = 0;               // base numbers within their intervals, of two
   std::vector<double> deviates;  // of the base numbers from the truth, in standard errors
   double chi2_dof = 0.0;
-  double left_out = 0.0;    // error of series predicted from the others, over the noise
+  double left_out = 0.0;  // error of series predicted from the others, over the noise
   std::string answer;
   double class_size = 0.0;
   double seconds = 0.0;
   double made_size = 0.0;
   bool finished = false;
-  bool reached = true;      // the effect could be made that large (weight cannot)
+  bool reached = true;  // the effect could be made that large (weight cannot)
 };
 
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
@@ -73,9 +76,11 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
     const std::string where = set.effect == "damage" ? "wire" : "sensor";
     o.channel = o.right && t.channel == where;
     const std::string member = "outside:" + where;
-    o.alternative = !t.selected.empty() && std::ranges::find(t.selected_classes.front(), member) != t.selected_classes.front().end();
+    o.alternative = !t.selected.empty() &&
+                    std::ranges::find(t.selected_classes.front(), member) != t.selected_classes.front().end();
   }
-  o.answer = t.selected.empty() ? (t.explained ? "nothing" : "unexplained:" + t.channel) : fmt::format("{}", fmt::join(t.selected, "+"));
+  o.answer = t.selected.empty() ? (t.explained ? "nothing" : "unexplained:" + t.channel)
+                                : fmt::format("{}", fmt::join(t.selected, "+"));
   if (t.left_out_rmse) o.left_out = t.left_out_rmse->second / t.noise.sigma.front();
   for (const identification::FittedNumber& n : t.final.numbers) {
     const double truth = n.key == "wire.bending_stiffness_Nm2" ? set.bending_stiffness
@@ -88,10 +93,10 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"effect", c.effect},       {"size", c.size},           {"seed", c.seed},         {"right", o.right},
-          {"alarm", o.alarm},         {"channel", o.channel},     {"beside", o.alternative}, {"deviates", o.deviates},
-          {"covered", o.covered},     {"chi2_dof", o.chi2_dof},   {"left_out", o.left_out}, {"answer", o.answer},
-          {"class", o.class_size},    {"seconds", o.seconds},     {"made", o.made_size},    {"reached", o.reached}};
+  return {{"effect", c.effect},    {"size", c.size},         {"seed", c.seed},          {"right", o.right},
+          {"alarm", o.alarm},      {"channel", o.channel},   {"beside", o.alternative}, {"deviates", o.deviates},
+          {"covered", o.covered},  {"chi2_dof", o.chi2_dof}, {"left_out", o.left_out},  {"answer", o.answer},
+          {"class", o.class_size}, {"seconds", o.seconds},   {"made", o.made_size},     {"reached", o.reached}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {
@@ -136,7 +141,8 @@ struct Totals {
 
 /// Counts over the sets that are finished.
 nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome>& outcomes) {
-  nlohmann::json result{{"schema", "snare-blind/1"}, {"matrix", nlohmann::json::object()}, {"not_reached", nlohmann::json::object()}};
+  nlohmann::json result{
+      {"schema", "snare-blind/1"}, {"matrix", nlohmann::json::object()}, {"not_reached", nlohmann::json::object()}};
   std::map<double, Totals> totals;
   double quiet = 0.0, nothing = 0.0, seconds = 0.0, finished = 0.0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -264,8 +270,11 @@ int main(int argc, char** argv) {
     o.finished = true;
     outcomes[static_cast<std::size_t>(i)] = o;
     journal << line_of(c, o).dump() << std::endl;
-    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n", o.right ? "ok   " : "WRONG",
-               c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
+    fmt::print(
+        "{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} "
+        "s)\n",
+        o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size,
+        fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
     if (!out.empty()) base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }
@@ -273,9 +282,11 @@ int main(int argc, char** argv) {
   const nlohmann::json result = summary(cases, outcomes);
   fmt::print("{}\n", result.dump(1));
   if (!required) return 0;
-  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small run.
+  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small
+  // run.
   const nlohmann::json& large = result["sizes"][fmt::format("{:g}", sizes.back())];
-  const bool good = large.value("right_class", 1.0) >= 0.95 && large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&
+  const bool good = large.value("right_class", 1.0) >= 0.95 &&
+                    large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&
                     result["false_alarms"].get<double>() <= 0.2;
   return good ? 0 : 1;
 }

@@ -41,7 +41,7 @@ PressedWire pressed_wire(int elements, double travel) {
   coupling::PushSetup setup = coupling::prepare_push(declared_push(), elements, -1.0, 1);
   if (!setup.report.usable()) throw std::runtime_error(setup.report.message);
   PressedWire wire{std::move(setup.rod), std::move(setup.system), std::move(setup.start)};
-  wire.system->guided[0].status = coupling::ContactStatus::slip;
+  wire.system->sliding[0].status = coupling::ContactStatus::slip;
   numerics::PathWorkspace workspace;
   constexpr int steps = 10;
   for (int i = 1; i <= steps; ++i) {
@@ -84,9 +84,9 @@ PressedWire buckled_shape(int elements) {
   pusher.node = mesh.contact_vertex();
   pusher.motion = Eigen::Vector2d::UnitY();
   pusher.centre = wire.point.band.segment<2>(2 * pusher.node);
-  wire.system->guided = {pusher};
+  wire.system->sliding = {pusher};
   wire.point.border.setZero(wire.system->border_unknowns());
-  wire.point.border[2] = controls[1];
+  wire.point.border[wire.system->pusher_rows().coordinate] = controls[1];
   coupling::remember_contact(*wire.system, wire.point);
   return wire;
 }

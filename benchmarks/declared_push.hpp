@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/statics/push_system.hpp"
 #include "coupling/statics/push_problem.hpp"
+#include "coupling/statics/push_system.hpp"
 #include "numerics/path.hpp"
 
 #include <functional>

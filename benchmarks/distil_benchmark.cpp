@@ -17,7 +17,8 @@ using namespace snare;
 
 /// The wire traced from the published tests.
 const reduction::WireFile& wire_file() {
-  static const reduction::WireFile file = reduction::read_wire_file(SNARE_BENCHMARK_DATA "/wires/traced_published.toml");
+  static const reduction::WireFile file =
+      reduction::read_wire_file(SNARE_BENCHMARK_DATA "/wires/traced_published.toml");
   return file;
 }
 
@@ -34,7 +35,7 @@ std::vector<double> travels() {
 }
 
 void TableForce(benchmark::State& state) {
-  const reduction::ForceTable& table = *distilled().table.loading;
+  const coupling::ForceTable& table = *distilled().table.loading;
   const std::vector<double> d = travels();
   std::size_t i = 0;
   for (auto _ : state) {
@@ -50,8 +51,8 @@ void LawForce(benchmark::State& state) {
   state.SetLabel(law.form->name());
   const std::vector<double> d = travels();
   std::size_t i = 0;
-  const std::function<double(double)> force = law.form->with(law.values);
-  for (auto _ : state) benchmark::DoNotOptimize(force(d[i++ % 4096]));
+  const coupling::SpringLawPointer spring = law.form->with(law.values);
+  for (auto _ : state) benchmark::DoNotOptimize(spring->force(d[i++ % 4096]));
 }
 BENCHMARK(LawForce)->DenseRange(0, 6);
 
@@ -79,8 +80,7 @@ void FullWireForce(benchmark::State& state) {
   coupling::PushProblem test = wire_file().cases.front().test;
   test.contact_position = 0.065;
   test.travel = {3e-3};
-  for (auto _ : state)
-    benchmark::DoNotOptimize(coupling::solve_push_extrapolated(test, {}).curve.points.back().force);
+  for (auto _ : state) benchmark::DoNotOptimize(coupling::solve_push_extrapolated(test, {}).curve.points.back().force);
 }
 BENCHMARK(FullWireForce)->Unit(benchmark::kMicrosecond);
 
@@ -117,8 +117,7 @@ void DefaultTableKnownCurves(benchmark::State& state) {
   reduction::CurveStore store(file.cases.front(), file.settings,
                               reduction::sampling_travel(file.cases.front(), file.settings));
   static_cast<void>(reduction::build_table(store, file.settings));
-  for (auto _ : state)
-    benchmark::DoNotOptimize(reduction::build_table(store, file.settings).loading_error.bound);
+  for (auto _ : state) benchmark::DoNotOptimize(reduction::build_table(store, file.settings).loading_error.bound);
 }
 BENCHMARK(DefaultTableKnownCurves)->Unit(benchmark::kMillisecond);
 

@@ -3,8 +3,8 @@
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
+#include "benchmarks/peers/cholmod.hpp"
 #include "numerics/bordered_pattern.hpp"
-#include "numerics/cholmod.hpp"
 #include "numerics/klu.hpp"
 
 #include <benchmark/benchmark.h>
@@ -138,10 +138,10 @@ void WholeOwnBordered(benchmark::State& state) {
   }
 }
 
-void StiffnessCholmod(benchmark::State& state, numerics::Cholmod::Ordering ordering) {
+void StiffnessCholmod(benchmark::State& state, Cholmod::Ordering ordering) {
   const LinearSystem s(static_cast<int>(state.range(0)));
   const SparseMatrix lower = lower_triangle(s.held);
-  numerics::Cholmod cholmod(lower, ordering);
+  Cholmod cholmod(lower, ordering);
   Eigen::VectorXd x;
   for (auto _ : state) {
     if (!cholmod.factorize(lower)) state.SkipWithError("a pivot vanishes");
@@ -173,8 +173,7 @@ void NewtonIterationOverYardstick(benchmark::State& state) {
   numerics::BorderedSystem assembled;
   std::vector<double> times;
   for (auto _ : state) {
-    times = median_times({[&] { newton_iteration(*s.wire.system, s.wire.point, workspace); },
-                          [&] { klu.run(s.right); },
+    times = median_times({[&] { newton_iteration(*s.wire.system, s.wire.point, workspace); }, [&] { klu.run(s.right); },
                           [&] { s.wire.system->assemble(s.wire.point, assembled, by_parameter); }},
                          51, 20);
   }
@@ -188,11 +187,11 @@ BENCHMARK(NewtonIterationOverYardstick)->Arg(128)->Arg(256)->Arg(512)->Iteration
 BENCHMARK(WholeBareKlu)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
 BENCHMARK(WholeKlu)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
 BENCHMARK(WholeOwnBordered)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(StiffnessCholmod, natural, numerics::Cholmod::Ordering::natural)
+BENCHMARK_CAPTURE(StiffnessCholmod, natural, Cholmod::Ordering::natural)
     ->Arg(256)
     ->Arg(512)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(StiffnessCholmod, minimum_degree, numerics::Cholmod::Ordering::approximate_minimum_degree)
+BENCHMARK_CAPTURE(StiffnessCholmod, minimum_degree, Cholmod::Ordering::approximate_minimum_degree)
     ->Arg(256)
     ->Arg(512)
     ->Unit(benchmark::kMicrosecond);

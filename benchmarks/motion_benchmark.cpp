@@ -2,9 +2,11 @@
 // cost, time a step against the number of elements, ten runs at once on one and two threads.
 
 #include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/contact/mesh_shape.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "validation/declared_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -21,7 +23,7 @@ constexpr double span = 175.0 * mm;
 
 coupling::Motion impact(int elements) {
   const wire::WireSpecification w = validation::declared_specification();
-  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
   // A damping ratio of 0.7 % at the first frequency of the straight wire (assumed; steel wires show 0.1 to 1 %).
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
   coupling::Motion motion;
@@ -36,7 +38,7 @@ coupling::Motion impact(int elements) {
   motion.bodies.push_back(body);
   coupling::MotionContact contact;
   contact.shape = std::make_shared<coupling::Ball>(radius);
-  contact.shape_position = {50.0 * mm, 100.0 * mm, 0.0};
+  contact.X_BS.p = {50.0 * mm, 100.0 * mm, 0.0};
   contact.wire_radius = 0.5 * w.diameter;
   contact.friction = {0.3, 0.1, 0.01, 1.0};
   motion.contacts.push_back(contact);
@@ -52,7 +54,8 @@ std::shared_ptr<const coupling::ContactShape> tessellated_ball(double radius, in
     const double tilt = std::numbers::pi * (k / (rings + 1.0) - 0.5);
     for (int j = 0; j < around; ++j) {
       const double a = 2.0 * std::numbers::pi * j / around;
-      m.points.emplace_back(radius * std::cos(tilt) * std::cos(a), radius * std::cos(tilt) * std::sin(a), radius * std::sin(tilt));
+      m.points.emplace_back(radius * std::cos(tilt) * std::cos(a), radius * std::cos(tilt) * std::sin(a),
+                            radius * std::sin(tilt));
     }
   }
   m.points.emplace_back(0.0, 0.0, radius);
@@ -151,14 +154,17 @@ void search(benchmark::State& state) {
   state.counters["search_seconds_a_step"] = result.search_seconds / static_cast<double>(result.statistics.steps);
   state.counters["search_share"] = result.search_seconds / result.wall_seconds;
 }
-BENCHMARK(search)->ArgNames({"elements", "mesh", "near"})->ArgsProduct({{1000}, {0, 1}, {0, 1}})->Unit(benchmark::kMillisecond);
+BENCHMARK(search)
+    ->ArgNames({"elements", "mesh", "near"})
+    ->ArgsProduct({{1000}, {0, 1}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 // For comparison: the distance of all 1001 vertices, which a search without bounds asks for at least once a step.
 void scan_all_vertices(benchmark::State& state) {
   const bool mesh = state.range(0) != 0;
   const coupling::Motion motion = impact(1000);
   const auto shape = mesh ? tessellated_ball(6.0 * mm, 50) : motion.contacts[0].shape;
-  const Eigen::Vector3d place = motion.bodies[0].start.position + motion.contacts[0].shape_position;
+  const Eigen::Vector3d place = motion.bodies[0].start.position + motion.contacts[0].X_BS.p;
   for (auto _ : state) {
     double least = 1.0;
     for (const auto& x : motion.wires[0].positions.colwise()) least = std::min(least, shape->distance(x - place));

@@ -3,9 +3,9 @@
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
+#include "benchmarks/peers/kinsol.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "numerics/bordered_pattern.hpp"
-#include "numerics/kinsol.hpp"
 #include "wire/equilibrium.hpp"
 
 #include <benchmark/benchmark.h>
@@ -40,8 +40,8 @@ void report(benchmark::State& state, const coupling::PushCurve& curve, int meshe
   state.counters["force_error"] = error;
   state.counters["newton_iterations"] = iterations;
   state.counters["newton_iterations_per_point_and_mesh"] = iterations_per_point(curve) / meshes;
-  state.counters["seconds_per_newton_iteration"] = benchmark::Counter(
-      iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["seconds_per_newton_iteration"] =
+      benchmark::Counter(iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 /// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes, extrapolated.
@@ -84,7 +84,7 @@ void EquilibriumOwnNewton(benchmark::State& state) {
   }
   if (!report.usable()) state.SkipWithError("not converged");
   state.counters["newton_iterations"] = report.iterations;
-  state.counters["force_N"] = point.border[1];
+  state.counters["force_N"] = wire.system->pusher_force(point).y();
 }
 
 /// The same step by KINSOL with KLU: analytic Jacobian refilled through its slots, tolerances as in ours; with the
@@ -118,7 +118,7 @@ void EquilibriumKinsol(benchmark::State& state) {
   start << wire.point.band, wire.point.border;
   assemble(start);
   const numerics::BorderedPattern pattern(bordered, numerics::BorderedPattern::Zeros::kept);
-  numerics::NonlinearSystem nonlinear;
+  NonlinearSystem nonlinear;
   nonlinear.pattern = pattern.pattern();
   nonlinear.residual = [&](const Eigen::VectorXd& u, Eigen::VectorXd& residual) {
     assemble(u);
@@ -131,14 +131,14 @@ void EquilibriumKinsol(benchmark::State& state) {
     if (!pattern.refill(bordered, jacobian)) throw std::runtime_error("the pattern has changed");
     for (std::size_t k = 0; k < jacobian.value.size(); ++k) jacobian.value[k] *= scale[jacobian.row[k]];
   };
-  numerics::KinsolOptions options;
+  KinsolOptions options;
   options.residual_tolerance = 1.0;
 
   numerics::SolveReport report;
   Eigen::VectorXd u;
   for (auto _ : state) {
     u = start;
-    report = numerics::solve_kinsol(nonlinear, u, options);
+    report = solve_kinsol(nonlinear, u, options);
     benchmark::DoNotOptimize(u.data());
   }
   if (!report.usable()) state.SkipWithError(report.message.c_str());

@@ -3,11 +3,9 @@
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(KLU REQUIRED)
-find_package(CHOLMOD REQUIRED)
-find_package(SUNDIALS 6.4 REQUIRED COMPONENTS kinsol idas nvecserial sunlinsolklu sunmatrixsparse)
+find_package(SUNDIALS 6.4 REQUIRED COMPONENTS idas nvecserial sunlinsolklu sunmatrixsparse)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(fmt REQUIRED)
-find_package(spdlog REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)

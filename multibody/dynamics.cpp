@@ -49,14 +49,13 @@ double along_axis(const TreeBody& body, const Wrench& f) {
 }
 
 Wrench apply(const ArticulatedInertia& inertia, const Twist& v) {
-  return {inertia.I * v.angular + inertia.H * v.linear,
-          inertia.H.transpose() * v.angular + inertia.M * v.linear};
+  return {inertia.I * v.angular + inertia.H * v.linear, inertia.H.transpose() * v.angular + inertia.M * v.linear};
 }
 
 /// The same inertia seen from the parent. After turning, with P = [p]x: H_P = H + P M, I_P = I - H P + P H_P^T.
 ArticulatedInertia to_outer(const ArticulatedInertia& inertia, const Pose& X_PB) {
   const Eigen::Matrix3d& R = X_PB.R;
-  const Eigen::Matrix3d P = skew(X_PB.p);
+  const Eigen::Matrix3d P = cross_matrix(X_PB.p);
   ArticulatedInertia out;
   out.M.noalias() = R * inertia.M * R.transpose();
   const Eigen::Matrix3d H = R * inertia.H * R.transpose();
@@ -184,7 +183,7 @@ const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd&
     workspace.bias[at(i)] = velocity_product(body, V, v);
     workspace.F_B[at(i)] = cross(V, body.inertia * V);
     if (!wrenches.empty()) workspace.F_B[at(i)] -= wrenches[at(i)];
-    workspace.articulated[at(i)] = {body.inertia.rotational, skew(body.inertia.first_moment),
+    workspace.articulated[at(i)] = {body.inertia.rotational, cross_matrix(body.inertia.first_moment),
                                     body.inertia.mass * Eigen::Matrix3d::Identity()};
   }
   // Inwards: what is left of inertia and bias once the joint gives way.
@@ -213,8 +212,7 @@ const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd&
     left.I.noalias() -= U.moment * moment.transpose();
     left.H.noalias() -= U.moment * force.transpose();
     left.M.noalias() -= U.force * force.transpose();
-    const Wrench passed =
-        workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
+    const Wrench passed = workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
     const Pose& X = workspace.X_PB[at(i)];
     const ArticulatedInertia felt = to_outer(left, X);
     ArticulatedInertia& parent = workspace.articulated[at(body.parent)];

@@ -36,10 +36,10 @@ Wrench apply(const Matrix6& matrix, const Twist& v) {
 ///   2 B u = V x* (I u) - I (V x u) + u x* (I V)
 Matrix6 quadratic(const SpatialInertia& inertia, const Twist& V) {
   Matrix6 V_cross;
-  V_cross << skew(V.angular), Eigen::Matrix3d::Zero(), skew(V.linear), skew(V.angular);
+  V_cross << cross_matrix(V.angular), Eigen::Matrix3d::Zero(), cross_matrix(V.linear), cross_matrix(V.angular);
   const Matrix6 carried = inertia.matrix() * V_cross;
   const Wrench momentum = inertia * V;
-  const Eigen::Matrix3d n = skew(momentum.moment), f = skew(momentum.force);
+  const Eigen::Matrix3d n = cross_matrix(momentum.moment), f = cross_matrix(momentum.force);
   Matrix6 turned;
   turned << -n, -f, -f, Eigen::Matrix3d::Zero();
   return turned - carried - carried.transpose();  // V x* = -(V x)^T
@@ -139,10 +139,8 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
           const Twist T_psi = cross(V_below, T);
           const Twist T_psi_rate = cross(A_below, T) + cross(V_below, T_psi);
           const Twist T_rate = cross(d.V_W[at(j)], T);
-          d.position(column, bearer.v_index + l) =
-              row_quadratic.dot(T_psi.vector()) + dot(S, inertia * T_psi_rate);
-          d.velocity(column, bearer.v_index + l) =
-              row_quadratic.dot(T.vector()) + dot(S, inertia * (T_psi + T_rate));
+          d.position(column, bearer.v_index + l) = row_quadratic.dot(T_psi.vector()) + dot(S, inertia * T_psi_rate);
+          d.velocity(column, bearer.v_index + l) = row_quadratic.dot(T.vector()) + dot(S, inertia * (T_psi + T_rate));
         }
       }
     }
@@ -182,7 +180,7 @@ Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const E
   const double scale = 2.0 / (w * w + u.squaredNorm());
   Eigen::Matrix<double, 6, 7> motion = Eigen::Matrix<double, 6, 7>::Zero();
   motion.block<3, 1>(0, 3) = -scale * u;
-  motion.block<3, 3>(0, 4) = scale * (w * Eigen::Matrix3d::Identity() - skew(u));
+  motion.block<3, 3>(0, 4) = scale * (w * Eigen::Matrix3d::Identity() - cross_matrix(u));
   motion.block<3, 3>(3, 0) = joint_pose(body, q).R.transpose();
   return motion;
 }
@@ -207,15 +205,15 @@ FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, con
   FreeRateDerivatives d{Eigen::Matrix<double, 7, 7>::Zero(), Eigen::Matrix<double, 7, 6>::Zero()};
   // p' = R v, and a turn dtheta of the body changes R v by R (dtheta x v).
   d.by_coordinates.topRightCorner<3, 4>() =
-      -R * skew(linear) * free_coordinate_motion(body, q).topRightCorner<3, 4>();
+      -R * cross_matrix(linear) * free_coordinate_motion(body, q).topRightCorner<3, 4>();
   d.by_velocities.topRightCorner<3, 3>() = R;
   // w' = -u.omega / 2, u' = (w omega + u x omega) / 2.
   d.by_coordinates.block<1, 3>(3, 4) = -0.5 * omega.transpose();
   d.by_coordinates.block<3, 1>(4, 3) = 0.5 * omega;
-  d.by_coordinates.block<3, 3>(4, 4) = -0.5 * skew(omega);
+  d.by_coordinates.block<3, 3>(4, 4) = -0.5 * cross_matrix(omega);
   d.by_velocities.block<1, 3>(3, 0) = -0.5 * q.segment<3>(i + 4).transpose();
   d.by_velocities.block<3, 3>(4, 0) =
-      0.5 * (q[i + 3] * Eigen::Matrix3d::Identity() + skew(q.segment<3>(i + 4)));
+      0.5 * (q[i + 3] * Eigen::Matrix3d::Identity() + cross_matrix(q.segment<3>(i + 4)));
   return d;
 }
 

@@ -13,8 +13,7 @@ namespace snare::multibody {
 struct InverseDynamicsDerivatives {
   explicit InverseDynamicsDerivatives(const Tree& tree);
 
-  Eigen::MatrixXd
-      position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities, as `moved` moves q
+  Eigen::MatrixXd position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities, as `moved` moves q
   Eigen::MatrixXd velocity;  ///< d tau / d v, (nv x nv)
   Eigen::MatrixXd mass;      ///< d tau / d v' = H(q), (nv x nv)
 
@@ -48,16 +47,14 @@ struct MomentumDerivatives {
 /// N(q) in q' = N(q) v. The derivative with respect to q itself is `position` times this.
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);
 /// The block of one body on a free joint.
-[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body,
-                                                                 const Eigen::VectorXd& q);
+[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q);
 
 /// Derivatives of `free_coordinate_rate`.
 struct FreeRateDerivatives {
   Eigen::Matrix<double, 7, 7> by_coordinates;
   Eigen::Matrix<double, 7, 6> by_velocities;
 };
-[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body,
-                                                                     const Eigen::VectorXd& q,
+[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                      const Eigen::VectorXd& v);
 
 }  // namespace snare::multibody

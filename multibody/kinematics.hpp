@@ -54,7 +54,8 @@ struct FrameMotion {
 /// each velocity.                                                                                    theory.md (A.4)
 [[nodiscard]] Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame);
 /// The same of a point p_W [m] of a body.
-[[nodiscard]] Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W);
+[[nodiscard]] Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body,
+                                      const Eigen::Vector3d& p_W);
 /// Its rate dJ/dt along the motion in `kinematics`.
 [[nodiscard]] Matrix6X frame_jacobian_rate(const Tree& tree, const Kinematics& kinematics, int frame);
 

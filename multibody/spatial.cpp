@@ -5,7 +5,7 @@ namespace snare::multibody {
 SpatialInertia SpatialInertia::about_centre(double mass, const Eigen::Vector3d& centre,
                                             const Eigen::Matrix3d& inertia) {
   // Parallel axes: I_O = I_C - m [c]x [c]x.
-  const Eigen::Matrix3d c = skew(centre);
+  const Eigen::Matrix3d c = cross_matrix(centre);
   return {mass, mass * centre, inertia - mass * c * c};
 }
 
@@ -22,7 +22,7 @@ SpatialInertia SpatialInertia::to_outer(const Pose& X_AB) const {
 }
 
 Matrix6 SpatialInertia::matrix() const {
-  const Eigen::Matrix3d h = skew(first_moment);
+  const Eigen::Matrix3d h = cross_matrix(first_moment);
   Matrix6 m;
   m << rotational, h, h.transpose(), mass * Eigen::Matrix3d::Identity();
   return m;
@@ -33,7 +33,7 @@ Eigen::Vector3d SpatialInertia::centre() const {
 }
 
 Eigen::Matrix3d SpatialInertia::about_own_centre() const {
-  const Eigen::Matrix3d c = skew(centre());
+  const Eigen::Matrix3d c = cross_matrix(centre());
   return rotational + mass * c * c;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "numerics/cross_matrix.hpp"
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -8,12 +10,7 @@ namespace snare::multibody {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// [a]x, the matrix of the cross product: skew(a) b = a x b.
-[[nodiscard]] inline Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d m;
-  m << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return m;
-}
+using numerics::cross_matrix;
 
 /// Spatial motion: angular velocity and the velocity of the body's point that is at the origin.   theory.md (A.1)
 /// Velocities [rad/s, m/s], accelerations [rad/s^2, m/s^2] or joint axes [rad, m per unit of the coordinate].
@@ -117,8 +114,7 @@ struct SpatialInertia {
                                                    const Eigen::Matrix3d& inertia);
   /// Momentum of the motion v, or the wrench that gives the acceleration v at rest.
   [[nodiscard]] Wrench operator*(const Twist& v) const {
-    return {rotational * v.angular + first_moment.cross(v.linear),
-            mass * v.linear - first_moment.cross(v.angular)};
+    return {rotational * v.angular + first_moment.cross(v.linear), mass * v.linear - first_moment.cross(v.angular)};
   }
   /// The same body seen from A, this being seen from B.
   [[nodiscard]] SpatialInertia to_outer(const Pose& X_AB) const;

@@ -10,9 +10,7 @@ namespace {
 
 /// R of the quaternion w, x, y, z over its norm.
 Eigen::Matrix3d rotation(const Eigen::VectorXd& q, int first) {
-  return Eigen::Quaterniond(q[first], q[first + 1], q[first + 2], q[first + 3])
-      .normalized()
-      .toRotationMatrix();
+  return Eigen::Quaterniond(q[first], q[first + 1], q[first + 2], q[first + 3]).normalized().toRotationMatrix();
 }
 
 /// Rodrigues' formula about a unit axis.
@@ -31,8 +29,8 @@ Tree::Tree() {
   frames_.push_back({"world", -1, {}});
 }
 
-int Tree::add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
-                     const Pose& X_FJ, const SpatialInertia& inertia) {
+int Tree::add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis, const Pose& X_FJ,
+                     const SpatialInertia& inertia) {
   if (find_frame(name) >= 0) throw std::invalid_argument("the name " + name + " is taken");
   TreeBody body;
   body.name = name;
@@ -146,13 +144,12 @@ Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::V
     const double angle = theta.norm();
     const double s2 = std::sin(0.5 * angle);
     const double first = angle > 1e-4 ? 2.0 * s2 * s2 / (angle * angle) : 0.5 - angle * angle / 24.0;
-    const double second = angle > 1e-2 ? (angle - std::sin(angle)) / (angle * angle * angle)
-                                       : 1.0 / 6.0 - angle * angle / 120.0;
+    const double second =
+        angle > 1e-2 ? (angle - std::sin(angle)) / (angle * angle * angle) : 1.0 / 6.0 - angle * angle / 120.0;
     const Eigen::Vector3d turned = theta.cross(shift);
     next.segment<3>(i) += rotation(q, i + 3) * (shift + first * turned + second * theta.cross(turned));
     const double half = angle > 1e-8 ? s2 / angle : 0.5;
-    const Eigen::Quaterniond step(std::cos(0.5 * angle), half * theta.x(), half * theta.y(),
-                                  half * theta.z());
+    const Eigen::Quaterniond step(std::cos(0.5 * angle), half * theta.x(), half * theta.y(), half * theta.z());
     const Eigen::Quaterniond now(q[i + 3], q[i + 4], q[i + 5], q[i + 6]);
     const Eigen::Quaterniond then = (now * step).normalized();
     next.segment<4>(i + 3) << then.w(), then.x(), then.y(), then.z();

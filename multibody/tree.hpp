@@ -50,8 +50,8 @@ class Tree {
 
   /// Adds a body on a joint whose frame has the pose X_FJ in an existing frame; the axis is made a unit vector. Returns
   /// the index of the body's frame. Throws std::invalid_argument for a name that is taken, or no axis.
-  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
-                 const Pose& X_FJ, const SpatialInertia& inertia);
+  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis, const Pose& X_FJ,
+                 const SpatialInertia& inertia);
   /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its mass is
   /// nothing.
   int add_fixed(int frame, const std::string& name, const Pose& X_FB, const SpatialInertia& inertia = {});
@@ -96,16 +96,14 @@ struct TreeState {
 [[nodiscard]] Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q);
 
 /// q' = N(q) v, with the unit quaternion's rate 1/2 quat * (0, omega).                               theory.md (A.3)
-[[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q,
-                                              const Eigen::VectorXd& v);
+[[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v);
 
 /// The same of one body on a free joint.
 [[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                const Eigen::VectorXd& v);
 
 /// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come out unit.
-[[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                    double time);
+[[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time);
 
 /// Divides the quaternions by their norms.
 void normalise(const Tree& tree, Eigen::VectorXd& q);

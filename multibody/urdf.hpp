@@ -1,7 +1,7 @@
 #pragma once
 
-#include "multibody/tree.hpp"
 #include "base/errors.hpp"
+#include "multibody/tree.hpp"
 
 #include <filesystem>
 #include <limits>
@@ -46,8 +46,7 @@ struct RobotDescription {
 [[nodiscard]] RobotDescription parse_urdf(const std::string& file, const std::string& text);
 
 /// What is wrong with the text, in the order of the lines. Empty: urdfdom may read it.
-[[nodiscard]] std::vector<base::InputProblem> check_urdf(const std::string& file,
-                                                             const std::string& text);
+[[nodiscard]] std::vector<base::InputProblem> check_urdf(const std::string& file, const std::string& text);
 
 /// How the root link is joined to the frame that it is put on.
 enum class RootJoint { fixed, free };

@@ -70,9 +70,15 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
   // 5 and 10 are the bandwidths of the planar and of the spatial rod.
   bool factored = false;
   switch (a.half_bandwidth()) {
-    case 5: factored = factorize_band<5>(l_, inverse_); break;
-    case 10: factored = factorize_band<10>(l_, inverse_); break;
-    default: factored = factorize_band<0>(l_, inverse_); break;
+    case 5:
+      factored = factorize_band<5>(l_, inverse_);
+      break;
+    case 10:
+      factored = factorize_band<10>(l_, inverse_);
+      break;
+    default:
+      factored = factorize_band<0>(l_, inverse_);
+      break;
   }
   if (!factored) return false;
   double smallest = std::numeric_limits<double>::max();

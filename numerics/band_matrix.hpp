@@ -55,7 +55,7 @@ class SymmetricBandMatrix {
   std::vector<double> values_;
 };
 
-/// A = L D L^T of a symmetric band matrix without pivoting; n b^2 operations.
+/// A = L D L^T of a symmetric band matrix without pivoting; n b^2 operations.               theory.md (N.2)
 ///
 /// By Sylvester's law the signs of D are the signs of the eigenvalues of A, which decides stability. Without
 /// pivoting the factorisation is accurate while no leading minor is nearly singular; `pivot_share()` tells.

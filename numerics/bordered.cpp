@@ -10,15 +10,6 @@
 
 namespace snare::numerics {
 
-void BorderedSystem::reset(int n, int m) {
-  band_residual.setZero(n);
-  border_residual.setZero(m);
-  corner.setZero(m, m);
-  rows.clear();
-  anchors.clear();
-  columns.clear();
-}
-
 BorderedSolver::BorderedSolver() = default;
 BorderedSolver::~BorderedSolver() = default;
 BorderedSolver::BorderedSolver(BorderedSolver&&) noexcept = default;

@@ -1,47 +1,14 @@
 #pragma once
 
 #include "numerics/band_matrix.hpp"
+#include "numerics/bordered_system.hpp"
 
 #include <Eigen/Core>
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace snare::numerics {
-
-/// Linear system of a band matrix with a border of m further unknowns and equations:
-///
-///   [ K  C ] [dq]     [ r_q ]
-///   [ D  E ] [db] = - [ r_b ]          K: n x n symmetric band, C: n x m, D: m x n sparse, E: m x m
-///
-/// Some columns of C are -e_i: border unknown j is the force that holds band unknown i ("anchor"). The solver
-/// adds a stiffness to K at the anchors and takes it back through the border (exactly), so that K stays well
-/// conditioned where the unloaded structure is soft or unstable; its inertia is then that of the structure
-/// held at its contacts.                                                              theory.md (N.3)
-class BorderedSystem {
- public:
-  struct Entry {
-    int row;     ///< border equation
-    int column;  ///< band unknown
-    double value;
-  };
-  struct Anchor {
-    int band;    ///< band unknown i that is held
-    int border;  ///< border unknown j: the force on it
-  };
-
-  SymmetricBandMatrix matrix;        ///< K
-  Eigen::VectorXd band_residual;     ///< r_q (n)
-  Eigen::VectorXd border_residual;   ///< r_b (m)
-  Eigen::MatrixXd corner;            ///< E (m x m)
-  std::vector<Entry> rows;           ///< D
-  std::vector<Anchor> anchors;       ///< columns of C that are -e_i
-  std::vector<std::pair<int, const Eigen::VectorXd*>> columns;  ///< dense columns of C: border unknown, values
-
-  /// Clears residuals and structure for m border unknowns; K is left to the caller.
-  void reset(int n, int m);
-};
 
 class Klu;
 
@@ -72,18 +39,17 @@ class BorderedSolver {
   [[nodiscard]] Eigen::VectorXd solved_column(std::size_t k) const;
 
  private:
-
   [[nodiscard]] bool factorize_blocks(const BorderedSystem& system);
   [[nodiscard]] bool blocks_are_accurate(const BorderedSystem& system) const;
 
   BandLdlt factor_;
   std::unique_ptr<Klu> whole_;
-  double stiffness_ = 0.0;             // added at the anchors
-  Eigen::MatrixXd solved_;             // K^-1 [anchor columns, dense columns]
-  std::vector<int> column_of_;         // border unknown of each column of solved_
+  double stiffness_ = 0.0;      // added at the anchors
+  Eigen::MatrixXd solved_;      // K^-1 [anchor columns, dense columns]
+  std::vector<int> column_of_;  // border unknown of each column of solved_
   std::size_t anchor_count_ = 0;
   std::vector<BorderedSystem::Entry> rows_;  // D with the anchors' stiffness taken back
-  Eigen::MatrixXd inverse_;            // of the Schur complement
+  Eigen::MatrixXd inverse_;                  // of the Schur complement
   int determinant_sign_ = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numerics/bordered.hpp"
+#include "numerics/bordered_system.hpp"
 #include "numerics/sparse_matrix.hpp"
 
 #include <vector>
@@ -40,13 +40,13 @@ class BorderedPattern {
   int m_ = 0;
   int b_ = 0;
   SparseMatrix pattern_;
-  std::vector<int> lower_;      // of the band, stored column by column as in SymmetricBandMatrix
-  std::vector<int> upper_;      // of the mirrored entries
-  std::vector<Slot> rows_;      // D
-  std::vector<Slot> anchors_;   // columns of C that are -e_i
-  std::vector<Slot> columns_;   // dense columns of C: their entries one column after the other
-  std::vector<int> borders_;    // border unknown of each dense column
-  std::vector<int> corner_;     // E, row by row
+  std::vector<int> lower_;     // of the band, stored column by column as in SymmetricBandMatrix
+  std::vector<int> upper_;     // of the mirrored entries
+  std::vector<Slot> rows_;     // D
+  std::vector<Slot> anchors_;  // columns of C that are -e_i
+  std::vector<Slot> columns_;  // dense columns of C: their entries one column after the other
+  std::vector<int> borders_;   // border unknown of each dense column
+  std::vector<int> corner_;    // E, row by row
 };
 
 }  // namespace snare::numerics

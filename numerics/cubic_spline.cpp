@@ -103,8 +103,7 @@ HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values
   area_.assign(knots_.size(), 0.0);
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];
-    area_[i + 1] =
-        area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
+    area_[i + 1] = area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
   }
 }
 
@@ -141,9 +140,9 @@ double HermiteCurve::integral(double x) const noexcept {
   const double t2 = t * t;
   const double t3 = t2 * t;
   const double t4 = t2 * t2;
-  return area_[i] + h * ((t - t3 + 0.5 * t4) * values_[i] + (t3 - 0.5 * t4) * values_[i + 1] +
-                         h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] +
-                              (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
+  return area_[i] +
+         h * ((t - t3 + 0.5 * t4) * values_[i] + (t3 - 0.5 * t4) * values_[i + 1] +
+              h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] + (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
 }
 
 std::vector<double> monotone_slopes(const std::vector<double>& knots, const std::vector<double>& values,

@@ -17,6 +17,10 @@ using VectorView = Eigen::Ref<const Eigen::VectorXd>;
 /// Whether the rate of an unknown appears in F(t, y, y') = 0.
 enum class DaeKind { differential, algebraic };
 
+/// Absolute tolerance of a stabilising multiplier, in any unit: none. Its round-off grows as one over the step, and what
+/// it does to other unknowns is tested there.
+constexpr double no_tolerance = 1e6;
+
 /// Unknowns that belong together, for tolerances and for messages.
 struct DaeBlock {
   std::string name;                     ///< "wire a position [m]"
@@ -34,12 +38,26 @@ class DaeLayout {
   int add(DaeBlock block);
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] const std::vector<DaeBlock>& blocks() const noexcept { return blocks_; }
-  /// "wire a position [m], vertex 12, y".
+  /// "wire a position [m], no. 12, y".
   [[nodiscard]] std::string name_of(int unknown) const;
 
  private:
   std::vector<DaeBlock> blocks_;
   int size_ = 0;
+};
+
+/// Values on a pattern, by row and column. What the pattern does not have is left out.
+class PatternValues {
+ public:
+  PatternValues(const SparseMatrix& pattern, std::vector<double>& values) : pattern_(pattern), values_(values) {}
+  void add(int row, int column, double value) const {
+    const int slot = pattern_.slot(row, column);
+    if (slot >= 0) values_[static_cast<std::size_t>(slot)] += value;
+  }
+
+ private:
+  const SparseMatrix& pattern_;
+  std::vector<double>& values_;
 };
 
 /// Where a residual is wanted: time [s], unknowns and their rates.
@@ -68,12 +86,12 @@ class DaePart {
   virtual void attach_pattern(const SparseMatrix& pattern) = 0;
   /// Adds to the rows of F.
   virtual void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) = 0;
-  /// Adds dF/dy + c dF/dy' to the values of the bound pattern.
+  /// Adds dF/dy + c dF/dy' to the values of the attached pattern.
   virtual void jacobian(const DaePoint& at, double c, std::vector<double>& values) = 0;
   /// Number of functions whose zeros stop the integration.
   [[nodiscard]] virtual int event_count() const { return 0; }
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
-  /// Told every accepted step. True: `couple` has changed (no restart is needed for that).
+  /// Told every accepted step. True: `sparsity` has changed (no restart is needed for that).
   virtual bool accept(const DaePoint& /*at*/) { return false; }
   /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the same making into
   /// the same state, bit by bit.

@@ -1,21 +1,17 @@
 #include "numerics/ida.hpp"
 
-#include "numerics/klu.hpp"
-#include "numerics/sundials.hpp"
+#include "numerics/ida_callbacks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <idas/idas.h>
-#include <sundials/sundials_linearsolver.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 #include <sunnonlinsol/sunnonlinsol_newton.h>
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <numeric>
 
 namespace snare::numerics {
@@ -30,177 +26,6 @@ using SunNonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSol
 struct IdaDeleter {
   void operator()(void* memory) const noexcept { IDAFree(&memory); }
 };
-
-Eigen::Map<Eigen::VectorXd> map(N_Vector v) {
-  return {N_VGetArrayPointer(v), N_VGetLength(v)};
-}
-
-/// Adds the wall time of a scope.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-/// What the C callbacks reach through their user pointer; an exception waits here until IDA has returned.
-struct Callbacks {
-  DaeSystem& system;
-  IdaStatistics statistics;
-  std::exception_ptr failure;
-  std::unique_ptr<Klu> klu;
-  int analysed_pattern = 0;
-  IdaIntegrals integrals{};
-  // Of the Newton iteration: the first correction of this step, and what the last rate of convergence leaves after one.
-  double first_correction = 0.0;
-  double remainder = unknown_remainder;
-
-  static constexpr double unknown_remainder = 20.0;
-
-  double relative_tolerance = 0.0;
-  Eigen::VectorXd tolerance{};  // absolute
-  Eigen::VectorXd scale{};      // of both: see Memory
-};
-
-/// A false result is positive for IDA: it tries a smaller step.
-template <class Work>
-int guarded(Callbacks& callbacks, const Work& work) {
-  try {
-    return work() ? 0 : 1;
-  } catch (...) {
-    callbacks.failure = std::current_exception();
-    return -1;
-  }
-}
-
-extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vector rows, void* data) {
-  auto& self = *static_cast<Callbacks*>(data);
-  return guarded(self, [&] {
-    const Stopwatch watch(self.statistics.residual_seconds);
-    ++self.statistics.residuals;
-    auto out = map(rows);
-    self.system.residual({t, map(y), map(rate)}, out);
-    return out.allFinite();
-  });
-}
-
-// The values stay in the system's own matrix, where the linear solver finds them; IDA's is a place-holder.
-extern "C" int snare_ida_weights(N_Vector y, N_Vector weights, void* data) {
-  const auto& self = *static_cast<const Callbacks*>(data);
-  auto out = map(weights);
-  out = (self.scale.array() * (self.relative_tolerance * map(y).array().abs() + self.tolerance.array())).inverse();
-  return out.allFinite() ? 0 : -1;
-}
-
-extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix,
-                                  void* data, N_Vector, N_Vector, N_Vector) {
-  auto& self = *static_cast<Callbacks*>(data);
-  return guarded(self, [&] {
-    const Stopwatch watch(self.statistics.jacobian_seconds);
-    ++self.statistics.jacobians;
-    self.system.jacobian({t, map(y), map(rate)}, c);
-    return true;
-  });
-}
-
-extern "C" int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype* values, void* data) {
-  auto& self = *static_cast<Callbacks*>(data);
-  return guarded(self, [&] {
-    self.system.events({t, map(y), map(rate)}, {values, static_cast<std::size_t>(self.system.event_count())});
-    return true;
-  });
-}
-
-extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vector values, void* data) {
-  auto& self = *static_cast<Callbacks*>(data);
-  return guarded(self, [&] {
-    const Stopwatch watch(self.statistics.integrand_seconds);
-    ++self.statistics.integrands;
-    auto out = map(values);
-    out.setZero();
-    self.integrals.rates({t, map(y), map(rate)}, out);
-    return out.allFinite();
-  });
-}
-
-Callbacks& content(SUNLinearSolver solver) {
-  return *static_cast<Callbacks*>(solver->content);
-}
-
-extern "C" SUNLinearSolver_Type snare_klu_type(SUNLinearSolver) {
-  return SUNLINEARSOLVER_DIRECT;
-}
-
-extern "C" int snare_klu_setup(SUNLinearSolver solver, SUNMatrix) {
-  Callbacks& self = content(solver);
-  return guarded(self, [&] {
-    const Stopwatch watch(self.statistics.factor_seconds);
-    self.remainder = Callbacks::unknown_remainder;
-    if (!self.klu || self.analysed_pattern != self.system.pattern_version()) {
-      self.klu = std::make_unique<Klu>(self.system.matrix());
-      self.analysed_pattern = self.system.pattern_version();
-      ++self.statistics.analyses;
-    }
-    ++self.statistics.factorizations;
-    return self.klu->factorize(self.system.matrix());
-  });
-}
-
-extern "C" int snare_klu_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
-  Callbacks& self = content(solver);
-  return guarded(self, [&] {
-    const Stopwatch watch(self.statistics.solve_seconds);
-    auto solution = map(x);
-    solution = map(b);
-    self.klu->solve(solution);
-    return solution.allFinite();
-  });
-}
-
-// IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
-// unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
-// quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10.
-extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype share,
-                                 N_Vector weight, void* data) {
-  auto& self = *static_cast<Callbacks*>(data);
-  constexpr double best_rate = 0.1;
-  constexpr double worst_rate = 0.9;
-  constexpr double converged_at_once = 1e-4;  // of the share
-  int iteration = 0;
-  SUNNonlinSolGetCurIter(solver, &iteration);
-  const double size = map(correction).cwiseProduct(map(weight)).lpNorm<Eigen::Infinity>();
-  if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;
-  if (iteration == 0) {
-    self.first_correction = size;
-    if (size <= converged_at_once * share) return SUN_NLS_SUCCESS;
-  } else {
-    const double rate = std::pow(size / self.first_correction, 1.0 / iteration);
-    if (rate > worst_rate) return SUN_NLS_CONV_RECVR;
-    self.remainder = rate / (1.0 - rate);
-  }
-  return std::max(self.remainder, best_rate) * size <= share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
-}
-
-SunLinearSolver make_linear_solver(Callbacks& callbacks, SUNContext context) {
-  SunLinearSolver solver(made(SUNLinSolNewEmpty(context), "SUNLinSolNewEmpty"));
-  solver->ops->gettype = snare_klu_type;
-  solver->ops->setup = snare_klu_setup;
-  solver->ops->solve = snare_klu_solve;
-  solver->ops->free = [](SUNLinearSolver s) {
-    s->content = nullptr;  // ours
-    SUNLinSolFreeEmpty(s);
-    return 0;
-  };
-  solver->content = &callbacks;
-  return solver;
-}
 
 std::string name_of(int code) {
   const std::unique_ptr<char, decltype(&std::free)> name(IDAGetReturnFlagName(code), &std::free);
@@ -227,7 +52,7 @@ Termination meaning(int code) {
 }  // namespace
 
 struct Ida::Memory {
-  Callbacks callbacks;
+  IdaCallbacks callbacks;
   IdaOptions options;
   sundials::Context context;
   Eigen::VectorXd y, rate, tolerance, identity, integrals;
@@ -251,13 +76,13 @@ struct Ida::Memory {
 };
 
 Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted)
-    : callbacks{system, {}, nullptr, nullptr, 0, std::move(wanted)},
+    : callbacks{system, {}, nullptr, nullptr, 0, std::move(wanted.rates)},
       options(chosen),
       y(Eigen::VectorXd::Zero(system.size())),
       rate(Eigen::VectorXd::Zero(system.size())),
       tolerance(system.size()),
       identity(system.size()),
-      integrals(Eigen::VectorXd::Zero(callbacks.integrals.count)),
+      integrals(Eigen::VectorXd::Zero(wanted.count)),
       y_view(view(y, context)),
       rate_view(view(rate, context)),
       tolerance_view(view(tolerance, context)),
@@ -348,8 +173,8 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   double t = 0.0;
   double c = 0.0;
   void* user = nullptr;
-  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows,
-                                &c, &user) != IDA_SUCCESS ||
+  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows, &c,
+                                &user) != IDA_SUCCESS ||
       predicted == nullptr || current == nullptr) {
     return {};
   }
@@ -366,8 +191,7 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   std::vector<int> order(static_cast<std::size_t>(size.size()));
   std::iota(order.begin(), order.end(), 0);
   const auto shown = std::min<std::ptrdiff_t>(5, size.size());
-  std::partial_sort(order.begin(), order.begin() + shown, order.end(),
-                    [&](int a, int b) { return size[a] > size[b]; });
+  std::partial_sort(order.begin(), order.begin() + shown, order.end(), [&](int a, int b) { return size[a] > size[b]; });
   std::vector<std::string> names;
   for (std::ptrdiff_t k = 0; k < shown; ++k) {
     names.push_back(callbacks.system.layout().name_of(order[static_cast<std::size_t>(k)]));
@@ -382,8 +206,8 @@ void Ida::Memory::fail(int code, const std::string& function) {
   report.worst_unknowns = worst_unknowns();
   report.time = time;
   if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS) report.step = 0.0;
-  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function,
-                               name_of(code), time, report.step, fmt::join(report.worst_unknowns, "; "));
+  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function, name_of(code),
+                               time, report.step, fmt::join(report.worst_unknowns, "; "));
 }
 
 Ida::Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals)
@@ -396,8 +220,7 @@ void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& ra
   memory_->begin(time, y, rate);
 }
 
-IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
-                                  double towards) {
+IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {
   Memory& m = *memory_;
   m.begin(time, y, rate);
   const int code = IDACalcIC(m.ida.get(), IDA_YA_YDP_INIT, towards);
@@ -509,27 +332,6 @@ Eigen::VectorXd Ida::interpolate_integrals(double time) const {
   const SunVector out = view(result, memory_->context);
   check(IDAGetQuadDky(memory_->ida.get(), time, 0, out.get()), "IDAGetQuadDky");
   return result;
-}
-
-IdaStatistics& IdaStatistics::operator+=(const IdaStatistics& other) {
-  steps += other.steps;
-  residuals += other.residuals;
-  jacobians += other.jacobians;
-  factorizations += other.factorizations;
-  analyses += other.analyses;
-  newton_iterations += other.newton_iterations;
-  newton_failures += other.newton_failures;
-  error_test_failures += other.error_test_failures;
-  restarts += other.restarts;
-  smallest_step = std::min(smallest_step, other.smallest_step);
-  largest_step = std::max(largest_step, other.largest_step);
-  integrands += other.integrands;
-  residual_seconds += other.residual_seconds;
-  jacobian_seconds += other.jacobian_seconds;
-  factor_seconds += other.factor_seconds;
-  solve_seconds += other.solve_seconds;
-  integrand_seconds += other.integrand_seconds;
-  return *this;
 }
 
 IdaReport integrate(Ida& ida, double end, const IdaObserver& observer) {

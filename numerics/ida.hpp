@@ -1,6 +1,7 @@
 #pragma once
 
 #include "numerics/dae.hpp"
+#include "numerics/ida_statistics.hpp"
 #include "numerics/report.hpp"
 
 #include <Eigen/Core>
@@ -36,30 +37,6 @@ struct IdaOptions {
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
 };
 
-/// What was done since the integrator was made.
-struct IdaStatistics {
-  long steps = 0;
-  long residuals = 0;
-  long jacobians = 0;
-  long factorizations = 0;
-  long analyses = 0;  ///< of the sparse pattern
-  long newton_iterations = 0;
-  long newton_failures = 0;
-  long error_test_failures = 0;
-  long restarts = 0;  ///< starts at first order, the first one included
-  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
-  double largest_step = 0.0;                                       ///< [s]
-  long integrands = 0;                                             ///< evaluations of IdaIntegrals::rates
-  double residual_seconds = 0.0;                                   ///< wall time in residuals [s]
-  double jacobian_seconds = 0.0;                                   ///< in Jacobians
-  double factor_seconds = 0.0;                                     ///< in KLU's analysis and factorisation
-  double solve_seconds = 0.0;                                      ///< in KLU's solution
-  double integrand_seconds = 0.0;                                  ///< in IdaIntegrals::rates
-
-  /// Adds what another integration of the same motion did.
-  IdaStatistics& operator+=(const IdaStatistics& other);
-};
-
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as
 /// the unknowns. What is linear in the unknowns and has f as its rate agrees with its integral to round-off and to what
 /// the Newton iteration leaves.                                                            theory.md (M.11)
@@ -70,8 +47,8 @@ struct IdaIntegrals {
 
 /// How an integration ended. On failure `message` names time, step and the worst rows.
 struct [[nodiscard]] IdaReport : SolveReport {
-  double time = 0.0;                  ///< reached [s]
-  double step = 0.0;                  ///< last tried [s]
+  double time = 0.0;                        ///< reached [s]
+  double step = 0.0;                        ///< last tried [s]
   std::vector<std::string> worst_unknowns;  ///< unknowns with the largest weighted errors, worst first
 };
 
@@ -89,8 +66,8 @@ class Ida;
 /// stop instead [s], or nothing.
 using IdaWatch = std::function<std::optional<double>(double from, const Ida& ida)>;
 
-/// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse Jacobian; the pattern is analysed
-/// when it changes only.                                                                  theory.md (M.1), (M.2)
+/// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse
+/// Jacobian; the pattern is analysed when it changes only.                                theory.md (M.1), (M.2)
 /// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up.
 class Ida {
  public:
@@ -103,8 +80,8 @@ class Ida {
   void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
   /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
   /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
-  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y,
-                                             const Eigen::VectorXd& rate, double towards);
+  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
+                                             double towards);
 
   /// For what no sign of a function shows, such as bodies that have passed through each other within a step.
   void watch(IdaWatch watch);

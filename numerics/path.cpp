@@ -11,8 +11,8 @@ namespace {
 // Newton's method on an assembled problem; `finish` completes system and residuals after each assembly,
 // `take` applies a step to the point.
 template <class Finish, class Take>
-SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations,
-                   const Finish& finish, const Take& take) {
+SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations, const Finish& finish,
+                   const Take& take) {
   SolveReport report;
   w.factored = false;
   double best = std::numeric_limits<double>::max();
@@ -28,7 +28,8 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       return report;
     }
     // The extra equation of the arc is linear and holds after one step; the first pass always takes one.
-    if (report.residual_norm <= 1.0 && (report.iterations > 0 || w.system.border_residual.size() == point.border.size())) {
+    if (report.residual_norm <= 1.0 &&
+        (report.iterations > 0 || w.system.border_residual.size() == point.border.size())) {
       report.termination = Termination::converged;
       return report;
     }
@@ -37,6 +38,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       report.termination = Termination::converged;
       return report;
     }
+    // No progress for three iterations ends it.
     worse = report.residual_norm < best ? 0 : worse + 1;
     // Round-off may keep the residual at some times its tolerance: no iteration lowers it then.
     if (worse > 0 && best <= 16.0 && report.residual_norm <= 16.0) {
@@ -55,6 +57,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       return report;
     }
     w.factored = true;
+    // [K C; D E] (dq, db) = -(r_q, r_b).                                                       theory.md (N.1)
     w.band_step = -w.system.band_residual;
     w.border_step = -w.system.border_residual;
     w.solver.solve(w.system, w.band_step, w.border_step);
@@ -65,6 +68,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       report.message = "the tangent matrix is nearly singular";
       return report;
     }
+    // No step moves a band unknown by more than a tenth of the length.
     if (far > 1.0) {
       w.band_step /= far;
       w.border_step /= far;
@@ -84,19 +88,18 @@ SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& works
       });
 }
 
-PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
-                    const PathTangent* like) {
+PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace, const PathTangent* like) {
   problem.assemble(point, workspace.system, workspace.by_parameter);
   PathTangent result;
   if (!workspace.solver.factorize(workspace.system)) return like != nullptr ? *like : result;
+  // [K C; D E] (q', b') = -(0, d r_b/d p) with p' = 1, then scaled to |q'|^2/n + p'^2 = 1.       theory.md (N.4)
   result.band.setZero(point.band.size());
   result.border = -workspace.by_parameter;
   workspace.solver.solve(workspace.system, result.band, result.border);
   const double norm = std::sqrt(result.band.squaredNorm() / static_cast<double>(point.band.size()) + 1.0);
   double factor = 1.0 / norm;
   if (like != nullptr) {
-    const double product =
-        like->band.dot(result.band) / static_cast<double>(point.band.size()) + like->parameter;
+    const double product = like->band.dot(result.band) / static_cast<double>(point.band.size()) + like->parameter;
     if (product < 0.0) factor = -factor;
   }
   result.band *= factor;
@@ -105,12 +108,12 @@ PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace&
   return result;
 }
 
-SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
-                          const PathTangent& direction, double step, PathWorkspace& workspace,
-                          int max_iterations) {
+SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start, const PathTangent& direction,
+                          double step, PathWorkspace& workspace, int max_iterations) {
   const auto n = static_cast<double>(point.band.size());
   const auto m = point.border.size();
   const auto finish = [&](PathWorkspace& w) {
+    // One more column, d r_b/d p, and one more row: q'.(q - q_0)/n + p'(p - p_0) - s = 0.        theory.md (N.5)
     BorderedSystem& s = w.system;
     s.corner.conservativeResize(m + 1, m + 1);
     s.corner.row(m).setZero();

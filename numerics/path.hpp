@@ -56,7 +56,7 @@ struct PathTangent {
 
 /// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to the
 /// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)
-SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
-                          const PathTangent& direction, double step, PathWorkspace& workspace, int max_iterations);
+SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start, const PathTangent& direction,
+                          double step, PathWorkspace& workspace, int max_iterations);
 
 }  // namespace snare::numerics

@@ -43,13 +43,6 @@ SparseMatrix make_pattern(int order, std::vector<std::pair<int, int>> entries) {
   return result;
 }
 
-namespace {
-
-struct Triplet {
-  int row, column;
-  double value;
-};
-
 SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {
   std::vector<std::pair<int, int>> pattern;
   pattern.reserve(triplets.size());
@@ -59,7 +52,8 @@ SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {
   return result;
 }
 
-void append_band(const SymmetricBandMatrix& matrix, Triangle triangle, std::vector<Triplet>& triplets) {
+std::vector<Triplet> triplets_of(const SymmetricBandMatrix& matrix, Triangle triangle) {
+  std::vector<Triplet> triplets;
   const int n = matrix.order();
   for (int j = 0; j < n; ++j) {
     for (int i = j; i <= std::min(n - 1, j + matrix.half_bandwidth()); ++i) {
@@ -68,34 +62,11 @@ void append_band(const SymmetricBandMatrix& matrix, Triangle triangle, std::vect
       if (i != j && triangle == Triangle::both) triplets.push_back({j, i, value});
     }
   }
+  return triplets;
 }
-
-}  // namespace
 
 SparseMatrix to_sparse(const SymmetricBandMatrix& matrix, Triangle triangle) {
-  std::vector<Triplet> triplets;
-  append_band(matrix, triangle, triplets);
-  return from_triplets(matrix.order(), triplets);
-}
-
-SparseMatrix to_sparse(const BorderedSystem& system) {
-  const int n = system.matrix.order();
-  const auto m = static_cast<int>(system.corner.rows());
-  std::vector<Triplet> triplets;
-  append_band(system.matrix, Triangle::both, triplets);
-  for (const BorderedSystem::Anchor& a : system.anchors) triplets.push_back({a.band, n + a.border, -1.0});
-  for (const auto& [border, values] : system.columns) {
-    for (int i = 0; i < n; ++i) {
-      if ((*values)[i] != 0.0) triplets.push_back({i, n + border, (*values)[i]});
-    }
-  }
-  for (const BorderedSystem::Entry& entry : system.rows) triplets.push_back({n + entry.row, entry.column, entry.value});
-  for (int i = 0; i < m; ++i) {
-    for (int j = 0; j < m; ++j) {
-      if (system.corner(i, j) != 0.0) triplets.push_back({n + i, n + j, system.corner(i, j)});
-    }
-  }
-  return from_triplets(n + m, triplets);
+  return from_triplets(matrix.order(), triplets_of(matrix, triangle));
 }
 
 }  // namespace snare::numerics

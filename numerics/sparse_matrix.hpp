@@ -1,7 +1,10 @@
 #pragma once
 
-#include "numerics/bordered.hpp"
+#include "numerics/band_matrix.hpp"
 
+#include <Eigen/Core>
+
+#include <utility>
 #include <vector>
 
 namespace snare::numerics {
@@ -22,11 +25,18 @@ struct SparseMatrix {
 /// Pattern from coordinates (i, j), repeated ones merged; values zero.
 [[nodiscard]] SparseMatrix make_pattern(int order, std::vector<std::pair<int, int>> entries);
 
-/// The whole matrix [K C; D E] of a bordered system, order n + m, for solvers that know no border.
-[[nodiscard]] SparseMatrix to_sparse(const BorderedSystem& system);
+/// One value to be added at (row, column).
+struct Triplet {
+  int row = 0;
+  int column = 0;
+  double value = 0.0;
+};
+/// The matrix of all of them, values at the same place added.
+[[nodiscard]] SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets);
 
-/// Lower triangle, or all, of a band matrix.
+/// Lower triangle, or all, of a band matrix, with the zeros within its band.
 enum class Triangle { lower, both };
+[[nodiscard]] std::vector<Triplet> triplets_of(const SymmetricBandMatrix& matrix, Triangle triangle);
 [[nodiscard]] SparseMatrix to_sparse(const SymmetricBandMatrix& matrix, Triangle triangle);
 
 }  // namespace snare::numerics

@@ -15,9 +15,9 @@ SunVector view(Eigen::VectorXd& v, SUNContext context) {
 }
 
 SunMatrix make_matrix(const SparseMatrix& pattern, SUNContext context) {
-  SunMatrix matrix(made(SUNSparseMatrix(pattern.order, pattern.order, static_cast<sunindextype>(pattern.row.size()),
-                                        CSC_MAT, context),
-                        "SUNSparseMatrix"));
+  SunMatrix matrix(made(
+      SUNSparseMatrix(pattern.order, pattern.order, static_cast<sunindextype>(pattern.row.size()), CSC_MAT, context),
+      "SUNSparseMatrix"));
   copy(pattern, matrix.get());
   return matrix;
 }

@@ -4,10 +4,10 @@
 #include "numerics/sparse_matrix.hpp"
 
 #include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.hpp>
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nvector.h>
+#include <sundials/sundials_context.hpp>
 
 #include <Eigen/Core>
 

@@ -1,18 +1,18 @@
 #include "reduction/curve_store.hpp"
 
-#include "coupling/statics/push_solver.hpp"
 #include "base/files.hpp"
 #include "base/parallel.hpp"
+#include "coupling/statics/push_solver.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <mutex>
 #include <string_view>
 #include <system_error>
 
@@ -28,18 +28,16 @@ std::uint64_t fnv1a(std::string_view text) {
 }
 
 /// Everything that a curve depends on but its place, as text.
-std::string identity(const WireCase& wire, const DistilSettings& settings,
-                     const std::vector<double>& travel) {
+std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
   const coupling::PushProblem& t = wire.test;
   std::string text = fmt::format(
       "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} "
       "g {} {} {} "
       "rho {} elements {} {}",
-      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature,
-      t.wire.torsional_stiffness(), t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius,
-      t.pusher.radius, t.pusher.friction, t.pusher.compliance, static_cast<int>(t.pusher.direction),
-      t.pusher.misalignment, t.bulge.mode, t.bulge.plane, t.gravity[0], t.gravity[1], t.gravity[2],
-      t.wire.mass_per_length(), settings.elements, settings.extrapolate);
+      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature, t.wire.torsional_stiffness(),
+      t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius, t.pusher.radius, t.pusher.friction,
+      t.pusher.compliance, static_cast<int>(t.pusher.direction), t.pusher.misalignment, t.bulge.mode, t.bulge.plane,
+      t.gravity[0], t.gravity[1], t.gravity[2], t.wire.mass_per_length(), settings.elements, settings.extrapolate);
   const auto add = [&](const char* name, const std::optional<double>& value) {
     if (value) text += fmt::format(" {} {}", name, *value);
   };
@@ -47,8 +45,8 @@ std::string identity(const WireCase& wire, const DistilSettings& settings,
   add("kr", t.mount.rotational_stiffness);
   add("slip", t.mount.slip_tension);
   if (t.wire.strand_friction)
-    text += fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness,
-                        t.wire.strand_friction->slip_curvature);
+    text +=
+        fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness, t.wire.strand_friction->slip_curvature);
   // The curvature at which metal yields depends on the diameter.
   if (t.wire.yielding)
     text += fmt::format(" yield {} {} {} {}", t.wire.yielding->yield_stress, t.wire.yielding->hardening_ratio,
@@ -64,9 +62,9 @@ void append(std::string& text, const std::vector<double>& values) {
 }
 
 /// One line of the journal: identity, place, curve, and the hash of all that.
-std::string journal_line(const std::string& identity, const CurvePlace& place, const WireCurve& curve) {
-  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack,
-                                 curve.discretisation_error, curve.largest_strain, curve.dissipated);
+std::string journal_line(const std::string& identity, const CurvePlace& place, const PushedCurve& curve) {
+  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack, curve.discretisation_error,
+                                 curve.largest_strain, curve.dissipated);
   append(text, curve.loading);
   append(text, curve.unloading);
   return fmt::format("{} {:016x}\n", text, fnv1a(text));
@@ -124,13 +122,12 @@ void CurveStore::read_journal() {
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
     const std::size_t last = line.rfind(' ');
-    if (last == std::string_view::npos ||
-        line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last))))
+    if (last == std::string_view::npos || line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last))))
       continue;
     if (line.substr(0, identity_.size()) != identity_) continue;
     NumberReader numbers(line.substr(identity_.size(), last - identity_.size()));
     CurvePlace place;
-    WireCurve curve;
+    PushedCurve curve;
     place.position = numbers.next();
     place.slack = numbers.next();
     curve.discretisation_error = numbers.next();
@@ -143,7 +140,7 @@ void CurveStore::read_journal() {
   }
 }
 
-WireCurve CurveStore::solve(const CurvePlace& place) const {
+PushedCurve CurveStore::solve(const CurvePlace& place) const {
   coupling::PushProblem test = wire_.test;
   test.contact_position = place.position;
   test.wire.length = test.mount.span + place.slack;
@@ -158,7 +155,7 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
   else
     solution.curve = coupling::solve_push(test, options);
 
-  WireCurve curve;
+  PushedCurve curve;
   std::vector<double> force;
   bool stable = true;
   const std::vector<coupling::PushPoint>& points = solution.curve.points;
@@ -170,19 +167,18 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
       break;
     }
     force.push_back(points[i].force);
-    curve.largest_strain =
-        std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
+    curve.largest_strain = std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
     curve.dissipated = points[i].dissipated;
     if (i < solution.discretisation_error.size())
       curve.discretisation_error = std::max(curve.discretisation_error, solution.discretisation_error[i]);
   }
   curve.complete = force.size() == test.travel.size();
   if (!curve.complete) {
-    const std::string reason = !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm",
-                                                     1e3 * test.travel[force.size()])
-                                       : solution.curve.report.message;
-    curve.stopped = fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position,
-                                1e3 * place.slack, reason);
+    const std::string reason =
+        !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm", 1e3 * test.travel[force.size()])
+                : solution.curve.report.message;
+    curve.stopped =
+        fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position, 1e3 * place.slack, reason);
   }
   const std::size_t up = std::min(force.size(), travel_.size());
   curve.loading.assign(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(up));
@@ -192,8 +188,7 @@ WireCurve CurveStore::solve(const CurvePlace& place) const {
   return curve;
 }
 
-numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
-                                         const SamplingObserver& observer) {
+numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, const SamplingObserver& observer) {
   std::vector<CurvePlace> wanted;
   for (CurvePlace place : places) {
     place.position = folded(place.position);
@@ -207,13 +202,13 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
     if (!journal) throw std::system_error(errno, std::generic_category(), journal_.string());
     std::fputs("\n", journal.get());  // ends a torn line
   }
-  std::vector<WireCurve> results(wanted.size());
+  std::vector<PushedCurve> results(wanted.size());
   std::atomic<bool> stop{false};
   std::size_t finished = 0;
   std::mutex finishing;  // journal, results and observer take one curve at a time
   base::parallel_for(wanted.size(), [&](std::size_t k) {
     if (stop) return;
-    WireCurve curve = solve(wanted[k]);
+    PushedCurve curve = solve(wanted[k]);
     const std::lock_guard lock(finishing);
     ++finished;
     if (journal && curve.complete) {

@@ -20,11 +20,10 @@ struct CurvePlace {
   friend auto operator<=>(const CurvePlace&, const CurvePlace&) = default;
 };
 
-/// The full wire's force at the store's travels. Dissipative wires are loaded to the end of the travel and unloaded.
-struct WireCurve {
-  std::vector<double> loading;  ///< force [N], one a travel
-  std::vector<double>
-      unloading;  ///< on the way back, at the same travels; empty where nothing dissipates [N]
+/// The full wire's force as it is pushed through the store's travels. Dissipative wires are loaded to the end of the travel and unloaded.
+struct PushedCurve {
+  std::vector<double> loading;        ///< force [N], one a travel
+  std::vector<double> unloading;      ///< on the way back, at the same travels; empty where nothing dissipates [N]
   double discretisation_error = 0.0;  ///< largest estimate over the curve [N]
   double largest_strain = 0.0;        ///< of the wire at the left mount [-]
   double dissipated = 0.0;            ///< by friction on the pusher over load and unload [J]
@@ -50,8 +49,8 @@ class CurveStore {
                                              const SamplingObserver& observer = {});
 
   /// A curve that was sampled; throws std::out_of_range for another place.
-  [[nodiscard]] const WireCurve& at(const CurvePlace& place) const { return curves_.at(place); }
-  [[nodiscard]] const std::map<CurvePlace, WireCurve>& curves() const noexcept { return curves_; }
+  [[nodiscard]] const PushedCurve& at(const CurvePlace& place) const { return curves_.at(place); }
+  [[nodiscard]] const std::map<CurvePlace, PushedCurve>& curves() const noexcept { return curves_; }
   [[nodiscard]] const std::vector<double>& travel() const noexcept { return travel_; }
   [[nodiscard]] const WireCase& wire() const noexcept { return wire_; }
   [[nodiscard]] std::size_t solved() const noexcept { return solved_; }  ///< curves that were computed here
@@ -59,7 +58,7 @@ class CurveStore {
   [[nodiscard]] double folded(double position) const noexcept;
 
  private:
-  [[nodiscard]] WireCurve solve(const CurvePlace& place) const;
+  [[nodiscard]] PushedCurve solve(const CurvePlace& place) const;
   void read_journal();
 
   WireCase wire_;
@@ -67,7 +66,7 @@ class CurveStore {
   std::vector<double> travel_;
   std::filesystem::path journal_;
   std::string identity_;  // of the case and the settings: hash in hexadecimal digits
-  std::map<CurvePlace, WireCurve> curves_;
+  std::map<CurvePlace, PushedCurve> curves_;
   std::size_t solved_ = 0;
 };
 

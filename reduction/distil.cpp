@@ -30,17 +30,16 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
   std::vector<std::size_t> fit_at;
   for (std::size_t i = 0; i < store.travel().size(); i += fit_every) fit_at.push_back(i);
   for (const double s : wire.law_positions) {
-    const WireCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
+    const PushedCurve& curve = store.at({store.folded(s), wire.nominal_slack()});
     DistilledPlace place{s, numerics::HermiteCurve(store.travel(), curve.loading), {}, {}, {}, {}, {}, {}};
     const coupling::LawPlace geometry{wire.test.mount.span, s, wire.test.wire.length,
-                            wire.test.wire.bending_stiffness()};
+                                      wire.test.wire.bending_stiffness()};
     for (const coupling::LawFormPointer& form : coupling::law_forms(geometry)) {
       FittedLaw law = fit_law(form, place.full, fit_at);
       if (law.values.size() > 0) place.laws.push_back(std::move(law));
     }
     place.stiffness = stiffness_curve(place.full, stiffness_points);
-    if (!wire.law_offsets.empty())
-      place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
+    if (!wire.law_offsets.empty()) place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
     if (!curve.unloading.empty()) {
       const numerics::HermiteCurve back(store.travel(), curve.unloading);
       place.dissipation = dissipation(place.full, back);
@@ -54,8 +53,8 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
 namespace {
 
 /// Impacts on the full wire at every law position.
-numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings& impacts, std::vector<DistilledPlace>& places,
-                                     const SamplingObserver& observer) {
+numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings& impacts,
+                                     std::vector<DistilledPlace>& places, const SamplingObserver& observer) {
   numerics::SolveReport report;
   const std::size_t wanted = places.size() * impacts.speeds.size();
   std::size_t finished = 0;
@@ -80,8 +79,7 @@ numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings&
 
 }  // namespace
 
-Distillation distil(const WireFile& file, const std::filesystem::path& journal,
-                    const SamplingObserver& observer) {
+Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer) {
   Distillation result;
   for (const WireCase& wire : file.cases) {
     CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal);

@@ -53,10 +53,8 @@ std::string head(const DistilledCase& one, const std::string& title, const std::
   std::string text;
   for (const std::string& line :
        {title_line,
-        std::string(
-            "Force of a snare wire on a pusher, distilled from the full wire by snare. SI units: m, N."),
-        "travel d from first touch: " + range(0), "position s along the chord: " + range(1),
-        "slack: " + range(2),
+        std::string("Force of a snare wire on a pusher, distilled from the full wire by snare. SI units: m, N."),
+        "travel d from first touch: " + range(0), "position s along the chord: " + range(1), "slack: " + range(2),
         fmt::format("table within {:.4g} N of the full wire ({:.3g} % of the range of the force)", e.bound,
                     100.0 * e.bound / e.force_range),
         std::string(one.wire.dissipates() ? "force: loading; force_unloading: the way back from the end of the travel"
@@ -67,7 +65,7 @@ std::string head(const DistilledCase& one, const std::string& title, const std::
 }
 
 std::string generate(const DistilledCase& one, const std::string& title, const Language& l) {
-  const ForceTable& table = *one.table.loading;
+  const coupling::ForceTable& table = *one.table.loading;
   const auto& axes = table.axes();
   std::string text = head(one, title, l.comment) + l.prelude;
   const auto array = [&](const std::string& name, const std::vector<double>& values) {
@@ -92,8 +90,7 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
   for (const DistilledPlace& place : one.places) {
     for (const FittedLaw& law : place.laws) {
       text += "\n" + l.comment + error_words(law) + "\n";
-      text +=
-          fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
+      text += fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
       text += law.form->expression(law.values, l.prefix) + l.function_close;
     }
     if (!place.load_unload) continue;
@@ -350,8 +347,7 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
   const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
   // A double hyphen may not stand in a comment of XML.
   std::string words = title;
-  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--"))
-    words.replace(at, 2, "-");
+  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--")) words.replace(at, 2, "-");
   return fmt::format(
       "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first "
       "touch: off the full wire by up to"
@@ -361,20 +357,19 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
       "damping=\"{}\"\n"
       "             limited=\"true\" range=\"0 {}\"/>\n"
       "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\"/>\n    </body>\n  </worldbody>\n</mujoco>\n",
-      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force,
-      linear->error.force_range,
-      impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed) : "not known: no impacts were asked",
+      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force, linear->error.force_range,
+      impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed)
+             : "not known: no impacts were asked",
       loss, linear->values[0], impact ? *place.impacts.front().damping : 0.0, linear->range.high);
 }
 
 std::string adams_splines(const DistilledCase& one, const std::string& title) {
-  const ForceTable& table = *one.table.loading;
+  const coupling::ForceTable& table = *one.table.loading;
   std::vector<double> travel = table.axes()[0];
   for (double& d : travel) d *= table.span();
   std::string words = title;
   std::replace(words.begin(), words.end(), '\n', ' ');
-  std::string text =
-      "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
+  std::string text = "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
   int number = 1;
   for (const DistilledPlace& place : one.places) {
     std::vector<double> force;

@@ -48,8 +48,7 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
     bool moved = false;
     for (int k = 0; k < 30 && !moved; ++k, damping *= 8.0) {
       MatrixXd stacked(j.rows() + p.size(), p.size());
-      stacked << j * scale.cwiseInverse().asDiagonal(),
-          std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
+      stacked << j * scale.cwiseInverse().asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
       VectorXd right = VectorXd::Zero(stacked.rows());
       right.head(r.size()) = -r;
       const VectorXd step = stacked.colPivHouseholderQr().solve(right).cwiseQuotient(scale);
@@ -58,8 +57,8 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
       const VectorXd r_next = misfit(form, next, points);
       if (!r_next.allFinite() || !(r_next.norm() <= r.norm())) continue;
       moved = true;
-      const bool still = r.norm() - r_next.norm() <= 1e-14 * r.norm() &&
-                         step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
+      const bool still =
+          r.norm() - r_next.norm() <= 1e-14 * r.norm() && step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
       p = next;
       r = r_next;
       if (still) return true;
@@ -72,14 +71,13 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
 
 }  // namespace
 
-LawValue FittedLaw::at(double travel, Outside outside) const {
-  LawValue result;
+coupling::LawValue FittedLaw::at(double travel, coupling::Outside outside) const {
+  coupling::LawValue result;
   if (travel < 0.0) return result;
   result.extrapolated = !range.contains(travel);
-  if (result.extrapolated && outside == Outside::refuse) {
-    throw std::domain_error(
-        fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
-                    1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
+  if (result.extrapolated && outside == coupling::Outside::refuse) {
+    throw std::domain_error(fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
+                                        1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
   }
   result.force = form->force(values, travel);
   result.stiffness = form->stiffness(values, travel);
@@ -157,8 +155,7 @@ FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteC
   const VectorXd scale = j.colwise().norm().transpose().cwiseMax(1e-300);
   const MatrixXd unit = j * scale.cwiseInverse().asDiagonal();
   const MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  law.covariance =
-      variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
+  law.covariance = variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < curve.knots().size(); ++i) {
     if (!std::binary_search(fit_at.begin(), fit_at.end(), i)) others.push_back(i);

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "numerics/cubic_spline.hpp"
-#include "reduction/force_table.hpp"
+#include "coupling/contact/force_table.hpp"
 #include "coupling/contact/law_form.hpp"
+#include "numerics/cubic_spline.hpp"
+#include "reduction/wire_file.hpp"
 
 #include <Eigen/Core>
 
@@ -32,8 +33,8 @@ struct FittedLaw {
   LawError error;
   bool converged = false;
 
-  /// Throws std::domain_error beyond the range with Outside::refuse. No contact (travel < 0): no force.
-  [[nodiscard]] LawValue at(double travel, Outside outside) const;
+  /// Throws std::domain_error beyond the range with coupling::Outside::refuse. No contact (travel < 0): no force.
+  [[nodiscard]] coupling::LawValue at(double travel, coupling::Outside outside) const;
   [[nodiscard]] double energy(double travel) const;  ///< [J]
 };
 

@@ -1,9 +1,9 @@
 #include "reduction/law_map.hpp"
 
-#include "coupling/statics/push_solver.hpp"
+#include "base/parallel.hpp"
 #include "coupling/contact/law_form.hpp"
 #include "coupling/contact/tensioned_wire.hpp"
-#include "base/parallel.hpp"
+#include "coupling/statics/push_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,7 @@ namespace snare::reduction {
 namespace {
 
 constexpr double pretension_strain = 1e-3;
-constexpr double reach =
-    3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
+constexpr double reach = 3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
 
 LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<double>& travel,
                  const DistilSettings& settings) {
@@ -31,7 +30,7 @@ LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<dou
   }
   const double ea = test.wire.axial_stiffness();
   const coupling::LawPlace place{test.mount.span, test.contact_position, test.wire.length,
-                       test.wire.bending_stiffness()};
+                                 test.wire.bending_stiffness()};
   const coupling::LawFormPointer stretched = coupling::stretched_wire_law(place);
   // The wire stands off by its natural height; it is taut at the height of its two straight pieces.
   const double taut = 0.5 * std::sqrt(std::max(0.0, place.length * place.length - place.span * place.span));
@@ -70,8 +69,7 @@ LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks
   test.wire.strand_friction.reset();
   test.wire.yielding.reset();
   test.mount.slip_tension.reset();
-  for (int i = 1; i <= travels; ++i)
-    map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
+  for (int i = 1; i <= travels; ++i) map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
   const double low = -pretension_strain * test.mount.span;
   const double high = std::max(wire.slack.high, -low);
   map.rows.resize(static_cast<std::size_t>(slacks));

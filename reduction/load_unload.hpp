@@ -52,6 +52,7 @@ struct LoadUnloadFit {
   double rms_error = 0.0;      ///< [N]
   double loop = 0.0;           ///< of the law over the same way [J]
 };
-[[nodiscard]] LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading);
+[[nodiscard]] LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading,
+                                            const numerics::HermiteCurve& unloading);
 
 }  // namespace snare::reduction

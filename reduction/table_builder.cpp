@@ -46,7 +46,7 @@ std::vector<CurvePlace> grid(const std::vector<double>& positions, const std::ve
   return places;
 }
 
-using Branch = std::vector<double> WireCurve::*;
+using Branch = std::vector<double> PushedCurve::*;
 
 class TableBuilder {
  public:
@@ -57,8 +57,8 @@ class TableBuilder {
 
  private:
   [[nodiscard]] bool place();
-  [[nodiscard]] std::unique_ptr<ForceTable> tabulate(Branch branch) const;
-  [[nodiscard]] TableError check(const ForceTable& table, Branch branch);
+  [[nodiscard]] std::unique_ptr<coupling::ForceTable> tabulate(Branch branch) const;
+  [[nodiscard]] TableError check(const coupling::ForceTable& table, Branch branch);
   [[nodiscard]] bool refine();
   [[nodiscard]] bool sample(const std::vector<CurvePlace>& places);
 
@@ -121,7 +121,7 @@ bool TableBuilder::place() {
   return true;
 }
 
-std::unique_ptr<ForceTable> TableBuilder::tabulate(Branch branch) const {
+std::unique_ptr<coupling::ForceTable> TableBuilder::tabulate(Branch branch) const {
   const WireCase& wire = store_.wire();
   const double span = wire.test.mount.span;
   std::vector<double> values, slopes;
@@ -136,15 +136,15 @@ std::unique_ptr<ForceTable> TableBuilder::tabulate(Branch branch) const {
       slopes.insert(slopes.end(), m.begin(), m.end());
     }
   }
-  ForceTable::Axes axes{knots, position_, slack_};
+  coupling::ForceTable::Axes axes{knots, position_, slack_};
   for (std::vector<double>& axis : axes) {
     for (double& x : axis) x /= span;
   }
-  return std::make_unique<ForceTable>(std::move(axes), values, slopes, span,
-                                      wire.test.wire.bending_stiffness(), wire.symmetric());
+  return std::make_unique<coupling::ForceTable>(std::move(axes), values, slopes, span,
+                                                wire.test.wire.bending_stiffness(), wire.symmetric());
 }
 
-TableError TableBuilder::check(const ForceTable& table, Branch branch) {
+TableError TableBuilder::check(const coupling::ForceTable& table, Branch branch) {
   TableError error;
   const std::vector<double> positions = with_middles(position_);
   const std::vector<double> slacks = with_middles(slack_);
@@ -155,7 +155,7 @@ TableError TableBuilder::check(const ForceTable& table, Branch branch) {
   double stiffness_sum = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (std::size_t j = 0; j < slacks.size(); ++j) {
-      const WireCurve& curve = store_.at({store_.folded(positions[i]), slacks[j]});
+      const PushedCurve& curve = store_.at({store_.folded(positions[i]), slacks[j]});
       const std::vector<double>& force = curve.*branch;
       const numerics::HermiteCurve dense(travel, force);
       const numerics::HermiteCurve tabled = table.curve(positions[i], slacks[j]);
@@ -182,8 +182,7 @@ TableError TableBuilder::check(const ForceTable& table, Branch branch) {
         };
         const bool knot = std::binary_search(travel_.begin(), travel_.end(), k);
         if (i % 2 == 0 && j % 2 == 0 && !knot) {
-          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) -
-                                           travel_.begin() - 1));
+          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) - travel_.begin() - 1));
         } else if (i % 2 == 1 && j % 2 == 0 && knot) {
           note(1, i / 2);
         } else if (i % 2 == 0 && j % 2 == 1 && knot) {
@@ -207,9 +206,8 @@ bool TableBuilder::refine() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<std::size_t> cells(cell_error_[axis].size());
     std::iota(cells.begin(), cells.end(), 0);
-    std::stable_sort(cells.begin(), cells.end(), [&](std::size_t a, std::size_t b) {
-      return cell_error_[axis][a] > cell_error_[axis][b];
-    });
+    std::stable_sort(cells.begin(), cells.end(),
+                     [&](std::size_t a, std::size_t b) { return cell_error_[axis][a] > cell_error_[axis][b]; });
     std::size_t room = static_cast<std::size_t>(settings_.most_points[axis]);
     const std::size_t present = axis == 0 ? travel_.size() : (axis == 1 ? position_ : slack_).size();
     room = room > present ? room - present : 0;
@@ -247,11 +245,11 @@ BuiltTable TableBuilder::run() {
     cell_error_[0].assign(std::max<std::size_t>(1, travel_.size() - 1), 0.0);
     cell_error_[1].assign(std::max<std::size_t>(1, position_.size() - 1), 0.0);
     cell_error_[2].assign(std::max<std::size_t>(1, slack_.size() - 1), 0.0);
-    built_.loading = tabulate(&WireCurve::loading);
-    built_.loading_error = check(*built_.loading, &WireCurve::loading);
+    built_.loading = tabulate(&PushedCurve::loading);
+    built_.loading_error = check(*built_.loading, &PushedCurve::loading);
     if (store_.wire().dissipates()) {
-      built_.unloading = tabulate(&WireCurve::unloading);
-      built_.unloading_error = check(*built_.unloading, &WireCurve::unloading);
+      built_.unloading = tabulate(&PushedCurve::unloading);
+      built_.unloading_error = check(*built_.unloading, &PushedCurve::unloading);
     }
     const double bound = std::max(built_.loading_error.bound, built_.unloading_error.bound);
     const double allowed = settings_.tolerance * built_.loading_error.force_range;

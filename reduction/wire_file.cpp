@@ -1,10 +1,10 @@
 #include "reduction/wire_file.hpp"
 
+#include "base/toml_reader.hpp"
 #include "base/units.hpp"
+#include "coupling/statics/spatial_push.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
-#include "coupling/statics/spatial_push.hpp"
-#include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -83,8 +83,7 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   }
   const double slack = nominal.nominal_slack();
   nominal.slack = {slack, slack};
-  if (slack > 0.0)
-    nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
+  if (slack > 0.0) nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
   if (const auto asked = read_interval(table, "slack_mm", Range::from(-1e3, 1e5))) {
     nominal.slack = *asked;
     if (span + asked->low < shortest_length * span)
@@ -99,8 +98,7 @@ std::vector<WireCase> combine(const TomlTable& table, const WireCase& nominal) {
   std::vector<WireCase> cases{nominal};
   for (const ListedQuantity& quantity : listed_quantities) {
     if (!table.has(quantity.key)) continue;
-    const std::vector<double> values =
-        table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
+    const std::vector<double> values = table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
     if (values.empty()) continue;
     std::vector<WireCase> more;
     for (const WireCase& one : cases) {
@@ -166,8 +164,7 @@ void read_law_positions(const TomlTable& table, WireCase& nominal) {
 
 void read_law_offsets(const TomlTable& table, WireCase& nominal) {
   if (!table.has("displacement_offsets_mm")) return;
-  nominal.law_offsets =
-      table.numbers("displacement_offsets_mm", 1, most_law_positions, Range::from(0.0, 1000.0), mm);
+  nominal.law_offsets = table.numbers("displacement_offsets_mm", 1, most_law_positions, Range::from(0.0, 1000.0), mm);
   if (!nominal.law_offsets.empty() && nominal.law_offsets.size() != nominal.law_positions.size()) {
     table.fail("displacement_offsets_mm",
                fmt::format("must have one value for each of the {} positions", nominal.law_positions.size()));
@@ -196,8 +193,7 @@ std::optional<ImpactSettings> read_impacts(const TomlTable& root, const scenario
 
 WireFile read_document(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable root = document.root();
-  static constexpr base::Choice<bool> schemas[] = {{"snare-wire/1", true}};
-  static_cast<void>(root.choice("schema", schemas));
+  base::require_schema(root, "snare-wire/1");
   WireFile result;
   result.file = file;
   result.title = root.text_or("title", "");
@@ -211,8 +207,7 @@ WireFile read_document(TomlDocument& document, const std::filesystem::path& file
         .fail(nominal.test.pusher.tilt != 0.0 ? "tilt_deg" : "vector_m_s2",
               "must keep the push in the plane of the wire: only such pushes are distilled");
   }
-  const bool numbers_known =
-      std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
+  const bool numbers_known = std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
   const TomlTable ranges = root.table("ranges");
   read_ranges(ranges, nominal, numbers_known);
   read_law_positions(root.table("laws"), nominal);
@@ -231,8 +226,7 @@ bool WireCase::symmetric() const noexcept {
 }
 
 bool WireCase::dissipates() const noexcept {
-  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding ||
-         test.wire.strand_friction;
+  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
 }
 
 double default_travel(const coupling::PushProblem& test) {
@@ -240,9 +234,7 @@ double default_travel(const coupling::PushProblem& test) {
   const double slack = test.wire.length - span;
   // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode: its
   // shortening is pi^2 h^2/(4 span) between clamps and between pins).
-  const auto taut = [&](double length) {
-    return 0.5 * std::sqrt(std::max(0.0, length * length - span * span));
-  };
+  const auto taut = [&](double length) { return 0.5 * std::sqrt(std::max(0.0, length * length - span * span)); };
   const double bulge = 2.0 / std::numbers::pi * std::sqrt(span * std::max(0.0, slack));
   const double stretched = taut((1.0 + proof_strain) * std::max(test.wire.length, span));
   const bool inward = test.pusher.direction == coupling::PushDirection::inward;

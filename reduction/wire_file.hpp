@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/statics/push_problem.hpp"
 #include "base/toml_tree.hpp"
+#include "coupling/statics/push_problem.hpp"
 #include "reduction/impact_damping.hpp"
 
 #include <array>
@@ -25,7 +25,7 @@ struct Interval {
 
 /// One wire with its pusher, and the ranges over which its force is asked. SI units.
 struct WireCase {
-  coupling::PushProblem test;            ///< nominal; position, length and travel are set by the sampling
+  coupling::PushProblem test;         ///< nominal; position, length and travel are set by the sampling
   Interval travel;                    ///< from first touch; low is 0 [m]
   Interval position;                  ///< s, of the pusher along the chord from the left mount [m]
   Interval slack;                     ///< length less span [m]

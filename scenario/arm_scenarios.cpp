@@ -13,7 +13,8 @@ namespace {
 
 using base::at;
 
-multibody::ArmScenario standing(const multibody::ArmDescription& description, const Eigen::VectorXd& angles, double end) {
+multibody::ArmScenario standing(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                double end) {
   multibody::ArmScenario scenario;
   scenario.arm = description.arm;
   scenario.initial = resting(description.arm, description.coordinates(angles));
@@ -31,16 +32,16 @@ multibody::ArmScenario standing(const multibody::ArmDescription& description, co
 
 }  // namespace
 
-multibody::ArmScenario joint_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles, int joint,
-                       double step, double end) {
+multibody::ArmScenario joint_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                  int joint, double step, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
   scenario.initial.motor[joint] += step;
   for (multibody::Drive& drive : scenario.drives) drive = multibody::Drive::locked();
   return scenario;
 }
 
-multibody::ArmScenario commanded_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles, int joint,
-                           double step, double end) {
+multibody::ArmScenario commanded_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                      int joint, double step, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
     if (k != joint) scenario.drives[at(k)] = multibody::Drive::locked();
@@ -52,8 +53,8 @@ multibody::ArmScenario commanded_step(const multibody::ArmDescription& descripti
   return scenario;
 }
 
-multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles, Hold hold,
-                        const Eigen::Vector3d& impulse, double duration, double end) {
+multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
+                                   Hold hold, const Eigen::Vector3d& impulse, double duration, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
   if (hold == Hold::limp) {
     for (multibody::Drive& drive : scenario.drives) drive = multibody::Drive::limp();
@@ -68,7 +69,7 @@ multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description,
 }
 
 multibody::ArmScenario joint_motion(const multibody::ArmDescription& description, const Eigen::VectorXd& from,
-                         const Eigen::VectorXd& to, double duration, double end) {
+                                    const Eigen::VectorXd& to, double duration, double end) {
   multibody::ArmScenario scenario = standing(description, from, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
     multibody::Drive& drive = scenario.drives[at(k)];

@@ -12,25 +12,27 @@ namespace snare::scenario {
 /// the other motors are locked; the link, at rest, finds its spring wound up by -step and swings.        theory.md
 /// (A.17)
 /// joint: index; step [rad].
-[[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                     int joint, double step, double end);
+[[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description,
+                                                const Eigen::VectorXd& angles, int joint, double step, double end);
 
 /// The same with the motor driven by its servo to the new angle, as a command would.
-[[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                         int joint, double step, double end);
+[[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
+                                                    const Eigen::VectorXd& angles, int joint, double step, double end);
 
 /// Who answers a push at the tip.
 enum class Hold { as_described, limp };
 
 /// An arm at rest, pushed at its tip by half a sine of force, in the world's axes.
 /// impulse: of the force [N s]; duration > 0 [s], from t = 0.
-[[nodiscard]] multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                      Hold hold, const Eigen::Vector3d& impulse, double duration, double end);
+[[nodiscard]] multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description,
+                                                 const Eigen::VectorXd& angles, Hold hold,
+                                                 const Eigen::Vector3d& impulse, double duration, double end);
 
 /// The joints go from one pose to another under their servos; a free base answers.
 /// Throws std::invalid_argument when a joint has no servo.
-[[nodiscard]] multibody::ArmScenario joint_motion(const multibody::ArmDescription& description, const Eigen::VectorXd& from,
-                                       const Eigen::VectorXd& to, double duration, double end);
+[[nodiscard]] multibody::ArmScenario joint_motion(const multibody::ArmDescription& description,
+                                                  const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                                                  double duration, double end);
 
 /// One swing of a joint's deflection from zero to zero.
 struct Swing {
@@ -41,6 +43,7 @@ struct Swing {
 };
 
 /// The swings of a joint, by Hermite's cubics between the samples; what comes before the first zero is none.
-[[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm, int joint);
+[[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm,
+                                        int joint);
 
 }  // namespace snare::scenario

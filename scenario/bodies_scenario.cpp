@@ -1,12 +1,15 @@
 #include "scenario/bodies_scenario.hpp"
 
+#include "base/archive.hpp"
+#include "base/index.hpp"
+#include "base/toml_reader.hpp"
 #include "base/units.hpp"
-#include "scenario/motion_reader.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_shape.hpp"
+#include "coupling/dynamics/start.hpp"
+#include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
-#include "base/archive.hpp"
-#include "base/toml_reader.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -14,30 +17,21 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 namespace snare::scenario {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 using base::Choice;
 using base::Range;
 using base::TomlDocument;
 using base::TomlTable;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
 namespace {
 
 using base::mm;
-using base::degree;
-constexpr double far = 1e5;  // [mm]
-
-// Axis times angle.
-Matrix3d read_rotation(const TomlTable& table) {
-  const Vector3d turn = read_vector_or_zero(table, "rotation_deg", Range::from(-360.0, 360.0), degree);
-  const double angle = turn.norm();
-  return angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
-}
+constexpr double far = farthest_mm;
 
 /// Names of one kind, each once.
 class Names {
@@ -92,7 +86,7 @@ DeclaredWire read_declared_wire(const TomlTable& table, Names& names, const wire
     table.fail(table.has("bulge") ? "bulge" : "", "must have a bulge, a direction across the chord");
   else
     w.bulge = across.normalized();
-  w.wire.rod = coupling::rod_in_motion(w.specification, w.span, table.integer_or("elements", 60, 8, 20000));
+  w.wire.rod = wire::rod_in_motion(w.specification, w.span, table.integer_or("elements", 60, 8, 20000));
   w.wire.rod.damping = damping;
   w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind.value_or(wire::SpatialEnd::Kind::clamp);
   return w;
@@ -100,7 +94,8 @@ DeclaredWire read_declared_wire(const TomlTable& table, Names& names, const wire
 
 // The wire of its own frame (chord along x, bulge to y) turned to where its mounts are.
 coupling::MotionWire place(DeclaredWire w) {
-  const Matrix3d rest_frame = (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
+  const Matrix3d rest_frame =
+      (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
   const Eigen::Matrix3Xd rest = coupling::resting_wire(w.wire.rod);
   w.wire.positions = (rest_frame * rest).colwise() + w.from;
   for (auto* end : {&w.wire.rod.properties.left, &w.wire.rod.properties.right}) {
@@ -122,20 +117,14 @@ coupling::MotionBody read_body(const TomlTable& table, Names& names) {
       if (table.has(key)) table.fail(key, "a driven body moves at a constant velocity_m_s whatever it meets");
     }
   } else {
-    body.properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
-    const auto inertia = read_vector(table, "inertia_kg_m2", Range::above(0.0, 1e12), 1.0);
-    if (inertia) {
-      body.properties.inertia = inertia->asDiagonal();
-      if (2.0 * inertia->maxCoeff() > inertia->sum())
-        table.fail("inertia_kg_m2", "must satisfy the triangle inequality: none larger than the other two together");
-    }
+    body.properties = read_body_properties(table);
     body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
     body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
     body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
     body.force = read_vector_or_zero(table, "force_N", Range::from(-1e9, 1e9), 1.0);
   }
   body.start.position = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
-  body.start.orientation = Eigen::Quaterniond(read_rotation(table));
+  body.start.orientation = Eigen::Quaterniond(read_rotation_vector(table, "rotation_deg"));
   body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
   return body;
 }
@@ -154,10 +143,14 @@ std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::
   return nullptr;
 }
 
-std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder, std::string& input) {
-  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge}, {"cylinder", ShapeKind::cylinder},
-                                                {"sphere", ShapeKind::sphere},         {"capsule", ShapeKind::capsule},
-                                                {"cone", ShapeKind::cone},             {"grapple_shaft", ShapeKind::grapple_shaft},
+std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder,
+                                                         std::string& meshes) {
+  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
+                                                {"cylinder", ShapeKind::cylinder},
+                                                {"sphere", ShapeKind::sphere},
+                                                {"capsule", ShapeKind::capsule},
+                                                {"cone", ShapeKind::cone},
+                                                {"grapple_shaft", ShapeKind::grapple_shaft},
                                                 {"mesh", ShapeKind::mesh}};
   const Range size = Range::above(0.0, far);
   const auto kind = table.choice("kind", kinds);
@@ -209,7 +202,7 @@ std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
         for (std::array<int, 3>& triangle : mesh.triangles) {
           for (int& corner : triangle) bytes(corner);
         }
-        input += fmt::format("{:x};", base::fingerprint(bytes.bytes()));
+        meshes += fmt::format("{:x};", base::fingerprint(bytes.bytes()));
         return std::make_shared<coupling::MeshShape>(mesh);
       });
     }
@@ -217,72 +210,81 @@ std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
   return nullptr;
 }
 
-}  // namespace
-
-bool lists_bodies(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
-  TomlDocument document(file, overrides);
-  const TomlTable root = document.root();
-  return root.has("bodies") || root.has("wires") || root.has("shapes");
+/// A shape with its body and friction, on no wire yet.
+coupling::MotionContact read_contact_shape(const TomlTable& table, const std::filesystem::path& folder,
+                                           const Names& bodies, std::string& meshes) {
+  coupling::MotionContact contact;
+  contact.shape = read_shape(table, folder, meshes);
+  const std::string body = table.text("body");
+  const std::optional<int> of_body = bodies.find(body);
+  if (!of_body && !body.empty()) table.fail("body", bodies.requirement());
+  contact.body = of_body.value_or(0);
+  contact.X_BS.p = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
+  contact.X_BS.R = read_rotation_vector(table, "rotation_deg");
+  contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
+  contact.points = table.integer_or("points", contact.points, 1, 100);
+  return contact;
 }
 
-MotionScenario read_motion_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
-  TomlDocument document(file, overrides);
+/// Indices of the wires that a shape may touch: those it names, or all.
+std::vector<int> wires_met(const TomlTable& table, const Names& wires, const std::vector<DeclaredWire>& declared) {
+  std::vector<std::string> names = table.texts_or_none("wires");
+  if (!table.has("wires")) {
+    for (const DeclaredWire& w : declared) names.push_back(w.wire.name);
+  }
+  std::vector<int> met;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (const std::optional<int> index = wires.find(names[k]))
+      met.push_back(*index);
+    else
+      table.fail_element("wires", k, wires.requirement());
+  }
+  return met;
+}
+
+}  // namespace
+
+WireMotions read_bodies(TomlDocument& document, const std::filesystem::path& folder) {
   const TomlTable root = document.root();
-  MotionScenario scenario;
-  scenario.file = file;
-  if (root.text("schema") != "snare-scenario/1") root.fail("schema", "must be \"snare-scenario/1\"");
-  static constexpr Choice<bool> kinds[] = {{"contact", true}};
-  static_cast<void>(root.choice("kind", kinds));
-  scenario.title = root.text("title");
-  scenario.source = root.text_or("source", "");
-  read_motion_options(root, scenario.options);
+  NamedMotion run;
+  run.name = root.text("title");
+  run.model = "wire";
+  coupling::Motion& motion = run.motion;
+  std::string meshes;  // their fingerprints
+  read_motion_options(root, run.options);
   for (const char* key : {"body", "wire", "mount", "pusher", "models"}) {
     if (root.has(key)) root.fail(key, "not beside lists of bodies, wires and shapes");
   }
   const TomlTable gravity = root.table("gravity");
-  scenario.motion.gravity = read_vector_or_zero(gravity, "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
+  motion.gravity = read_vector_or_zero(gravity, "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
   const wire::RodDamping damping = read_damping(root.table("damping"));
 
   Names wires("wire"), bodies("body"), shapes("shape");
   std::vector<DeclaredWire> declared;
   for (const TomlTable& table : root.tables("wires")) declared.push_back(read_declared_wire(table, wires, damping));
-  for (const TomlTable& table : root.tables("bodies")) scenario.motion.bodies.push_back(read_body(table, bodies));
-  for (const char* key : {"wires", "bodies", "shapes"}) {
+  for (const TomlTable& table : root.tables("bodies")) motion.bodies.push_back(read_body(table, bodies));
+  for (const std::string_view key : list_keys) {
     if (!root.has(key)) root.fail(key, "must be given, one table or more");
   }
   for (const TomlTable& table : root.tables("shapes")) {
-    coupling::MotionContact contact;
     const std::string name = shapes.take(table);
-    contact.shape = read_shape(table, file.parent_path(), scenario.input);
-    const std::string body = table.text("body");
-    const std::optional<int> of_body = bodies.find(body);
-    if (!of_body && !body.empty()) table.fail("body", bodies.requirement());
-    contact.body = of_body.value_or(0);
-    contact.shape_position = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
-    contact.shape_rotation = read_rotation(table);
-    contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
-    contact.points = table.integer_or("points", contact.points, 1, 100);
-    std::vector<std::string> met = table.texts_or_none("wires");
-    if (!table.has("wires")) {
-      for (const DeclaredWire& w : declared) met.push_back(w.wire.name);
-    }
-    for (std::size_t k = 0; k < met.size(); ++k) {
-      const std::optional<int> index = wires.find(met[k]);
-      if (!index) {
-        table.fail_element("wires", k, wires.requirement());
-        continue;
-      }
-      contact.wire = *index;
-      contact.name = fmt::format("{} on {}", name, met[k]);
-      contact.wire_radius = 0.5 * declared[static_cast<std::size_t>(*index)].specification.diameter;
-      scenario.motion.contacts.push_back(contact);
+    const coupling::MotionContact shape = read_contact_shape(table, folder, bodies, meshes);
+    for (const int wire : wires_met(table, wires, declared)) {
+      const DeclaredWire& met = declared[base::at(wire)];
+      motion.contacts.push_back(shape);
+      motion.contacts.back().wire = wire;
+      motion.contacts.back().name = fmt::format("{} on {}", name, met.wire.name);
+      motion.contacts.back().wire_radius = 0.5 * met.specification.diameter;
     }
   }
-  scenario.output = read_motion_output(root.table("output"), scenario.options);
-  scenario.input += document.canonical();
+  WireMotions motions;
+  motions.output = read_motion_output(root.table("output"), run.options);
+  motions.input = meshes + document.canonical();
+  motions.duration = run.options.duration;
   document.finish();
-  for (DeclaredWire& w : declared) scenario.motion.wires.push_back(place(std::move(w)));
-  return scenario;
+  for (DeclaredWire& w : declared) motion.wires.push_back(place(std::move(w)));
+  motions.runs.push_back(std::move(run));
+  return motions;
 }
 
 }  // namespace snare::scenario

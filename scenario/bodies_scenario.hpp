@@ -1,30 +1,19 @@
 #pragma once
 
-#include "scenario/motion_reader.hpp"
-#include "base/toml_tree.hpp"
+#include "base/toml_reader.hpp"
+#include "scenario/world.hpp"
 
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <string_view>
 
 namespace snare::scenario {
 
-/// Any bodies with any shapes among any wires: scenario of kind "contact" that lists them.     docs/scenario_file.md
-struct MotionScenario {
-  std::string title, source;
-  std::filesystem::path file;
-  std::string input;  ///< canonical text of everything that was read, meshes too: equal for equal scenarios
-  coupling::Motion motion;  ///< one contact for every shape and every wire that it may touch, named "SHAPE on WIRE"
-  coupling::MotionOptions options;
-  MotionOutput output;
-};
+/// The keys of a contact scenario that lists its bodies instead of having one [body], one [wire] and one [pusher].
+inline constexpr std::string_view list_keys[] = {"wires", "bodies", "shapes"};
 
-/// Whether a scenario lists its bodies instead of having one [body], one [wire] and one [pusher]. Throws InputError when the file cannot be
-/// read.
-[[nodiscard]] bool lists_bodies(const std::filesystem::path& file, const std::vector<base::Override>& overrides);
-
-/// Reads a scenario and the meshes beside it; throws InputError with everything that is wrong in it.
-[[nodiscard]] MotionScenario read_motion_scenario(const std::filesystem::path& file,
-                                                  const std::vector<base::Override>& overrides = {});
+/// Any bodies with any shapes among any wires: reads what is particular to a scenario of kind "contact" with lists, the
+/// meshes in `folder` too, and finishes the document. One run, with a contact for every shape and every wire that it may
+/// touch, named "SHAPE on WIRE".
+[[nodiscard]] WireMotions read_bodies(base::TomlDocument& document, const std::filesystem::path& folder);
 
 }  // namespace snare::scenario

@@ -1,9 +1,11 @@
 #include "scenario/contact_scenario.hpp"
 
+#include "base/toml_reader.hpp"
 #include "base/units.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
-#include "base/toml_reader.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 
@@ -13,21 +15,15 @@
 
 namespace snare::scenario {
 
-using Eigen::Vector3d;
 using base::Choice;
 using base::Range;
 using base::TomlDocument;
 using base::TomlTable;
+using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::string_view schema = "snare-scenario/1";
 using base::mm;
-
-void require_schema(const TomlTable& root) {
-  const std::string given = root.text("schema");
-  if (given != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
-}
 
 enum class ModelKind { wire, spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
 
@@ -57,17 +53,18 @@ WireModel read_model(const TomlTable& table) {
       const double n = table.number_or("n", p, Range::from(0.0, 10.0));
       if (n > 0.0 && n < 1.0) table.fail("n", "must be 0 or >= 1: between, the force would rise infinitely fast");
       model.law = coupling::power_law(table.number("k", stiffness), p, table.number_or("c", 0.0, damping),
-                            table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
+                                      table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
       break;
     }
     case ModelKind::step_damped:
       model.law = coupling::step_damped_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
-                                  table.number("c_Ns_m", damping), table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
+                                            table.number("c_Ns_m", damping),
+                                            table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
       break;
     case ModelKind::quadratic: {
       const Range coefficient = Range::from(-1e12, 1e12);
       model.law = coupling::quadratic_law(table.number("A_N_m2", coefficient), table.number("B_N_m", coefficient),
-                                table.number("C_N", coefficient));
+                                          table.number("C_N", coefficient));
       break;
     }
     case ModelKind::stretched_wire:
@@ -88,18 +85,9 @@ WireModel read_model(const TomlTable& table) {
 void read_body(const TomlTable& table, ContactScenario& scenario) {
   coupling::MotionBody& body = scenario.body;
   body.name = table.text_or("name", "body");
-  body.properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
-  const std::vector<double> inertia = table.numbers("inertia_kg_m2", 3, 3, Range::above(0.0, 1e12));
-  if (inertia.size() == 3) {
-    body.properties.inertia = Vector3d(inertia[0], inertia[1], inertia[2]).asDiagonal();
-    const double largest = std::max({inertia[0], inertia[1], inertia[2]});
-    if (2.0 * largest > inertia[0] + inertia[1] + inertia[2])
-      table.fail("inertia_kg_m2",
-                 "must satisfy the triangle inequality: none larger than the other two together");
-  }
-  scenario.probe = read_vector_or_zero(table, "probe_mm", Range::from(-1e5, 1e5), mm);
-  const Vector3d velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
-  body.start.velocity = velocity;
+  body.properties = read_body_properties(table);
+  scenario.probe = read_vector_or_zero(table, "probe_mm", Range::from(-farthest_mm, farthest_mm), mm);
+  body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
   body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
   body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
   body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
@@ -107,30 +95,25 @@ void read_body(const TomlTable& table, ContactScenario& scenario) {
       -table.number_or("distance_mm", 0.1 * mm, Range::from(1e-3, 1e4), mm);  // moved on in motion_of
 }
 
-}  // namespace
-
-std::string scenario_kind(const std::filesystem::path& file,
-                          const std::vector<base::Override>& overrides) {
-  TomlDocument document(file, overrides);
-  const TomlTable root = document.root();
-  if (root.text("schema") != schema) {
-    throw base::InputError(
-        {file.string(), 0, "schema", root.text("schema"), fmt::format("must be \"{}\"", schema)});
-  }
-  return root.text("kind");
+/// Of the push along y: 1 with the wire's bulge, -1 against it.
+double side_of(const coupling::PushProblem& push) {
+  return push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
 }
 
-ContactScenario read_contact_scenario(const std::filesystem::path& file,
-                                      const std::vector<base::Override>& overrides) {
-  TomlDocument document(file, overrides);
+coupling::MotionOptions options_of(const ContactScenario& scenario, const WireModel& model) {
+  coupling::MotionOptions options = scenario.options;
+  const coupling::MotionBody& body = scenario.body;
+  const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
+  constexpr double resolved_travel = 1e-4;  // [m]
+  if (model.law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
+  return options;
+}
+
+}  // namespace
+
+ContactScenario read_contact(TomlDocument& document) {
   const TomlTable root = document.root();
   ContactScenario scenario;
-  scenario.file = file;
-  require_schema(root);
-  static constexpr Choice<bool> kinds[] = {{"contact", true}};
-  static_cast<void>(root.choice("kind", kinds));
-  scenario.title = root.text("title");
-  scenario.source = root.text_or("source", "");
   coupling::MotionOptions& o = scenario.options;
   read_motion_options(root, o);
 
@@ -139,7 +122,8 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   scenario.push.contact_position = root.number("contact_position_mm", Range::above(0.0, 1e5), mm);
   const double position = scenario.push.contact_position;
   if (std::isfinite(position) && std::isfinite(scenario.push.mount.span)) {  // else reported already
-    if (const auto problem = position_problem(position, scenario.push.mount.span)) root.fail("contact_position_mm", *problem);
+    if (const auto problem = position_problem(position, scenario.push.mount.span))
+      root.fail("contact_position_mm", *problem);
   }
   require_simple_motion(tables, scenario.push);
 
@@ -161,19 +145,21 @@ ContactScenario read_contact_scenario(const std::filesystem::path& file,
   return scenario;
 }
 
-coupling::MotionOptions options_of(const ContactScenario& scenario, const WireModel& model) {
-  coupling::MotionOptions options = scenario.options;
-  const coupling::MotionBody& body = scenario.body;
-  const double speed = body.start.velocity.norm() + body.start.spin.norm() * scenario.probe.norm();
-  constexpr double resolved_travel = 1e-4;  // [m]
-  if (model.law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
-  return options;
+ContactScenario read_contact_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+  TomlDocument document(file, overrides);
+  const TomlTable root = document.root();
+  base::require_schema(root, scenario_schema);
+  static constexpr Choice<bool> kinds[] = {{"contact", true}};
+  static_cast<void>(root.choice("kind", kinds));
+  static_cast<void>(root.text("title"));
+  static_cast<void>(root.text_or("source", ""));
+  return read_contact(document);
 }
 
 coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& model) {
   const coupling::PushProblem& push = scenario.push;
   const wire::WireSpecification& w = push.wire;
-  wire::RodInMotion rod = coupling::rod_in_motion(w, push.mount.span, scenario.elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, push.mount.span, scenario.elements);
   const auto end = push.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
@@ -182,7 +168,7 @@ coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& mod
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
 
   // The probe stands below the wire (above it for a push against the bulge) at the asked place.
-  const double side = push.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+  const double side = side_of(push);
   Eigen::Index k = 1;
   while (k + 1 < rest.cols() && rest(0, k) < push.contact_position) ++k;
   const double share = (push.contact_position - rest(0, k - 1)) / (rest(0, k) - rest(0, k - 1));
@@ -210,11 +196,23 @@ coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& mod
   coupling::MotionContact contact;
   contact.name = model.name;
   contact.shape = std::make_shared<coupling::EndlessCylinder>(push.pusher.radius);
-  contact.shape_position = scenario.probe;
+  contact.X_BS.p = scenario.probe;
   contact.wire_radius = 0.5 * w.diameter;
   contact.friction = scenario.friction;
   motion.contacts.push_back(contact);
   return motion;
+}
+
+WireMotions motions_of(const ContactScenario& scenario) {
+  WireMotions motions;
+  motions.input = scenario.input;
+  motions.duration = scenario.options.duration;
+  motions.output = scenario.output;
+  motions.probe = {scenario.probe, scenario.push.pusher.radius, side_of(scenario.push),
+                   -scenario.body.start.position.y()};
+  for (const WireModel& model : scenario.models)
+    motions.runs.push_back({model.name, model.kind, motion_of(scenario, model), options_of(scenario, model)});
+  return motions;
 }
 
 }  // namespace snare::scenario

@@ -1,15 +1,22 @@
 #include "scenario/motion_reader.hpp"
 
+#include "base/units.hpp"
+
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace snare::scenario {
 
-using Eigen::Vector3d;
 using base::Choice;
+using base::degree;
 using base::Range;
 using base::TomlTable;
+using Eigen::AngleAxisd;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
 std::optional<Vector3d> read_vector(const TomlTable& table, std::string_view key, Range range, double unit) {
   const std::vector<double> v = table.numbers(key, 3, 3, range, unit);
@@ -22,12 +29,47 @@ Vector3d read_vector_or_zero(const TomlTable& table, std::string_view key, Range
   return read_vector(table, key, range, unit).value_or(Vector3d::Zero());
 }
 
+Matrix3d read_rotation_vector(const TomlTable& table, std::string_view key) {
+  const Vector3d turn = read_vector_or_zero(table, key, Range::from(-360.0, 360.0), degree);
+  const double angle = turn.norm();
+  return angle > 0.0 ? AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
+}
+
+Matrix3d read_roll_pitch_yaw(const TomlTable& table, std::string_view key) {
+  const Vector3d turn = read_vector_or_zero(table, key, Range::from(-360.0, 360.0), degree);
+  return (AngleAxisd(turn.z(), Vector3d::UnitZ()) * AngleAxisd(turn.y(), Vector3d::UnitY()) *
+          AngleAxisd(turn.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+multibody::RigidBodyProperties read_body_properties(const TomlTable& table) {
+  multibody::RigidBodyProperties properties;
+  properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
+  if (const auto inertia = read_vector(table, "inertia_kg_m2", Range::above(0.0, 1e12), 1.0)) {
+    properties.inertia = inertia->asDiagonal();
+    if (2.0 * inertia->maxCoeff() > inertia->sum())
+      table.fail("inertia_kg_m2", "must satisfy the triangle inequality: none larger than the other two together");
+  }
+  return properties;
+}
+
+void finish_without(base::TomlDocument& document, std::string_view key) {
+  document.finish();  // says why, but for an empty name
+  document.root().fail(key, "must name a file");
+  document.finish();
+  throw std::logic_error("a problem that was reported has vanished");
+}
+
+void check_output_interval(const TomlTable& root, double duration, double interval) {
+  constexpr double most_outputs = 1e6;
+  if (duration / interval > most_outputs)
+    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
+}
+
 void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   o.duration = root.number("duration_s", Range::above(0.0, 1e6));
   o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
-  constexpr double most_outputs = 1e6;
-  if (o.duration / o.output_interval > most_outputs)
-    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
+  check_output_interval(root, o.duration, o.output_interval);
   const TomlTable solver = root.table("solver");
   const auto tolerance = [&solver](std::string_view key, double& value, double most) {
     value = solver.number_or(key, value, Range::above(0.0, most));
@@ -66,7 +108,8 @@ wire::RodDamping read_damping(const TomlTable& table) {
 }
 
 coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, std::string_view dynamic_key) {
-  static constexpr Choice<coupling::ContactFriction> laws[] = {{"stick_slip", coupling::ContactFriction::stick_slip}, {"smooth", coupling::ContactFriction::smooth}};
+  static constexpr Choice<coupling::ContactFriction> laws[] = {{"stick_slip", coupling::ContactFriction::stick_slip},
+                                                               {"smooth", coupling::ContactFriction::smooth}};
   coupling::MotionFriction f;
   if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
   f.dynamic_coefficient = dynamic;
@@ -76,7 +119,8 @@ coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, s
   f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
   f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
   f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
-  const bool at_once = f.law == coupling::ContactFriction::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
+  const bool at_once =
+      f.law == coupling::ContactFriction::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
   if (f.dynamic_speed <= f.static_speed && !at_once)
     table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
   if (f.law == coupling::ContactFriction::smooth) {

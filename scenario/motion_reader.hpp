@@ -1,7 +1,9 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
 #include "base/toml_reader.hpp"
+#include "coupling/dynamics/simulate.hpp"
+
+#include <Eigen/Core>
 
 #include <optional>
 #include <string_view>
@@ -11,12 +13,31 @@ namespace snare::scenario {
 /// What all scenarios with wires in motion have in common: keys, units and ranges in docs/scenario_file.md. What is wrong is
 /// reported to the tables' document.
 
+/// What the first line of every scenario says.
+inline constexpr std::string_view scenario_schema = "snare-scenario/1";
+
+inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
+
 /// Three numbers under a key; nothing when they are wrong.
 [[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const base::TomlTable& table, std::string_view key,
                                                          base::Range range, double unit);
 /// The same, zero where the key is missing.
-[[nodiscard]] Eigen::Vector3d read_vector_or_zero(const base::TomlTable& table, std::string_view key,
-                                                  base::Range range, double unit);
+[[nodiscard]] Eigen::Vector3d read_vector_or_zero(const base::TomlTable& table, std::string_view key, base::Range range,
+                                                  double unit);
+
+/// Rotation R by an axis times an angle in degrees under a key; the identity where it is missing.
+[[nodiscard]] Eigen::Matrix3d read_rotation_vector(const base::TomlTable& table, std::string_view key);
+/// R = Rz(yaw) Ry(pitch) Rx(roll) of roll, pitch, yaw in degrees under a key, as in URDF; the identity where it is missing.
+[[nodiscard]] Eigen::Matrix3d read_roll_pitch_yaw(const base::TomlTable& table, std::string_view key);
+
+/// `mass_kg` and `inertia_kg_m2`, about the principal axes.
+[[nodiscard]] multibody::RigidBodyProperties read_body_properties(const base::TomlTable& table);
+
+/// Finishes a document that has not given the file it must name under a key: throws InputError.
+[[noreturn]] void finish_without(base::TomlDocument& document, std::string_view key);
+
+/// Reports an interval of output that gives too many lines.
+void check_output_interval(const base::TomlTable& root, double duration, double interval);
 
 /// What `[output]` says beside the interval.
 struct MotionOutput {
@@ -36,6 +57,7 @@ void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& o
 [[nodiscard]] wire::RodDamping read_damping(const base::TomlTable& table);
 
 /// Law, coefficients, speeds and bristle of the friction. dynamic: the coefficient of fast sliding; dynamic_key: its key in the file.
-[[nodiscard]] coupling::MotionFriction read_friction(const base::TomlTable& table, double dynamic, std::string_view dynamic_key);
+[[nodiscard]] coupling::MotionFriction read_friction(const base::TomlTable& table, double dynamic,
+                                                     std::string_view dynamic_key);
 
 }  // namespace snare::scenario

@@ -18,9 +18,9 @@ using base::Choice;
 using base::Range;
 using base::TomlTable;
 
-using base::mm;
-using base::GPa;
 using base::degree;
+using base::GPa;
+using base::mm;
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
 constexpr double largest_length = 1e5;                // [mm]
@@ -50,8 +50,7 @@ wire::WireSpecification read_wire(const TomlTable& table) {
   wire.density = table.number("density_kg_m3", Range::above(0.0, 1e5));
   const Range bending = Range::from(smallest_bending_stiffness, 1e9);
   wire.bending_stiffness_override = table.optional_number("bending_stiffness_Nm2", bending);
-  wire.axial_stiffness_override =
-      table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
+  wire.axial_stiffness_override = table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
   wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
   wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
   if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
@@ -113,7 +112,7 @@ wire::MountSpecification read_mount(const TomlTable& table) {
 coupling::PusherSpecification read_pusher(const TomlTable& table) {
   static constexpr Choice<bool> shapes[] = {{"cylinder", true}};  // the only one; a knife edge has radius 0
   static constexpr Choice<coupling::PushDirection> directions[] = {{"outward", coupling::PushDirection::outward},
-                                                         {"inward", coupling::PushDirection::inward}};
+                                                                   {"inward", coupling::PushDirection::inward}};
   coupling::PusherSpecification pusher;
   static_cast<void>(table.choice("shape", shapes));
   pusher.radius = table.number("radius_mm", Range::from(0.0, 100.0), mm);
@@ -147,7 +146,8 @@ void check_length_and_diameter(const wire::WireSpecification& wire, double span,
                                   : fmt::format("must be >= {}, {:g} % of the span of {} mm", in_mm(shortest),
                                                 100.0 * shortest_length, in_mm(span)));
   if (wire.diameter >= thickest_wire * span)
-    table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the span of {} mm", in_mm(thickest_wire * span), in_mm(span)));
+    table.fail("diameter_mm",
+               fmt::format("must be < {}, a fifth of the span of {} mm", in_mm(thickest_wire * span), in_mm(span)));
 }
 
 }  // namespace
@@ -173,14 +173,12 @@ coupling::PushProblem read_push_problem(const PushTables& tables) {
 }
 
 PushTables push_tables(const TomlTable& root) {
-  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"),
-          root.table("gravity")};
+  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"), root.table("gravity")};
 }
 
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test) {
   if (test.mount.kind == wire::MountKind::supports)
-    tables.mount.fail("kind",
-                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
+    tables.mount.fail("kind", "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
   for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
     if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
   }
@@ -192,8 +190,8 @@ void require_simple_motion(const PushTables& tables, const coupling::PushProblem
 std::optional<std::string> position_problem(double position, double span) {
   const double margin = mount_margin * span;
   if (position >= margin && position <= span - margin) return std::nullopt;
-  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount",
-                     in_mm(margin), in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
+  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount", in_mm(margin),
+                     in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
 }
 
 }  // namespace snare::scenario

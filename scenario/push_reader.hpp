@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/statics/push_problem.hpp"
 #include "base/toml_reader.hpp"
+#include "coupling/statics/push_problem.hpp"
 
 #include <optional>
 #include <string>

@@ -124,7 +124,7 @@ def differing_lines(old: str, new: str, again: str, out: tuple) -> list:
 
     def lines(text: str, out: pathlib.Path) -> list:
         text = text.replace(str(out), "OUT")
-        text = re.sub(r"-?\d[\d.e+-]*(?: s\b|&#8239;s\b)", "TIME s", text)
+        text = re.sub(r"-?\d[\d.e+-]*(?: s\b|&#8239;s\b| times real time)", "TIME", text)
         return re.sub(r" +", " ", text).splitlines()
 
     def shape_of(line: str) -> tuple:

@@ -12,9 +12,9 @@ namespace snare::validation {
 
 namespace {
 
-using scenario::ContactScenario;
 using coupling::MotionResult;
 using Eigen::Vector3d;
+using scenario::ContactScenario;
 
 using base::mm;
 constexpr double mass = 8.9;      // [kg], Table 5
@@ -32,7 +32,8 @@ ContactScenario meeting(double speed, double offset) {
   s.body.start.velocity = {0.0, speed, 0.0};
   s.probe = {offset, 100.0 * mm, 0.0};
   s.friction = {0.3, 0.1, 0.01, 1.0};
-  s.models = {{"wire", "wire", {}}, {"law", "quadratic", coupling::quadratic_law(law_at_90.a, law_at_90.b, law_at_90.c)}};
+  s.models = {{"wire", "wire", {}},
+              {"law", "quadratic", coupling::quadratic_law(law_at_90.a, law_at_90.b, law_at_90.c)}};
   s.options.duration = 0.6;
   s.options.output_interval = 0.6;
   s.options.max_step = 0.2 * 6.75 * mm / speed;
@@ -57,13 +58,15 @@ std::vector<Row> quadratic_law_rows() {
     double high = 50.0 * mm;
     for (int k = 0; k < 60; ++k) {
       const double d = 0.5 * (low + high);
-      (((law_at_90.a / 3.0 * d + law_at_90.b / 2.0) * d + law_at_90.c) * d < 0.5 * mass * speed * speed ? low : high) = d;
+      (((law_at_90.a / 3.0 * d + law_at_90.b / 2.0) * d + law_at_90.c) * d < 0.5 * mass * speed * speed ? low : high) =
+          d;
     }
     const double force = law_at_90.force(low);
     const std::string at = fmt::format("quadratic law head-on at {:g} m/s", speed);
     rows.push_back({"air table", at + ", peak force", "N", "energy balance of Table 4", force, r.peak_force[0],
                     ErrorKind::relative, 5e-3});
-    rows.push_back({"air table", at + ", impulse", "N s", "2 m v", 2.0 * mass * speed, r.impulse[0].y(), ErrorKind::relative, 1e-3});
+    rows.push_back({"air table", at + ", impulse", "N s", "2 m v", 2.0 * mass * speed, r.impulse[0].y(),
+                    ErrorKind::relative, 1e-3});
   }
   return rows;
 }
@@ -77,10 +80,11 @@ std::vector<Row> law_beside_wire_rows() {
       const MotionResult wire = coupling::simulate(scenario::motion_of(s, s.models[0]), s.options);
       const MotionResult law = coupling::simulate(scenario::motion_of(s, s.models[1]), s.options);
       const std::string at = fmt::format("{:g} m/s, probe {:g} mm off the centre of mass", speed, offset / mm);
-      rows.push_back({"air table", "impulse of law over full wire, " + at, "", "Abiko et al., section 4.3: almost the same", 1.0,
-                      law.impulse[0].y() / wire.impulse[0].y(), ErrorKind::absolute, 0.1});
-      rows.push_back({"air table", "full wire, integrator's energy over that of the impact, " + at, "", "conservation", 0.0,
-                      wire.energy.integrator / (0.5 * mass * speed * speed), ErrorKind::absolute, 1e-3});
+      rows.push_back({"air table", "impulse of law over full wire, " + at, "",
+                      "Abiko et al., section 4.3: almost the same", 1.0, law.impulse[0].y() / wire.impulse[0].y(),
+                      ErrorKind::absolute, 0.1});
+      rows.push_back({"air table", "full wire, integrator's energy over that of the impact, " + at, "", "conservation",
+                      0.0, wire.energy.integrator / (0.5 * mass * speed * speed), ErrorKind::absolute, 1e-3});
     }
   }
   return rows;

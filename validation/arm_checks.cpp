@@ -1,15 +1,14 @@
 #include "validation/arm_checks.hpp"
 
 #include "base/units.hpp"
-#include "scenario/arm_scenarios.hpp"
 #include "multibody/dynamics.hpp"
+#include "scenario/arm_scenarios.hpp"
 #include "validation/planar_arm.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace snare::validation {
@@ -29,7 +28,6 @@ using multibody::StiffnessReading;
 using std::numbers::pi;
 
 using base::degree;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Three links with axes z, y, x, so that nothing stays in a plane; on the world or on a free body of 100 kg.
 ElasticArm spatial_arm(bool floating, double stiffness) {
@@ -42,10 +40,9 @@ ElasticArm spatial_arm(bool floating, double stiffness) {
   }
   for (int i = 0; i < 3; ++i) {
     const multibody::Pose X{Eigen::Matrix3d::Identity(), Vector3d(i == 0 ? 0.0 : 1.0, 0.0, 0.0)};
-    frame = arm.tree.add_moving(frame, fmt::format("link {}", i + 1), multibody::JointKind::revolute,
-                                Vector3d::Unit((i + 2) % 3), X,
-                                multibody::SpatialInertia::about_centre(
-                                    10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
+    frame = arm.tree.add_moving(
+        frame, fmt::format("link {}", i + 1), multibody::JointKind::revolute, Vector3d::Unit((i + 2) % 3), X,
+        multibody::SpatialInertia::about_centre(10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
     multibody::ElasticJoint joint;
     joint.name = fmt::format("joint {}", i + 1);
     joint.body = arm.tree.size() - 1;
@@ -60,12 +57,12 @@ ElasticArm spatial_arm(bool floating, double stiffness) {
 double mean_period(const ArmHistory& history, const ElasticArm& arm) {
   const auto swings = scenario::swings(history, arm, 0);
   const std::size_t n = swings.size() / 2 * 2;
-  if (!history.report.usable() || n < 2) return nan;
+  if (!history.report.usable() || n < 2) return not_computed;
   return 2.0 * (swings[n - 1].end - swings[0].begin) / static_cast<double>(n);
 }
 
-Row row(const std::string& name, const std::string& unit, const std::string& source, double reference,
-        double value, ErrorKind kind, double limit) {
+Row row(const std::string& name, const std::string& unit, const std::string& source, double reference, double value,
+        ErrorKind kind, double limit) {
   return {"arms", name, unit, source, reference, value, kind, limit};
 }
 
@@ -79,10 +76,10 @@ std::vector<Row> arm_conservation_rows() {
     run.sample = 0.5;
     const ArmHistory history = multibody::simulate(run);
     const double start = history.samples.front().energy;
-    double worst = history.report.usable() ? 0.0 : nan;
+    double worst = history.report.usable() ? 0.0 : not_computed;
     for (const ArmSample& s : history.samples) worst = std::max(worst, std::abs(s.energy - start) / start);
-    rows.push_back(row("undamped arm, 100 s: largest change of the energy over the energy", "",
-                       "conservation", 0.0, worst, ErrorKind::absolute, 1e-8));
+    rows.push_back(row("undamped arm, 100 s: largest change of the energy over the energy", "", "conservation", 0.0,
+                       worst, ErrorKind::absolute, 1e-8));
   }
   auto run = at_rest(spatial_arm(true, 400.0), Drive::limp(), 10.0, 1e-12);
   run.initial.q.tail<3>() << 0.3, -0.2, 0.25;
@@ -90,16 +87,16 @@ std::vector<Row> arm_conservation_rows() {
   run.sample = 0.1;
   const ArmHistory history = multibody::simulate(run);
   const multibody::Wrench start = history.samples.front().momentum;
-  double linear = history.report.usable() ? 0.0 : nan;
+  double linear = history.report.usable() ? 0.0 : not_computed;
   double angular = linear;
   for (const ArmSample& s : history.samples) {
     linear = std::max(linear, (s.momentum.force - start.force).norm() / start.force.norm());
     angular = std::max(angular, (s.momentum.moment - start.moment).norm() / start.moment.norm());
   }
-  rows.push_back(row("floating arm: relative change of the linear momentum a second", "1/s", "conservation",
-                     0.0, linear / 10.0, ErrorKind::absolute, 1e-12));
-  rows.push_back(row("floating arm: relative change of the angular momentum a second", "1/s", "conservation",
-                     0.0, angular / 10.0, ErrorKind::absolute, 1e-12));
+  rows.push_back(row("floating arm: relative change of the linear momentum a second", "1/s", "conservation", 0.0,
+                     linear / 10.0, ErrorKind::absolute, 1e-12));
+  rows.push_back(row("floating arm: relative change of the angular momentum a second", "1/s", "conservation", 0.0,
+                     angular / 10.0, ErrorKind::absolute, 1e-12));
   return rows;
 }
 
@@ -115,7 +112,7 @@ std::vector<Row> arm_work_rows() {
     run.drives[1].course = {0.0, -1.2, 0.0, 4.0};
     run.sample = 4.0 / 4000.0;
     const ArmHistory history = multibody::simulate(run);
-    double work = nan;
+    double work = not_computed;
     if (history.report.usable() && history.samples.size() == 4001) {
       work = 0.0;
       constexpr double weight[] = {7.0, 32.0, 12.0, 32.0, 7.0};
@@ -130,20 +127,18 @@ std::vector<Row> arm_work_rows() {
     rows.push_back(row("change of the energy of a lossless arm under its servos", "J",
                        "work of the drives, from the history", work, change, ErrorKind::relative, 1e-6));
   }
-  auto run =
-      at_rest(planar_arm(link, link, 2.0, DeflectionLaw::linear(400.0, 0.0)), Drive::limp(), 1.0, 1e-10);
+  auto run = at_rest(planar_arm(link, link, 2.0, DeflectionLaw::linear(400.0, 0.0)), Drive::limp(), 1.0, 1e-10);
   const int tip = run.arm.tree.find_frame("tip");
   const Vector3d force(-1.0, 4.0, 0.0);
   run.loads.push_back({tip, {Vector3d::Zero(), force}, 0.0, 10.0, multibody::TimedLoad::Shape::constant});
   const ArmHistory history = multibody::simulate(run);
   const auto place_of_tip = [&](const ArmSample& s) {
     const double a = s.state.q[0], b = a + s.state.q[1];
-    return Vector3d(link.length * (std::cos(a) + std::cos(b)), link.length * (std::sin(a) + std::sin(b)),
-                    0.0);
+    return Vector3d(link.length * (std::cos(a) + std::cos(b)), link.length * (std::sin(a) + std::sin(b)), 0.0);
   };
   const double way = force.dot(place_of_tip(history.samples.back()) - place_of_tip(history.samples.front()));
   rows.push_back(row("work of a constant force at the tip of a limp arm", "J", "force times way", way,
-                     history.report.usable() ? history.samples.back().work.loads : nan, ErrorKind::relative,
+                     history.report.usable() ? history.samples.back().work.loads : not_computed, ErrorKind::relative,
                      1e-6));
   rows.push_back(row("energy that this force gives to the arm", "J", "force times way", way,
                      history.samples.back().energy, ErrorKind::relative, 1e-6));
@@ -179,10 +174,8 @@ std::vector<Row> arm_frequency_rows() {
   const double trace = K * (mass(0, 0) + mass(1, 1)) / mass.determinant(), det = K * K / mass.determinant();
   const double spread = std::sqrt(0.25 * trace * trace - det);
   const auto modes = multibody::natural_modes(two, Vector2d(0.3, 0.7), {Drive::locked(), Drive::locked()});
-  add("two links, motors locked, first", std::sqrt(0.5 * trace - spread) / (2.0 * pi), modes[0].frequency,
-      1e-10);
-  add("two links, motors locked, second", std::sqrt(0.5 * trace + spread) / (2.0 * pi), modes[1].frequency,
-      1e-10);
+  add("two links, motors locked, first", std::sqrt(0.5 * trace - spread) / (2.0 * pi), modes[0].frequency, 1e-10);
+  add("two links, motors locked, second", std::sqrt(0.5 * trace + spread) / (2.0 * pi), modes[1].frequency, 1e-10);
   return rows;
 }
 
@@ -208,17 +201,17 @@ std::vector<Row> rigid_limit_rows() {
   std::vector<double> differences;
   for (const double K : {1e4, 1e5, 1e6}) {
     // A critical damper lets the gear settle; a servo at its limit is a constant torque.
-    auto run = at_rest(planar_arm(link, link, B, DeflectionLaw::linear(K, 2.0 * std::sqrt(2.0 * K))), Drive{},
-                       end, 1e-9);
+    auto run =
+        at_rest(planar_arm(link, link, B, DeflectionLaw::linear(K, 2.0 * std::sqrt(2.0 * K))), Drive{}, end, 1e-9);
     for (int k = 0; k < 2; ++k) {
       run.drives[static_cast<std::size_t>(k)] =
           Drive::holding(torque[k] > 0.0 ? 1e6 : -1e6, 1.0, 0.0, std::abs(torque[k]));
     }
     const ArmHistory history = multibody::simulate(run);
-    differences.push_back(history.report.usable() ? (history.samples.back().state.q - q).norm() : nan);
+    differences.push_back(history.report.usable() ? (history.samples.back().state.q - q).norm() : not_computed);
   }
-  return {row("stiff gears: difference to the rigid arm after 2 s at K = 1e6 N m/rad", "rad",
-              "rigid double pendulum", 0.0, differences[2], ErrorKind::absolute, 1e-4),
+  return {row("stiff gears: difference to the rigid arm after 2 s at K = 1e6 N m/rad", "rad", "rigid double pendulum",
+              0.0, differences[2], ErrorKind::absolute, 1e-4),
           row("stiff gears: that difference at K = 1e5 over that at 1e6", "", "first order in 1/K", 10.0,
               differences[1] / differences[2], ErrorKind::relative, 0.05)};
 }
@@ -245,8 +238,8 @@ std::vector<Row> amplitude_rows() {
     run.initial.q[0] = A;
     run.tolerances.motion = 1e-13;
     rows.push_back(row(fmt::format("undamped Table 2, period at an amplitude of {:g} deg", amplitude), "s",
-                       "quadrature of the energy integral", period,
-                       mean_period(multibody::simulate(run), arm), ErrorKind::relative, 1e-4));
+                       "quadrature of the energy integral", period, mean_period(multibody::simulate(run), arm),
+                       ErrorKind::relative, 1e-4));
   }
   return rows;
 }
@@ -259,10 +252,9 @@ std::vector<Row> floating_base_rows() {
   const int base = arm.tree.add_moving(
       0, "base", multibody::JointKind::free, Vector3d::UnitZ(), {},
       multibody::SpatialInertia::about_centre(m0, Vector3d::Zero(), I0 * Eigen::Matrix3d::Identity()));
-  arm.tree.add_moving(
-      base, "link", multibody::JointKind::revolute, Vector3d::UnitZ(),
-      {Eigen::Matrix3d::Identity(), {b, 0.0, 0.0}},
-      multibody::SpatialInertia::about_centre(m1, {l, 0.0, 0.0}, I1 * Eigen::Matrix3d::Identity()));
+  arm.tree.add_moving(base, "link", multibody::JointKind::revolute, Vector3d::UnitZ(),
+                      {Eigen::Matrix3d::Identity(), {b, 0.0, 0.0}},
+                      multibody::SpatialInertia::about_centre(m1, {l, 0.0, 0.0}, I1 * Eigen::Matrix3d::Identity()));
   multibody::ElasticJoint joint;
   joint.name = "joint";
   joint.body = 1;
@@ -286,13 +278,13 @@ std::vector<Row> floating_base_rows() {
     return Vector2d(b * std::cos(th) + l * std::cos(th + q), b * std::sin(th) + l * std::sin(th + q));
   };
   const Vector2d moved = -m1 / (m0 + m1) * (between(turn, q_end) - between(0.0, 0.0));
-  const double usable = history.report.usable() ? 0.0 : nan;
+  const double usable = history.report.usable() ? 0.0 : not_computed;
   return {row("floating base: turn after a motion of its link", "rad", "momentum of zero, quadrature", turn,
               found + usable, ErrorKind::relative, 1e-6),
-          row("floating base: way of its centre along x", "m", "centre of mass stays", moved.x(),
-              last.q[0] + usable, ErrorKind::relative, 1e-6),
-          row("floating base: way of its centre along y", "m", "centre of mass stays", moved.y(),
-              last.q[1] + usable, ErrorKind::relative, 1e-6)};
+          row("floating base: way of its centre along x", "m", "centre of mass stays", moved.x(), last.q[0] + usable,
+              ErrorKind::relative, 1e-6),
+          row("floating base: way of its centre along y", "m", "centre of mass stays", moved.y(), last.q[1] + usable,
+              ErrorKind::relative, 1e-6)};
 }
 
 std::vector<Row> jump_rows() {
@@ -303,40 +295,36 @@ std::vector<Row> jump_rows() {
     StiffnessReading reading;
     double width;
   };
-  for (const Case& c : {Case{"continuous", StiffnessReading::continuous, 0.0},
-                        Case{"literal, jumps", StiffnessReading::literal, 0.0},
-                        Case{"literal, narrow ramps", StiffnessReading::literal, width}}) {
-    auto run = at_rest(one_joint_arm(inertia, 1.0, table2_law(1.0, c.reading, c.width)), Drive::locked(),
-                       60.0, 1e-7);
+  for (const Case& c :
+       {Case{"continuous", StiffnessReading::continuous, 0.0}, Case{"literal, jumps", StiffnessReading::literal, 0.0},
+        Case{"literal, narrow ramps", StiffnessReading::literal, width}}) {
+    auto run = at_rest(one_joint_arm(inertia, 1.0, table2_law(1.0, c.reading, c.width)), Drive::locked(), 60.0, 1e-7);
     run.initial.q[0] = 0.5 * degree;
     run.tolerances.motion = 1e-11;
     const ArmHistory history = multibody::simulate(run);
     const PlainRun plain = swing_on_table2(inertia, 0.5, 60.0, c.reading == StiffnessReading::literal);
     const std::string name = fmt::format("Table 2 ({}), {} kg m^2 let go at 0.5 deg: ", c.name, inertia);
-    const double usable = history.report.usable() ? 0.0 : nan;
+    const double usable = history.report.usable() ? 0.0 : not_computed;
     // A ramp is left at two ends.
     const double events = static_cast<double>(history.events.size()) / (c.width > 0.0 ? 2.0 : 1.0);
     rows.push_back(row(name + "events a passage of a jump, in 60 s", "", "passages by Runge and Kutta", 1.0,
                        events / plain.passages + usable, ErrorKind::absolute, 1e-12));
-    rows.push_back(row(
-        name + "integrator's steps an event", "", "no thrashing", 0.0,
-        static_cast<double>(history.statistics.steps) / static_cast<double>(history.events.size()) + usable,
-        ErrorKind::absolute, 60.0));
+    rows.push_back(
+        row(name + "integrator's steps an event", "", "no thrashing", 0.0,
+            static_cast<double>(history.statistics.steps) / static_cast<double>(history.events.size()) + usable,
+            ErrorKind::absolute, 60.0));
   }
   // A load of 10 N m between the torques of the literal jump (0.5 and 19 N m): Filippov's solution rests at the jump.
   for (const double w : {width, 0.1 * width}) {
     auto run = at_rest(one_joint_arm(0.01 * inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)),
                        Drive::locked(), 20.0, 1e-7);
     run.tolerances.motion = 1e-12;
-    run.loads.push_back(
-        {1, {{0.0, 0.0, 10.0}, Vector3d::Zero()}, 0.0, 1e3, multibody::TimedLoad::Shape::constant});
+    run.loads.push_back({1, {{0.0, 0.0, 10.0}, Vector3d::Zero()}, 0.0, 1e3, multibody::TimedLoad::Shape::constant});
     const ArmHistory history = multibody::simulate(run);
-    const double usable = history.report.usable() ? 0.0 : nan;
-    const std::string name =
-        fmt::format("10 N m on a literal jump of Table 2, ramp of {:g} deg: ", w / degree);
+    const double usable = history.report.usable() ? 0.0 : not_computed;
+    const std::string name = fmt::format("10 N m on a literal jump of Table 2, ramp of {:g} deg: ", w / degree);
     rows.push_back(row(name + "deflection at rest", "deg", "Filippov: at the jump", 0.04,
-                       history.samples.back().deflection[0] / degree + usable, ErrorKind::absolute,
-                       0.5 * w / degree));
+                       history.samples.back().deflection[0] / degree + usable, ErrorKind::absolute, 0.5 * w / degree));
     rows.push_back(row(name + "torque at rest", "N m", "the load", 10.0,
                        history.samples.back().joint_torque[0] + usable, ErrorKind::relative, 1e-3));
     rows.push_back(row(name + "integrator's steps in 20 s", "", "no thrashing", 0.0,
@@ -365,18 +353,18 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
       const bool there = history.report.usable() && i < found.size() && i < expected.size();
       const std::string name = fmt::format("JEMRMS joint step of 0.5 deg, swing {}: ", i + 1);
       rows.push_back(row(name + "end", "s", "Table 2 by Runge and Kutta", there ? expected[i].end : 1.0,
-                         there ? found[i].end : nan, ErrorKind::relative, 1e-3));
+                         there ? found[i].end : not_computed, ErrorKind::relative, 1e-3));
       rows.push_back(row(name + "frequency", "Hz", "Table 2 by Runge and Kutta",
                          there ? 0.5 / (expected[i].end - expected[i].begin) : 1.0,
-                         there ? found[i].frequency() : nan, ErrorKind::relative, 1e-3));
+                         there ? found[i].frequency() : not_computed, ErrorKind::relative, 1e-3));
       rows.push_back(row(name + "peak", "deg", "Table 2 by Runge and Kutta", there ? expected[i].peak : 1.0,
-                         there ? found[i].peak / degree : nan, ErrorKind::relative, 1e-3));
+                         there ? found[i].peak / degree : not_computed, ErrorKind::relative, 1e-3));
     }
     const bool there = !found.empty() && found.size() == expected.size();
-    rows.push_back(row(
-        "JEMRMS joint step: last frequency over the first", "", "Table 2 by Runge and Kutta",
-        there ? (expected[0].end - expected[0].begin) / (expected.back().end - expected.back().begin) : 1.0,
-        there ? found.back().frequency() / found.front().frequency() : nan, ErrorKind::relative, 5e-3));
+    rows.push_back(
+        row("JEMRMS joint step: last frequency over the first", "", "Table 2 by Runge and Kutta",
+            there ? (expected[0].end - expected[0].begin) / (expected.back().end - expected.back().begin) : 1.0,
+            there ? found.back().frequency() / found.front().frequency() : not_computed, ErrorKind::relative, 5e-3));
   }
   // All six joints on Table 2 as printed: loads hold joints at the jump for a while.
   for (multibody::ElasticJoint& joint : arm.arm.joints)
@@ -387,16 +375,16 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
     run.tolerances.motion = 1e-8;
     const ArmHistory history = multibody::simulate(run);
     const std::string name = fmt::format("literal Table 2 at all six joints, step of joint {}: ", k + 1);
-    rows.push_back(row(name + "time reached", "s", "to the end", 60.0, history.samples.back().time,
-                       ErrorKind::absolute, 1e-9));
-    rows.push_back(row(name + "events in 60 s", "", "no thrashing", 0.0,
-                       static_cast<double>(history.events.size()), ErrorKind::absolute, 2000.0));
+    rows.push_back(
+        row(name + "time reached", "s", "to the end", 60.0, history.samples.back().time, ErrorKind::absolute, 1e-9));
+    rows.push_back(row(name + "events in 60 s", "", "no thrashing", 0.0, static_cast<double>(history.events.size()),
+                       ErrorKind::absolute, 2000.0));
     rows.push_back(row(name + "steps an event", "", "no thrashing", 0.0,
                        static_cast<double>(history.statistics.steps) /
                            std::max<double>(1.0, static_cast<double>(history.events.size())),
                        ErrorKind::absolute, 100.0));
-    rows.push_back(row(name + "energy balance", "", "conservation", 0.0, history.energy_error,
-                       ErrorKind::absolute, 1e-3));
+    rows.push_back(
+        row(name + "energy balance", "", "conservation", 0.0, history.energy_error, ErrorKind::absolute, 1e-3));
   }
   return rows;
 }
@@ -411,11 +399,11 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     auto run = scenario::tip_impulse(arm, pose, hold, {0.0, 200.0, 0.0}, 0.5, 60.0);
     run.sample = 0.1;
     const ArmHistory history = multibody::simulate(run);
-    const double usable = history.report.usable() ? 0.0 : nan;
+    const double usable = history.report.usable() ? 0.0 : not_computed;
     const double away = (history.samples.back().state.q - history.samples.front().state.q).norm() + usable;
     if (hold == scenario::Hold::as_described) {
-      rows.push_back(row("SSRMS held by its servos, 60 s after 200 N s at the tip: joints away", "rad",
-                         "comes back", 0.0, away, ErrorKind::absolute, 1e-3));
+      rows.push_back(row("SSRMS held by its servos, 60 s after 200 N s at the tip: joints away", "rad", "comes back",
+                         0.0, away, ErrorKind::absolute, 1e-3));
     }
     rows.push_back(row(fmt::format("SSRMS {} after 200 N s at the tip: energy balance",
                                    hold == scenario::Hold::limp ? "limp" : "held"),
@@ -434,8 +422,7 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
   const ArmHistory history = multibody::simulate(run);
   multibody::Kinematics kinematics(arm.arm.tree);
   multibody::place(arm.arm.tree, run.initial.q, kinematics);
-  const VectorXd p =
-      multibody::frame_jacobian(arm.arm.tree, kinematics, arm.tip).bottomRows<3>().transpose() * impulse;
+  const VectorXd p = multibody::frame_jacobian(arm.arm.tree, kinematics, arm.tip).bottomRows<3>().transpose() * impulse;
   multibody::DynamicsWorkspace workspace(arm.arm.tree);
   Eigen::MatrixXd mass = multibody::mass_matrix(arm.arm.tree, run.initial.q, workspace);
   const double links = 0.5 * p.dot(mass.ldlt().solve(p));
@@ -444,13 +431,11 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     const int i = arm.arm.tree.body(joint.body).v_index;
     mass(i, i) += joint.motor_inertia;
   }
-  const double usable = history.report.usable() ? 0.0 : nan;
-  rows.push_back(row("SSRMS limp without friction, 0.58 N s in 10 us at the tip: work of the push", "J",
-                     "p H^-1 p/2", links, history.samples.back().work.loads + usable, ErrorKind::relative,
-                     1e-3));
-  rows.push_back(row("the same 30 s later: energy left", "J", "p (H + B)^-1 p/2",
-                     0.5 * p.dot(mass.ldlt().solve(p)), history.samples.back().energy + usable,
-                     ErrorKind::relative, 1e-2));
+  const double usable = history.report.usable() ? 0.0 : not_computed;
+  rows.push_back(row("SSRMS limp without friction, 0.58 N s in 10 us at the tip: work of the push", "J", "p H^-1 p/2",
+                     links, history.samples.back().work.loads + usable, ErrorKind::relative, 1e-3));
+  rows.push_back(row("the same 30 s later: energy left", "J", "p (H + B)^-1 p/2", 0.5 * p.dot(mass.ldlt().solve(p)),
+                     history.samples.back().energy + usable, ErrorKind::relative, 1e-2));
   return rows;
 }
 

@@ -149,8 +149,7 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
     }
     double moment = factor * section + viscous * B * (kappa - old[0]);
     tangent = factor * section_tangent + viscous * B;
-    by_S = B_slope / bending_ * section + factor * memory_slope +
-           viscous * (B_slope * (kappa - old[0]) - B * old[1]);
+    by_S = B_slope / bending_ * section + factor * memory_slope + viscous * (B_slope * (kappa - old[0]) - B * old[1]);
     if (strands_) {
       const double arm = kappa - strand[0];
       moment += extra_ * std::clamp(arm, -slip_, slip_);

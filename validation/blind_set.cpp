@@ -1,6 +1,7 @@
 #include "validation/blind_set.hpp"
 
 #include "base/units.hpp"
+#include "validation/blind_push.hpp"
 
 #include <Eigen/QR>
 
@@ -17,34 +18,33 @@ namespace snare::validation {
 namespace {
 
 using base::mm;
-constexpr double sigma = 0.05;           // of a reading [N]
+constexpr double sigma = 0.05;  // of a reading [N]
 constexpr int readings_a_leg = 20;
 constexpr double diameter = 1.5 * mm;
 constexpr double length = 176.0 * mm;
-constexpr double modulus = 193e9;        // [Pa]
-constexpr double density = 7930.0;       // [kg/m^3]
-constexpr double radius = 6.0 * mm;      // of the pusher
+constexpr double modulus = 193e9;    // [Pa]
+constexpr double density = 7930.0;   // [kg/m^3]
+constexpr double radius = 6.0 * mm;  // of the pusher
 
 struct Push {
   double position, span, travel, speed;
 };
 // Slack 1 mm and 0.5 mm; pushed to where the wire is taut.
-constexpr Push pushes[] = {{40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm}, {65 * mm, 175 * mm, 2.4 * mm, 2.0 * mm},
-                           {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm}, {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
+constexpr Push pushes[] = {{40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {65 * mm, 175 * mm, 2.4 * mm, 2.0 * mm},
+                           {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
                            {65 * mm, 175.5 * mm, 2.4 * mm, 0.2 * mm}, {90 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm}};
 
 /// The wire of one set and what a laboratory would not know of it.
 struct Hidden {
   double declared_bending = 0.0, declared_axial = 0.0;
   double bending = 0.0, axial = 0.0;
-  double sign = 1.0;          // of effects that go both ways
-  double place = 0.0;         // of a damaged stretch, as a share of the wire
+  double sign = 1.0;   // of effects that go both ways
+  double place = 0.0;  // of a damaged stretch, as a share of the wire
   double slip_curvature = 0.0;
   double drift_shape = 0.0;
   double clamp_compliance = 0.0;
   double highest_stress = 0.0;  // about
 };
-
 
 std::vector<double> travel_of(const Push& p) {
   std::vector<double> d;
@@ -83,25 +83,41 @@ std::vector<double> read(const std::string& effect, const Push& p, const Hidden&
   double offset = 0.0;
   const double s = h.sign * a;
   const double area = 0.25 * std::numbers::pi * diameter * diameter;
-  if (effect == "wire_length") w.length += 0.3 * mm * s;
-  else if (effect == "span") w.span += 0.3 * mm * s;
-  else if (effect == "contact_position") w.position += 2.0 * mm * s;
-  else if (effect == "push_misalignment") w.misalignment = 0.1 * s;
-  else if (effect == "mount_slip") w.mount_slip_tension = highest_tension * std::max(0.05, 1.0 - 0.9 * a);
-  else if (effect == "mount_axial_compliance") w.mount_axial_compliance = 1e-6 * a;
-  else if (effect == "mount_rotational_compliance") w.mount_rotational_compliance += 2.0 * a;
-  else if (effect == "contact_friction") w.friction = 0.4 * a;
-  else if (effect == "pusher_compliance") w.pusher_compliance = 1e-6 * a;
-  else if (effect == "displacement_offset") for (double& d : travel) d -= 0.1 * mm * s;
-  else if (effect == "force_offset") offset = 5.0 * s;
-  else if (effect == "force_gain") gain += 0.2 * s;
-  else if (effect == "natural_curvature") w.natural_curvature = 5.0 * s;
+  if (effect == "wire_length")
+    w.length += 0.3 * mm * s;
+  else if (effect == "span")
+    w.span += 0.3 * mm * s;
+  else if (effect == "contact_position")
+    w.position += 2.0 * mm * s;
+  else if (effect == "push_misalignment")
+    w.misalignment = 0.1 * s;
+  else if (effect == "mount_slip")
+    w.mount_slip_tension = highest_tension * std::max(0.05, 1.0 - 0.9 * a);
+  else if (effect == "mount_axial_compliance")
+    w.mount_axial_compliance = 1e-6 * a;
+  else if (effect == "mount_rotational_compliance")
+    w.mount_rotational_compliance += 2.0 * a;
+  else if (effect == "contact_friction")
+    w.friction = 0.4 * a;
+  else if (effect == "pusher_compliance")
+    w.pusher_compliance = 1e-6 * a;
+  else if (effect == "displacement_offset")
+    for (double& d : travel) d -= 0.1 * mm * s;
+  else if (effect == "force_offset")
+    offset = 5.0 * s;
+  else if (effect == "force_gain")
+    gain += 0.2 * s;
+  else if (effect == "natural_curvature")
+    w.natural_curvature = 5.0 * s;
   else if (effect == "strand_hysteresis") {
     w.strand_extra_stiffness = h.bending * a;
     w.strand_slip_curvature = h.slip_curvature;
-  } else if (effect == "plasticity") w.yield_stress = h.highest_stress * std::max(0.05, 4.0 - 3.9 * a);
-  else if (effect == "gravity") w.weight = {0.0, 9.81 * density * area * s};
-  else if (effect == "rate_viscosity") w.relaxation_time = 0.1 * a;
+  } else if (effect == "plasticity")
+    w.yield_stress = h.highest_stress * std::max(0.05, 4.0 - 3.9 * a);
+  else if (effect == "gravity")
+    w.weight = {0.0, 9.81 * density * area * s};
+  else if (effect == "rate_viscosity")
+    w.relaxation_time = 0.1 * a;
   else if (effect == "damage") {
     w.damage_from = (h.place - 0.08) * length;
     w.damage_to = (h.place + 0.08) * length;
@@ -128,10 +144,25 @@ Eigen::VectorXd read_all(const std::string& effect, const Hidden& h, double a, d
 }  // namespace
 
 const std::vector<std::string>& blind_effects() {
-  static const std::vector<std::string> all{
-      "wire_length", "span", "contact_position", "push_misalignment", "mount_slip", "mount_axial_compliance",
-      "mount_rotational_compliance", "contact_friction", "pusher_compliance", "displacement_offset", "force_offset",
-      "force_gain", "natural_curvature", "strand_hysteresis", "plasticity", "gravity", "rate_viscosity", "damage", "drift"};
+  static const std::vector<std::string> all{"wire_length",
+                                            "span",
+                                            "contact_position",
+                                            "push_misalignment",
+                                            "mount_slip",
+                                            "mount_axial_compliance",
+                                            "mount_rotational_compliance",
+                                            "contact_friction",
+                                            "pusher_compliance",
+                                            "displacement_offset",
+                                            "force_offset",
+                                            "force_gain",
+                                            "natural_curvature",
+                                            "strand_hysteresis",
+                                            "plasticity",
+                                            "gravity",
+                                            "rate_viscosity",
+                                            "damage",
+                                            "drift"};
   return all;
 }
 
@@ -141,7 +172,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     throw std::invalid_argument("no blind effect " + effect);
   }
   std::mt19937 random(7919u * seed + 17u);
-  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
+  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many
+  // times.
   const auto which = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
   std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
   std::mt19937 noise(own);
@@ -167,8 +199,9 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   }
   // Of tension, or of the buckled shape: amplitude 2 sqrt(slack / L) of the tangent, E of the strand.
   const double slack = length - pushes[0].span;
-  h.highest_stress = std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
-                              0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
+  h.highest_stress =
+      std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
+               0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
   const Eigen::VectorXd plain = read_all("none", h, 0.0, highest_tension);
   Eigen::VectorXd force = plain;
   BlindSet set;
@@ -183,7 +216,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
       base.col(k) = read_all("none", other, 0.0, highest_tension) - plain;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly.
+    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not
+    // linearly.
     const auto size_of = [&](const Eigen::VectorXd& changed) {
       Hidden fitted = h;
       Eigen::VectorXd left = changed - plain;
@@ -195,7 +229,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
       }
       return (left - base * qr.solve(left)).norm() / sigma;
     };
-    // The size rises steadily with the amount: proportional steps, held inside what is known to be too small and too large.
+    // The size rises steadily with the amount: proportional steps, held inside what is known to be too small
+    // and too large.
     double low = 0.0;
     double high = 1.0;
     double a = effect == "plasticity" ? 0.5 : 0.05;
@@ -235,7 +270,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     identification::Readings readings;
     readings.displacement = travel_of(p);
     readings.time = time_of(p);
-    for (std::size_t i = 0; i < readings.displacement.size(); ++i) readings.force.push_back(force[row++] + sigma * normal(noise));
+    for (std::size_t i = 0; i < readings.displacement.size(); ++i)
+      readings.force.push_back(force[row++] + sigma * normal(noise));
     t.travel = readings.displacement;
     series.readings = readings;
     series.force_sigma = sigma;

@@ -20,13 +20,13 @@ struct BlindSet {
   double axial_stiffness = 0.0;    ///< true [N]
 };
 
-/// Effects that can be put in; the last two are in no catalogue: a stretch of the wire that is softer in bending, and a
-/// reading of the force that drifts with time.
+/// Effects that can be put in; the last two are in no catalogue: a stretch of the wire that is softer in
+/// bending, and a reading of the force that drifts with time.
 [[nodiscard]] const std::vector<std::string>& blind_effects();
 
-/// Three positions, two slacks, load and unload at two speeds, normal noise; EI and EA of the wire off the declared ones by
-/// about 10 %. The same seed gives the same wire for every effect and size. size: wanted, > 0; effects with
-/// a largest size (a slipping mount) stay below it where they must. "none" ignores it.
+/// Three positions, two slacks, load and unload at two speeds, normal noise; EI and EA of the wire off the
+/// declared ones by about 10 %. The same seed gives the same wire for every effect and size. size: wanted, >
+/// 0; effects with a largest size (a slipping mount) stay below it where they must. "none" ignores it.
 [[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed);
 
 }  // namespace snare::validation

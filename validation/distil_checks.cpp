@@ -1,10 +1,10 @@
 #include "validation/distil_checks.hpp"
 
+#include "coupling/contact/tensioned_wire.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "reduction/law_fit.hpp"
 #include "reduction/snare_joint.hpp"
 #include "reduction/table_builder.hpp"
-#include "coupling/contact/tensioned_wire.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/declared_wire.hpp"
 
@@ -47,8 +47,7 @@ std::vector<double> recorded(const PublishedLaw& law, std::vector<double>& displ
   }
   for (const coupling::PushPoint& p : coupling::solve_push_extrapolated(test, {}).curve.points)
     force.push_back(p.force);
-  if (force.size() != displacement.size())
-    throw std::runtime_error("the push on the traced wire ended early");
+  if (force.size() != displacement.size()) throw std::runtime_error("the push on the traced wire ended early");
   return force;
 }
 
@@ -75,20 +74,19 @@ std::vector<Row> published_rows() {
     const double scatter = std::sqrt((1.0 - law.r_squared) / law.r_squared * variance);
     rows.push_back(
         {group,
-         fmt::format(
-             "quadratic of the traced wire at s = {:g} mm: rms to the published one over its scatter, "
-             "at most 1",
-             1e3 * law.position),
+         fmt::format("quadratic of the traced wire at s = {:g} mm: rms to the published one over its scatter, "
+                     "at most 1",
+                     1e3 * law.position),
          "", "Abiko et al., Table 4", 0.0, std::sqrt(apart) / scatter, ErrorKind::absolute, 1.0});
     stiffness.push_back(force.back() / recorded_range);
     double falls = 0.0;
     for (std::size_t i = 1; i < d.size(); ++i) {
       if (d[i] > law.zero + 1e-4 && force[i] / d[i] < force[i - 1] / d[i - 1]) falls += 1.0;
     }
-    rows.push_back({group,
-                    fmt::format("larger penetration, larger stiffness at s = {:g} mm: points that fall",
-                                1e3 * law.position),
-                    "", "Abiko et al., section 4", 0.0, falls, ErrorKind::absolute, 0.5});
+    rows.push_back(
+        {group,
+         fmt::format("larger penetration, larger stiffness at s = {:g} mm: points that fall", 1e3 * law.position), "",
+         "Abiko et al., section 4", 0.0, falls, ErrorKind::absolute, 0.5});
   }
   const bool ordered = stiffness[0] > stiffness[1] && stiffness[1] > stiffness[2];
   rows.push_back({group, "stiffness falls from s = 40 over 65 to 90 mm at 4 mm (1: yes)", "",
@@ -125,11 +123,10 @@ std::vector<Row> table_rows() {
     worst = std::max(worst, std::abs(table - curve.points.back().force));
   }
   const double range = built.loading_error.force_range;
-  return {{"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force",
-           "", "full wire, solved anew on a finer mesh", 0.0, worst / range, ErrorKind::absolute, 0.005},
+  return {{"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force", "",
+           "full wire, solved anew on a finer mesh", 0.0, worst / range, ErrorKind::absolute, 0.005},
           {"distilled laws", "the same over the bound that the table states", "",
-           "full wire, solved anew on a finer mesh", 0.0, worst / built.loading_error.bound,
-           ErrorKind::absolute, 1.0}};
+           "full wire, solved anew on a finer mesh", 0.0, worst / built.loading_error.bound, ErrorKind::absolute, 1.0}};
 }
 
 std::vector<Row> closed_form_rows() {
@@ -140,18 +137,17 @@ std::vector<Row> closed_form_rows() {
   const auto exact = coupling::stretched_wire_law(middle);
   const auto linear = coupling::stretched_wire_linearised(middle);
   const std::string honda = "Honda et al., eqs 1 and 2, evaluated by hand";
-  rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, 60810.0,
-                  linear->stiffness(p, 1e-3), ErrorKind::relative, 1e-4});  // printed to four digits
+  rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, 60810.0, linear->stiffness(p, 1e-3),
+                  ErrorKind::relative, 1e-4});  // printed to four digits
   rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, 1.068,
                   exact->force(p, 1e-3) / linear->force(p, 1e-3), ErrorKind::absolute, 5e-4});
   rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda, 1.74,
                   exact->force(p, 1e-2) / linear->force(p, 1e-2), ErrorKind::absolute, 5e-3});
   for (const double s : {0.04, 0.065, 0.09}) {
-    rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s),
-                    "N/m", "w'''' - m^2 w'' = 0 on both sides, solved by itself",
+    rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s), "N/m",
+                    "w'''' - m^2 w'' = 0 on both sides, solved by itself",
                     tensioned_clamped_stiffness(0.04796, 50.0, 0.175, s),
-                    coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative,
-                    1e-9});
+                    coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative, 1e-9});
   }
   return rows;
 }
@@ -190,20 +186,19 @@ std::vector<Row> snare_rows() {
     if (!cycle.report.usable()) throw std::runtime_error(cycle.report.message);
     // The slip between two points counts as one straight step.
     rows.push_back({group, fmt::format("{}: dissipation over the loop's area", name), "",
-                    "energy balance of a closed cycle", 1.0, cycle.dissipated / cycle.loop,
-                    ErrorKind::absolute, 0.005});
+                    "energy balance of a closed cycle", 1.0, cycle.dissipated / cycle.loop, ErrorKind::absolute,
+                    0.005});
     const double width = cycle.half_width / cycle.force_range;
     if (axis < 2) {
-      rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper, 1.0,
-                      cycle.linear_r2, ErrorKind::absolute, 0.05});
-      rows.push_back({group,
-                      fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "",
+      rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper, 1.0, cycle.linear_r2,
+                      ErrorKind::absolute, 0.05});
+      rows.push_back({group, fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "",
                       paper, 0.0, width, ErrorKind::absolute, 0.1});
     } else {
-      rows.push_back({group, "z: R^2 of a straight line, not linear", "", paper, 0.0, cycle.linear_r2,
-                      ErrorKind::absolute, 0.8});
-      rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper, 0.5,
-                      width, ErrorKind::absolute, 0.1});
+      rows.push_back(
+          {group, "z: R^2 of a straight line, not linear", "", paper, 0.0, cycle.linear_r2, ErrorKind::absolute, 0.8});
+      rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper, 0.5, width,
+                      ErrorKind::absolute, 0.1});
       rows.push_back({group, "z: rms error of constant friction over the force", "", paper, 0.0,
                       cycle.rms_error / cycle.force_range, ErrorKind::absolute, 0.05});
     }

@@ -11,13 +11,13 @@ using numerics::SolveReport;
 using numerics::Termination;
 
 namespace {
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int kMostIterations = 30;
 constexpr double kLargestMove = 0.3;  // [rad] or lengths L
 }  // namespace
 
 double Shooting::critical() const {
-  return ends_ == ElasticaEnds::clamped ? 4.0 * kPi * kPi : kPi * kPi;
+  return ends_ == ElasticaEnds::clamped ? 4.0 * pi * pi : pi * pi;
 }
 
 System Shooting::assemble(const VectorXd& z, bool wrapped, const Demand& demand) const {
@@ -203,8 +203,7 @@ SolveReport Shooting::solve(VectorXd& z, bool wrapped, const Demand& demand) con
       const double arc_end = trial[end(wrapped)];
       if (arc_begin > 0.0 && arc_end < 1.0) {
         sys = assemble(trial, wrapped, demand);
-        if (near ||
-            sys.residual.norm() < (1.0 - 0.1 * fraction) * report.residual_norm * std::sqrt(z.size()) ||
+        if (near || sys.residual.norm() < (1.0 - 0.1 * fraction) * report.residual_norm * std::sqrt(z.size()) ||
             relative < 1e-8) {
           break;
         }
@@ -241,14 +240,14 @@ bool Shooting::determinant_positive(const VectorXd& z, bool wrapped, double heig
 // shortening A^2 pi^2/(4 l).
 VectorXd Shooting::buckled_guess(double excess) const {
   VectorXd z = VectorXd::Zero(size(false));
-  const double amplitude = 2.0 / kPi * std::sqrt(excess * span_);
+  const double amplitude = 2.0 / pi * std::sqrt(excess * span_);
   const double contact = first_position() / span_;
   const bool clamped = ends_ == ElasticaEnds::clamped;
   for (Index i = 0; i < 2 * pieces_; ++i) {
     const double part = static_cast<double>(i % pieces_) / pieces_;
     const double arc = i < pieces_ ? contact * part : contact + (1.0 - contact) * part;
-    const double phase = (clamped ? 2.0 : 1.0) * kPi * arc;
-    const double rate = phase == 0.0 ? (clamped ? 2.0 : 1.0) * kPi / span_ : phase / arc / span_;
+    const double phase = (clamped ? 2.0 : 1.0) * pi * arc;
+    const double rate = phase == 0.0 ? (clamped ? 2.0 : 1.0) * pi / span_ : phase / arc / span_;
     const double half = clamped ? 0.5 * amplitude : amplitude;
     z[4 * i] = arc * span_;
     z[4 * i + 1] = clamped ? half * (1.0 - std::cos(phase)) : half * std::sin(phase);

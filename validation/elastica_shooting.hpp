@@ -4,7 +4,7 @@
 
 #include "numerics/report.hpp"
 #include "validation/elastica_flow.hpp"
-#include "validation/elastica_push.hpp"
+#include "validation/elastica_problem.hpp"
 
 /// Multiple-shooting equations behind elastica_push.hpp; not meant for use by itself.
 namespace snare::validation::shooting {

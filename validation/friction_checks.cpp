@@ -1,9 +1,11 @@
 #include "validation/friction_checks.hpp"
 
 #include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +40,7 @@ Motion block_on_wire() {
   w.diameter = thickness;
   w.length = span;
   Motion motion;
-  wire::RodInMotion rod = coupling::rod_in_motion(w, span, 8);
+  wire::RodInMotion rod = wire::rod_in_motion(w, span, 8);
   rod.damping.bending_time = rod.damping.axial_time = 1e-4;
   motion.wires.push_back({"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {span, 0.0, 0.0}), {}});
   coupling::MotionBody body;
@@ -81,8 +83,8 @@ MotionOptions accurate(double duration) {
 /// Place of the block along z at two times; NaN when the integration did not get there.
 struct Travel {
   MotionResult result;
-  double early = std::nan("");
-  double late = std::nan("");
+  double early = not_computed;
+  double late = not_computed;
 };
 
 Travel travel(const Motion& motion, double early, double late) {
@@ -94,7 +96,7 @@ Travel travel(const Motion& motion, double early, double late) {
     t.late = s.bodies[0].position.z();
     return false;
   });
-  if (!t.result.report.usable()) t.late = std::nan("");
+  if (!t.result.report.usable()) t.late = not_computed;
   return t;
 }
 
@@ -117,8 +119,8 @@ std::vector<Row> incline_rows() {
     for (int k = 0; k < 50; ++k)
       x -= (0.5 * x * (3.0 - x * x) - std::tan(0.9 * friction_angle) / 0.3) / (1.5 * (1.0 - x * x));
     const Travel creeping = travel(motion, 0.1, 1.1);
-    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic",
-                    0.01 * x, creeping.late - creeping.early, ErrorKind::relative, 1e-3});
+    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic", 0.01 * x,
+                    creeping.late - creeping.early, ErrorKind::relative, 1e-3});
   }
   for (const double angle : {20.0 * degree, 35.0 * degree}) {
     motion.contacts[0].friction = two_coefficients(0.3, 0.1);
@@ -132,7 +134,7 @@ std::vector<Row> incline_rows() {
     });
     rows.push_back({"friction", fmt::format("acceleration down {:.0f} degrees", angle / degree), "m/s^2",
                     "g (sin a - mu cos a)", g * (std::sin(angle) - 0.1 * std::cos(angle)),
-                    r.report.usable() ? (late - early) / 0.1 : std::nan(""), ErrorKind::relative, 1e-4});
+                    r.report.usable() ? (late - early) / 0.1 : not_computed, ErrorKind::relative, 1e-4});
   }
   return rows;
 }
@@ -148,8 +150,8 @@ std::vector<Row> stopping_block_rows() {
   const double back = mu * g / motion.contacts[0].friction.bristle_stiffness();
   const Travel t = travel(motion, 1.0, 11.0);
   std::vector<Row> rows;
-  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give",
-                  path - back, t.late, ErrorKind::relative, 1e-4});
+  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give", path - back,
+                  t.late, ErrorKind::relative, 1e-4});
   rows.push_back({"friction", "and then moves in 10 s by", "m", "rest", 0.0, std::abs(t.late - t.early),
                   ErrorKind::absolute, 1e-9});
   const double energy = 0.5 * speed * speed;
@@ -178,9 +180,9 @@ std::vector<Row> rolling_rows() {
     return false;
   });
   const double expected = g * std::sin(angle) / (1.0 + inertia / (radius * radius));
-  const double found = r.report.usable() && sticks ? (late - early) / 0.05 : std::nan("");
-  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))",
-           expected, found, ErrorKind::relative, 1e-3}};
+  const double found = r.report.usable() && sticks ? (late - early) / 0.05 : not_computed;
+  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))", expected,
+           found, ErrorKind::relative, 1e-3}};
 }
 
 // A mass on a belt, held by a spring K: seen from the belt, the spring's far end moves at v. In the slip the mass swings
@@ -206,7 +208,8 @@ std::vector<Row> stick_slip_rows() {
   const double amplitude = std::hypot(jump, belt / w);
   MotionOptions options = accurate(3.6 * period + fixed * g / stiffness / belt);
   options.output_interval = period / 1000.0;
-  options.max_step = period / 2000.0;  // in the stick time alone moves, which the integrals see and the error of a step does not
+  options.max_step =
+      period / 2000.0;  // in the stick time alone moves, which the integrals see and the error of a step does not
   double least = 1e9;
   double most = -1e9;
   double heat = 0.0;
@@ -234,7 +237,7 @@ std::vector<Row> stick_slip_rows() {
     if (e.kind == MotionEvent::Kind::slip && e.time > 0.05) slips.push_back(e.time);
   }
   const bool fine = r.report.usable() && slips.size() == 4;
-  const double nothing = std::nan("");
+  const double nothing = not_computed;
   return {{"friction", "mass on a belt, period of stick and slip", "s", "piecewise linear oscillator", period,
            fine ? (slips[3] - slips[0]) / 3.0 : nothing, ErrorKind::relative, 1e-3},
           {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", amplitude,
@@ -260,7 +263,7 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
   test.travel = {0.1 * mm};
   const double touch_height = coupling::solve_push(test, push).touch_height;
 
-  wire::RodInMotion rod = coupling::rod_in_motion(test.wire, test.mount.span, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
   rod.damping.mass_rate = 20.0;
   Motion motion;
@@ -305,10 +308,9 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
   for (std::size_t k = 0; k < curve.points.size(); ++k) {
     const double d = test.travel[k];
     const bool loading = k <= stations.size();
-    double force = std::nan("");
+    double force = not_computed;
     for (std::size_t i = 1; i < travels.size(); ++i) {
-      const bool passes =
-          loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
+      const bool passes = loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
       if (!passes) continue;
       const double share = (d - travels[i - 1]) / (travels[i] - travels[i - 1]);
       force = forces[i - 1] + share * (forces[i] - forces[i - 1]);
@@ -316,12 +318,11 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
     }
     // At the turn the least motion back unloads what sticks: there the largest force counts.
     if (k == stations.size()) force = *std::max_element(forces.begin(), forces.end());
-    if (!r.report.usable()) force = std::nan("");
-    rows.push_back({"friction",
-                    fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name,
-                                loading ? "in" : "back at", d / mm),
-                    "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute,
-                    1e-3});
+    if (!r.report.usable()) force = not_computed;
+    rows.push_back(
+        {"friction",
+         fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at", d / mm),
+         "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute, 1e-3});
   }
   return rows;
 }
@@ -345,12 +346,9 @@ std::vector<Row> strand_push_rows() {
 }
 
 std::vector<Check> friction_checks() {
-  return {{"friction on an incline", incline_rows},
-          {"friction stops a block", stopping_block_rows},
-          {"rolling without sliding", rolling_rows},
-          {"stick and slip", stick_slip_rows},
-          {"slow push with friction", reversed_push_rows},
-          {"slow push of a wire with strands", strand_push_rows}};
+  return {{"friction on an incline", incline_rows},        {"friction stops a block", stopping_block_rows},
+          {"rolling without sliding", rolling_rows},       {"stick and slip", stick_slip_rows},
+          {"slow push with friction", reversed_push_rows}, {"slow push of a wire with strands", strand_push_rows}};
 }
 
 }  // namespace snare::validation

@@ -1,11 +1,11 @@
 #include "validation/linked_motion_checks.hpp"
 
-#include "scenario/arm_contact_scenario.hpp"
+#include "coupling/dynamics/start.hpp"
+#include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace snare::validation {
 
@@ -19,10 +19,8 @@ using coupling::MotionResult;
 using coupling::MotionSample;
 using Eigen::Vector3d;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-Row row(const std::string& name, const std::string& unit, const std::string& source, double reference,
-        double value, ErrorKind kind, double limit) {
+Row row(const std::string& name, const std::string& unit, const std::string& source, double reference, double value,
+        ErrorKind kind, double limit) {
   return {"linked motion", name, unit, source, reference, value, kind, limit};
 }
 
@@ -65,15 +63,15 @@ std::vector<Row> welded_top_rows() {
     last = s;
     return false;
   });
-  const double usable = result.report.usable() ? 0.0 : nan;
+  const double usable = result.report.usable() ? 0.0 : not_computed;
   const double angle = (I3 - I1) / I1 * w3 * duration;
   const double L = std::hypot(I1 * w1, I3 * w3);
   return {row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", w1 * std::cos(angle),
               last.bodies[1].spin.x() + usable, ErrorKind::absolute, 1e-6),
           row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", w1 * std::sin(angle),
               last.bodies[1].spin.y() + usable, ErrorKind::absolute, 1e-6),
-          row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1",
-              m * r * L * w1 / I1, last.welds[0].force.norm() + usable, ErrorKind::relative, 1e-5),
+          row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1", m * r * L * w1 / I1,
+              last.welds[0].force.norm() + usable, ErrorKind::relative, 1e-5),
           row("two welded bodies, largest gap of the weld", "m", "welded", 0.0, result.largest_drift + usable,
               ErrorKind::absolute, 1e-8),
           row("two welded bodies, integrator's energy over the energy", "", "conservation", 0.0,
@@ -96,16 +94,15 @@ std::vector<Row> moving_mount_rows() {
   rod.damping.bending_time = 1e-2;
   Motion motion;
   const Vector3d middle(0.5 * length, 0.0, 0.0);
-  motion.wires = {{"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}),
-                   Eigen::Matrix3Xd::Zero(3, 61)}};
+  motion.wires = {
+      {"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}), Eigen::Matrix3Xd::Zero(3, 61)}};
   for (int i = 0; i <= 60; ++i)
-    motion.wires[0].velocities.col(i) =
-        spin * Vector3d::UnitZ().cross(motion.wires[0].positions.col(i) - middle);
+    motion.wires[0].velocities.col(i) = spin * Vector3d::UnitZ().cross(motion.wires[0].positions.col(i) - middle);
   motion.bodies = {block(1e4, Vector3d::Constant(1e4), middle)};
   motion.bodies[0].start.spin = {0.0, 0.0, spin};
-  for (const bool right : {false, true}) {
+  for (const wire::End end : wire::ends) {
     coupling::MotionMount mount;
-    mount.right = right;
+    mount.end = end;
     mount.carrier = {MotionCarrier::Kind::body, 0, 0};
     motion.mounts.push_back(mount);
   }
@@ -115,21 +112,19 @@ std::vector<Row> moving_mount_rows() {
     last = s;
     return false;
   });
-  const double usable = result.report.usable() ? 0.0 : nan;
+  const double usable = result.report.usable() ? 0.0 : not_computed;
   const Vector3d along = last.bodies[0].orientation * Vector3d::UnitX();
   const double reference = -0.01 * spin * spin * length * length / 12.0;
   double off = 0.0;
   for (int i = 0; i <= 60; ++i) {
-    const Vector3d x =
-        last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
     off = std::max(off, x.tail<2>().norm());
   }
   return {row("wire on a spinning body, force of a mount along the wire", "N", "-m w^2 l^2/12", reference,
               last.mount_forces[1].dot(along) + usable, ErrorKind::relative, 2e-3),
-          row("wire on a spinning body, off its chord", "m", "straight", 0.0, off + usable,
-              ErrorKind::absolute, 1e-7),
-          row("wire on a spinning body, largest gap of its mounts", "m", "held", 0.0,
-              result.largest_drift + usable, ErrorKind::absolute, 1e-8)};
+          row("wire on a spinning body, off its chord", "m", "straight", 0.0, off + usable, ErrorKind::absolute, 1e-7),
+          row("wire on a spinning body, largest gap of its mounts", "m", "held", 0.0, result.largest_drift + usable,
+              ErrorKind::absolute, 1e-8)};
 }
 
 // The shipped captures, at their own tolerances: what the payload brings is 0.025 J.
@@ -137,18 +132,16 @@ std::vector<Row> capture_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   constexpr double energy = 0.5 * 500.0 * 0.01 * 0.01;
   for (const char* name : {"jemrms_capture", "jemrms_payload_on_wire"}) {
-    const scenario::ArmContactScenario s =
-        scenario::read_arm_contact_scenario(data / "scenarios" / (std::string(name) + ".toml"));
-    MotionOptions options = s.contact.options;
+    const scenario::Scenario asked = scenario::read_scenario(data / "scenarios" / (std::string(name) + ".toml"));
+    const scenario::NamedMotion& run = std::get<scenario::WireMotions>(asked.content).runs.front();
+    MotionOptions options = run.options;
     options.duration = 1.0;
-    const MotionResult result = coupling::simulate(scenario::motion_of(s, s.contact.models.front()), options);
-    const double usable = result.report.usable() ? 0.0 : nan;
-    rows.push_back(row(fmt::format("{}: integrator's energy over that of the impact", name), "",
-                       "conservation", 0.0, result.energy.integrator / energy + usable, ErrorKind::absolute,
-                       1e-2));
-    rows.push_back(row(fmt::format("{}: momentum not accounted for, over the impulse", name), "",
-                       "conservation", 0.0, result.momentum_error.norm() / result.impulse[0].norm() + usable,
-                       ErrorKind::absolute, 1e-2));
+    const MotionResult result = coupling::simulate(run.motion, options);
+    const double usable = result.report.usable() ? 0.0 : not_computed;
+    rows.push_back(row(fmt::format("{}: integrator's energy over that of the impact", name), "", "conservation", 0.0,
+                       result.energy.integrator / energy + usable, ErrorKind::absolute, 1e-2));
+    rows.push_back(row(fmt::format("{}: momentum not accounted for, over the impulse", name), "", "conservation", 0.0,
+                       result.momentum_error.norm() / result.impulse[0].norm() + usable, ErrorKind::absolute, 1e-2));
     rows.push_back(row(fmt::format("{}: largest gap of welds and mounts", name), "m", "held", 0.0,
                        result.largest_drift + usable, ErrorKind::absolute, 1e-6));
   }
@@ -156,9 +149,9 @@ std::vector<Row> capture_rows(const std::filesystem::path& data) {
 }
 
 std::vector<Check> linked_motion_checks(const std::filesystem::path& data) {
-  return {{"welded bodies", welded_top_rows},
-          {"mounts that move", moving_mount_rows},
-          {"capture by an arm", [data] { return capture_rows(data); }}};
+  return {{"welded bodies", welded_top_rows}, {"mounts that move", moving_mount_rows}, {"capture by an arm", [data] {
+                                                                                          return capture_rows(data);
+                                                                                        }}};
 }
 
 }  // namespace snare::validation

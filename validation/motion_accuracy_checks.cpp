@@ -1,9 +1,11 @@
 #include "validation/motion_accuracy_checks.hpp"
 
 #include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +37,7 @@ constexpr double energy = 0.5 * body_mass * speed * speed;
 Motion impact(double damping, const coupling::MotionFriction& friction) {
   const wire::WireSpecification w = declared_specification();
   constexpr int elements = 60;
-  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
   rod.damping.bending_time = rod.damping.axial_time = damping;
   Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
@@ -48,7 +50,7 @@ Motion impact(double damping, const coupling::MotionFriction& friction) {
   motion.bodies.push_back(body);
   coupling::MotionContact contact;
   contact.shape = std::make_shared<coupling::EndlessCylinder>(radius);
-  contact.shape_position = {50.0 * mm, 100.0 * mm, 0.0};
+  contact.X_BS.p = {50.0 * mm, 100.0 * mm, 0.0};
   contact.wire_radius = 0.5 * w.diameter;
   contact.friction = friction;
   motion.contacts.push_back(contact);
@@ -57,17 +59,16 @@ Motion impact(double damping, const coupling::MotionFriction& friction) {
 
 MotionOptions scaled(double factor) {
   MotionOptions options;
-  for (double* tolerance :
-       {&options.relative_tolerance, &options.position_tolerance, &options.velocity_tolerance, &options.twist_tolerance,
-        &options.body_position_tolerance, &options.body_velocity_tolerance, &options.angle_tolerance,
-        &options.spin_tolerance}) {
+  for (double* tolerance : {&options.relative_tolerance, &options.position_tolerance, &options.velocity_tolerance,
+                            &options.twist_tolerance, &options.body_position_tolerance,
+                            &options.body_velocity_tolerance, &options.angle_tolerance, &options.spin_tolerance}) {
     *tolerance *= factor;
   }
   return options;
 }
 
 double value_of(const MotionResult& result, double value) {
-  return result.report.usable() ? value : std::nan("");
+  return result.report.usable() ? value : not_computed;
 }
 
 constexpr const char* conserved = "conservation";
@@ -82,8 +83,14 @@ Row resolved_impact_row(const std::string& what, double damping) {
   options.body_velocity_tolerance = 1e-7;
   options.max_order = 5;
   const MotionResult r = coupling::simulate(impact(damping, {}), options);
-  return {"balances", fmt::format("impact, {}, tolerances that resolve the waves, integrator's energy over the impact's", what), "",
-          conserved, 0.0, value_of(r, r.energy.integrator / energy), ErrorKind::absolute, 1e-6};
+  return {"balances",
+          fmt::format("impact, {}, tolerances that resolve the waves, integrator's energy over the impact's", what),
+          "",
+          conserved,
+          0.0,
+          value_of(r, r.energy.integrator / energy),
+          ErrorKind::absolute,
+          1e-6};
 }
 
 }  // namespace
@@ -113,7 +120,8 @@ std::vector<Row> balance_rows() {
                   0.0, value_of(r, r.angular_momentum_error.norm() / (impulse * span)), ErrorKind::absolute, 1e-6});
   rows.push_back({"balances", "energy left when damping and friction are taken off, over the impact's", "", conserved,
                   0.0, value_of(r, r.energy.integrator / energy), ErrorKind::absolute, 1e-3});
-  rows.push_back({"balances", "drift of the gap", "m", "constraint", 0.0, value_of(r, r.largest_gap), ErrorKind::absolute, 1e-9});
+  rows.push_back(
+      {"balances", "drift of the gap", "m", "constraint", 0.0, value_of(r, r.largest_gap), ErrorKind::absolute, 1e-9});
   rows.push_back({"balances", "drift of quaternion and mounts", "", "constraint", 0.0, value_of(r, r.largest_drift),
                   ErrorKind::absolute, 1e-9});
   // The axial wave crosses an element in h/c.
@@ -144,13 +152,14 @@ std::vector<Row> tolerance_rows() {
     const std::string at = fmt::format("{:g} times the default tolerances, {} steps", factors[k], r.statistics.steps);
     const double limit = std::array{1e-3, 1e-4, 1e-5}[k];
     const double force_limit = std::array{3e-3, 1e-3, 3e-4}[k];  // of the largest at a step, which may miss the top
-    rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances", finest.impulse[0].norm(),
-                    r.impulse[0].norm(), ErrorKind::relative, limit});
-    rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances", finest.peak_force[0],
-                    r.peak_force[0], ErrorKind::relative, force_limit});
+    rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances",
+                    finest.impulse[0].norm(), r.impulse[0].norm(), ErrorKind::relative, limit});
+    rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances",
+                    finest.peak_force[0], r.peak_force[0], ErrorKind::relative, force_limit});
   }
-  rows.push_back({"tolerances", "exponent of the tolerance in the error of the impulse", "", "order 2: error ~ step^2, step ~ tolerance^(1/3)",
-                  2.0 / 3.0, 0.5 * std::log10(impulse_error[0] / impulse_error[2]), ErrorKind::absolute, 0.4});
+  rows.push_back({"tolerances", "exponent of the tolerance in the error of the impulse", "",
+                  "order 2: error ~ step^2, step ~ tolerance^(1/3)", 2.0 / 3.0,
+                  0.5 * std::log10(impulse_error[0] / impulse_error[2]), ErrorKind::absolute, 0.4});
   return rows;
 }
 
@@ -171,7 +180,7 @@ SlowPush slow_push(double position, int elements, double friction, coupling::Pus
   p.test.pusher.direction = direction;
   p.options.elements = elements;
   p.options.grading = 0.0;
-  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
   rod.damping.mass_rate = 200.0;
   p.motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
@@ -191,7 +200,7 @@ SlowPush slow_push(double position, int elements, double friction, coupling::Pus
 std::vector<double> static_forces(SlowPush& p, const std::vector<double>& travel) {
   p.test.travel = travel;
   const coupling::PushCurve curve = coupling::solve_push(p.test, p.options);
-  std::vector<double> forces(travel.size(), std::nan(""));
+  std::vector<double> forces(travel.size(), not_computed);
   for (std::size_t k = 0; k < std::min(forces.size(), curve.points.size()); ++k) forces[k] = curve.points[k].force;
   return forces;
 }
@@ -239,9 +248,11 @@ std::vector<Row> friction_reversal_rows() {
   const auto deepest = static_cast<std::size_t>(std::max_element(travel.begin(), travel.end()) - travel.begin());
   const auto row = [&](const std::string& name, std::size_t k) {
     rows.push_back({"quasi-static limit", fmt::format("friction 0.2, {} at {:.3f} mm", name, travel[k] / mm), "N",
-                    "static curve, loaded and unloaded", reference[k], value_of(r, force[k]), ErrorKind::relative, 1e-3});
+                    "static curve, loaded and unloaded", reference[k], value_of(r, force[k]), ErrorKind::relative,
+                    1e-3});
   };
-  if (travel.size() < 20 || deepest + 10 >= travel.size()) return {{"quasi-static limit", "friction reversal", "N", "", 1.0, std::nan(""), ErrorKind::relative, 1e-3}};
+  if (travel.size() < 20 || deepest + 10 >= travel.size())
+    return {{"quasi-static limit", "friction reversal", "N", "", 1.0, not_computed, ErrorKind::relative, 1e-3}};
   row("loading", deepest / 2);
   row("loading", deepest - 4);
   row("unloading", deepest + (travel.size() - deepest) / 2);
@@ -276,7 +287,8 @@ std::vector<Row> snap_through_rows() {
   });
   std::vector<Row> rows;
   const auto row = [&](const std::string& name, double reference, double value) {
-    rows.push_back({"quasi-static limit", name, "N", "static curve", reference, value_of(r, value), ErrorKind::relative, 1e-3});
+    rows.push_back(
+        {"quasi-static limit", name, "N", "static curve", reference, value_of(r, value), ErrorKind::relative, 1e-3});
   };
   std::vector<double> travel;
   std::vector<double> force;
@@ -294,10 +306,10 @@ std::vector<Row> snap_through_rows() {
     const auto k = static_cast<std::size_t>(share * static_cast<double>(travel.size() - 1));
     row(fmt::format("inward, before the snap, at {:.2f} mm", travel[k] / mm), reference[k], force[k]);
   }
-  const double depth = points.empty() ? std::nan("") : far_touch - points.back().y;
+  const double depth = points.empty() ? not_computed : far_touch - points.back().y;
   const std::vector<double> outward = static_forces(after, {0.5 * depth, depth});
   row(fmt::format("after the snap, at {:.2f} mm on the other side", depth / mm), outward.back(),
-      points.empty() ? std::nan("") : points.back().force);
+      points.empty() ? not_computed : points.back().force);
   return rows;
 }
 
@@ -309,7 +321,7 @@ std::vector<Row> folded_chain_rows() {
   constexpr int elements = 200;
   wire::WireSpecification w = declared_specification();
   w.bending_stiffness_override = 1e-8;
-  wire::RodInMotion rod = coupling::rod_in_motion(w, 0.0, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, 0.0, elements);
   rod.length = length;
   rod.properties.left.kind = wire::SpatialEnd::Kind::pin;
   rod.properties.right.kind = wire::SpatialEnd::Kind::free;
@@ -343,7 +355,7 @@ std::vector<Row> folded_chain_rows() {
   MotionOptions options;
   options.duration = 1.1 * time;
   options.output_interval = time / 1000.0;
-  double passed = std::nan("");
+  double passed = not_computed;
   double last = 0.0;
   double last_time = 0.0;
   const MotionResult r = coupling::simulate(motion, options, [&](const MotionSample& s) {
@@ -354,17 +366,14 @@ std::vector<Row> folded_chain_rows() {
     last_time = s.time;
     return false;
   });
-  return {{"gravity", "folded chain, time for nine tenths of the fall", "s", "Calkin and March 1989, energy conserved", time,
-           value_of(r, passed), ErrorKind::relative, 5e-3}};
+  return {{"gravity", "folded chain, time for nine tenths of the fall", "s", "Calkin and March 1989, energy conserved",
+           time, value_of(r, passed), ErrorKind::relative, 5e-3}};
 }
 
 std::vector<Check> motion_accuracy_checks() {
-  return {{"balances of a motion", balance_rows},
-          {"undamped impact", undamped_impact_rows},
-          {"tolerances of a motion", tolerance_rows},
-          {"slow push with friction", friction_reversal_rows},
-          {"slow snap-through", snap_through_rows},
-          {"folded chain", folded_chain_rows}};
+  return {{"balances of a motion", balance_rows},     {"undamped impact", undamped_impact_rows},
+          {"tolerances of a motion", tolerance_rows}, {"slow push with friction", friction_reversal_rows},
+          {"slow snap-through", snap_through_rows},   {"folded chain", folded_chain_rows}};
 }
 
 }  // namespace snare::validation

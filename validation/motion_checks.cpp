@@ -1,9 +1,11 @@
 #include "validation/motion_checks.hpp"
 
 #include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -29,7 +31,7 @@ using base::mm;
 
 /// A wire of another length than its specification's.
 wire::RodInMotion rod_of(const wire::WireSpecification& w, double length, double span, int elements) {
-  wire::RodInMotion rod = coupling::rod_in_motion(w, span, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
   rod.length = length;
   return rod;
 }
@@ -38,8 +40,7 @@ wire::RodInMotion rod_of(const wire::WireSpecification& w, double length, double
 Motion straight(const wire::RodInMotion& rod) {
   Motion motion;
   motion.wires.push_back({"wire", rod, {}, {}});
-  motion.wires[0].positions =
-      coupling::straight_wire(rod, rod.properties.left.position, rod.properties.right.position);
+  motion.wires[0].positions = coupling::straight_wire(rod, rod.properties.left.position, rod.properties.right.position);
   motion.wires[0].velocities = Matrix3Xd::Zero(3, rod.elements + 1);
   return motion;
 }
@@ -53,8 +54,7 @@ Motion buckled(const wire::RodInMotion& rod) {
 
 /// Frequency [Hz] of the projection of the motion from its start on a shape of the vertices' displacements (3, n), from
 /// rising zero crossings by linear interpolation. `expected` sets duration (eight periods) and sampling.
-double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected, double speed,
-                          int order = 5) {
+double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected, double speed, int order = 5) {
   motion.wires[0].velocities = speed * shape;
   const Matrix3Xd rest = motion.wires[0].positions;
   MotionOptions options;
@@ -74,23 +74,23 @@ double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected
     last_time = s.time;
     return false;
   });
-  if (!result.report.usable() || crossings.size() < 2) return std::nan("");
+  if (!result.report.usable() || crossings.size() < 2) return not_computed;
   return static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
 }
 
 /// Material damping that quiets what the step does not resolve and moves a frequency f by (pi f tau)^2/2, below 1e-6.
 constexpr double faint = 1e-7;
 
-Row frequency_row(const std::string& group, const std::string& name, const std::string& source,
-                  double reference, double value) {
+Row frequency_row(const std::string& group, const std::string& name, const std::string& source, double reference,
+                  double value) {
   return {group, name, "Hz", source, reference, value, ErrorKind::relative, 1e-3};
 }
 
 }  // namespace
 
 std::vector<Row> clamped_frequency_rows() {
-  constexpr std::array<double, 5> roots{4.730040744862704, 7.853204624095838, 10.995607838001671,
-                                        14.137165491257464, 17.278759657399481};  // cos x cosh x = 1
+  constexpr std::array<double, 5> roots{4.730040744862704, 7.853204624095838, 10.995607838001671, 14.137165491257464,
+                                        17.278759657399481};  // cos x cosh x = 1
   const wire::WireSpecification w = declared_specification();
   const double span = 175.0 * mm;
   wire::RodInMotion rod = rod_of(w, span, span, 200);
@@ -104,11 +104,9 @@ std::vector<Row> clamped_frequency_rows() {
       const double x = b * i / rod.elements;
       shape(1, i) = std::cosh(x) - std::cos(x) - ratio * (std::sinh(x) - std::sin(x));
     }
-    const double expected =
-        b * b / (span * span) * std::sqrt(w.bending_stiffness() / w.mass_per_length()) / (2.0 * pi);
-    rows.push_back(frequency_row("free vibration", fmt::format("clamped beam, mode {}", k + 1),
-                                 "Euler-Bernoulli", expected,
-                                 measured_frequency(straight(rod), shape, expected, 0.01)));
+    const double expected = b * b / (span * span) * std::sqrt(w.bending_stiffness() / w.mass_per_length()) / (2.0 * pi);
+    rows.push_back(frequency_row("free vibration", fmt::format("clamped beam, mode {}", k + 1), "Euler-Bernoulli",
+                                 expected, measured_frequency(straight(rod), shape, expected, 0.01)));
   }
   return rows;
 }
@@ -127,8 +125,7 @@ std::vector<Row> tensioned_frequency_rows() {
     for (int i = 1; i < rod.elements; ++i) shape(1, i) = std::sin(pi * k * i / rod.elements);
     const double number = k * pi / span;
     const double mass = w.mass_per_length() / stretch;
-    const double expected =
-        number * std::sqrt((tension + w.bending_stiffness() * number * number) / mass) / (2.0 * pi);
+    const double expected = number * std::sqrt((tension + w.bending_stiffness() * number * number) / mass) / (2.0 * pi);
     rows.push_back(frequency_row("free vibration", fmt::format("pinned beam under 50 N, mode {}", k),
                                  "Euler-Bernoulli with tension", expected,
                                  measured_frequency(straight(rod), shape, expected, 0.01)));
@@ -144,8 +141,7 @@ std::vector<Row> buckled_frequency_rows() {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(statics.unknowns());
   for (int i = 0; i <= 60; ++i) q.segment<3>(4 * i) = motion.wires[0].positions.col(i);
   wire::RodAssembly tangent;
-  statics.assemble(statics.make_state(q, {0.0, 0.5 * rod.length, rod.length}), {false, false, false},
-                   tangent);
+  statics.assemble(statics.make_state(q, {0.0, 0.5 * rod.length, rod.length}), {false, false, false}, tangent);
   constexpr int free = 2 * 59;
   Eigen::MatrixXd k(free, free);
   for (int a = 0; a < free; ++a) {
@@ -181,8 +177,7 @@ std::vector<Row> axial_wave_rows() {
   const double speed = std::sqrt(w.axial_stiffness() / w.mass_per_length());
   const double expected = speed / (2.0 * span);
   const double f = measured_frequency(straight(rod), shape, expected, 0.01);
-  return {{"waves", "speed of axial waves", "m/s", "sqrt(EA/m)", speed, 2.0 * span * f, ErrorKind::relative,
-           1e-3}};
+  return {{"waves", "speed of axial waves", "m/s", "sqrt(EA/m)", speed, 2.0 * span * f, ErrorKind::relative, 1e-3}};
 }
 
 std::vector<Row> gravity_rows() {
@@ -227,7 +222,7 @@ std::vector<Row> gravity_rows() {
     options.relative_tolerance = 1e-7;
     options.position_tolerance = 1e-9;
     options.velocity_tolerance = 1e-6;
-    double passed = std::nan("");
+    double passed = not_computed;
     double last = 0.0;
     double last_time = 0.0;
     const MotionResult result = coupling::simulate(motion, options, [&](const MotionSample& s) {
@@ -237,7 +232,7 @@ std::vector<Row> gravity_rows() {
       last_time = s.time;
       return false;
     });
-    if (!result.report.usable()) passed = std::nan("");
+    if (!result.report.usable()) passed = not_computed;
     rows.push_back({"gravity", "falling rod, time from the horizontal to the vertical", "s",
                     "physical pendulum, elliptic integral", quarter, passed, ErrorKind::relative, 1e-3});
   }
@@ -279,16 +274,16 @@ std::vector<Row> slow_push_rows() {
   MotionOptions options;
   options.duration = (2.0 * mm + clearance) / speed;
   options.output_interval = options.duration;
-  double last = std::nan("");
+  double last = not_computed;
   const MotionResult result = coupling::simulate(motion, options, [&last](const coupling::MotionSample& sample) {
     last = sample.contacts[0].normal_force;
     return false;
   });
-  if (!result.report.usable()) last = std::nan("");
+  if (!result.report.usable()) last = not_computed;
   std::vector<Row> rows;
-  const double reference = curve.points.size() == 2 ? curve.points[1].force : std::nan("");
-  rows.push_back({"quasi-static limit", "ball at 5 mm/s, force at 2 mm", "N", "static curve of a cylinder",
-                  reference, last, ErrorKind::relative, 1e-3});
+  const double reference = curve.points.size() == 2 ? curve.points[1].force : not_computed;
+  rows.push_back({"quasi-static limit", "ball at 5 mm/s, force at 2 mm", "N", "static curve of a cylinder", reference,
+                  last, ErrorKind::relative, 1e-3});
   return rows;
 }
 
@@ -316,7 +311,7 @@ Impact impact(int elements, const MotionOptions& options, double damping) {
   motion.bodies.push_back(body);
   coupling::MotionContact contact;
   contact.shape = std::make_shared<coupling::Ball>(radius);
-  contact.shape_position = {50.0 * mm, 100.0 * mm, 0.0};
+  contact.X_BS.p = {50.0 * mm, 100.0 * mm, 0.0};
   contact.wire_radius = 0.5 * w.diameter;
   motion.contacts.push_back(contact);
   Impact out;
@@ -336,21 +331,20 @@ std::vector<Row> impact_rows() {
   options.duration = 0.04;
   const double energy = 0.5 * 8.9 * 0.01;
   const Impact usual = impact(60, options, 0.0);
-  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "",
-                  "conservation", 0.0, usual.result.energy.integrator / energy, ErrorKind::absolute, 1e-3});
+  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "", "conservation", 0.0,
+                  usual.result.energy.integrator / energy, ErrorKind::absolute, 1e-3});
   rows.push_back({"impact", "penetration", "m", "non-penetration", 0.0, usual.result.largest_penetration,
                   ErrorKind::absolute, 1e-6});
   std::array<Impact, 3> meshes;
   constexpr std::array<int, 3> elements{50, 100, 200};
   for (std::size_t k = 0; k < 3; ++k) meshes[k] = impact(elements[k], options, 1e-6);
   for (std::size_t k = 0; k < 2; ++k) {
-    rows.push_back({"impact", fmt::format("impulse with {} elements", elements[k]), "N s",
-                    "with 200 elements", meshes[2].result.impulse[0].y(), meshes[k].result.impulse[0].y(),
-                    ErrorKind::relative, 5e-3});
-    rows.push_back({"impact", fmt::format("rebound velocity with {} elements", elements[k]), "m/s",
-                    "with 200 elements", meshes[2].velocity, meshes[k].velocity, ErrorKind::relative, 5e-3});
-    rows.push_back({"impact", fmt::format("rebound spin with {} elements", elements[k]), "rad/s",
-                    "with 200 elements", meshes[2].spin, meshes[k].spin, ErrorKind::relative, 5e-3});
+    rows.push_back({"impact", fmt::format("impulse with {} elements", elements[k]), "N s", "with 200 elements",
+                    meshes[2].result.impulse[0].y(), meshes[k].result.impulse[0].y(), ErrorKind::relative, 5e-3});
+    rows.push_back({"impact", fmt::format("rebound velocity with {} elements", elements[k]), "m/s", "with 200 elements",
+                    meshes[2].velocity, meshes[k].velocity, ErrorKind::relative, 5e-3});
+    rows.push_back({"impact", fmt::format("rebound spin with {} elements", elements[k]), "rad/s", "with 200 elements",
+                    meshes[2].spin, meshes[k].spin, ErrorKind::relative, 5e-3});
   }
   return rows;
 }

@@ -2,8 +2,8 @@
 
 #include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
-#include "validation/declared_wire.hpp"
 #include "validation/closed_forms.hpp"
+#include "validation/declared_wire.hpp"
 #include "validation/elastica.hpp"
 #include "validation/elastica_push.hpp"
 #include "validation/shallow_elastica.hpp"
@@ -12,14 +12,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace snare::validation {
 
 namespace {
 
-using coupling::PushProblem;
-
 using base::mm;
+using coupling::PushProblem;
+using std::numbers::pi;
+
 const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
 
 /// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.
@@ -46,7 +48,7 @@ coupling::PushOptions fine(int elements = 256) {
 double force_at(PushProblem test, double travel, int elements = 256) {
   test.travel = {travel};
   const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine(elements));
-  return result.curve.points.empty() ? std::nan("") : result.curve.points.back().force;
+  return result.curve.points.empty() ? not_computed : result.curve.points.back().force;
 }
 
 /// A state in the units of the shallow limit.
@@ -78,7 +80,7 @@ PushProblem shallow_test(double position, double slack, double largest) {
 double shallow_force(double position, double slack, double deflection, double largest) {
   PushProblem test = shallow_test(position * 175.0 * mm, slack, largest);
   const double root = std::sqrt(slack) * test.mount.span;
-  const double natural = (1.0 - std::cos(2.0 * 3.14159265358979323846 * position)) / 3.14159265358979323846;
+  const double natural = (1.0 - std::cos(2.0 * pi * position)) / pi;
   double low = 0.0;
   double high = 1.02 * (std::sqrt(2.0 * position * (1.0 - position)) - natural) * root;
   Normalised at{};
@@ -86,14 +88,12 @@ double shallow_force(double position, double slack, double deflection, double la
     const double travel = 0.5 * (low + high);
     test.travel = {0.5 * travel, travel};
     const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
-    if (result.curve.points.size() < 2) return std::nan("");
+    if (result.curve.points.size() < 2) return not_computed;
     at = normalise(test, result.curve.points.back(), result.curve.touch_height + travel);
     (at.deflection < deflection ? low : high) = travel;
   }
   return at.force;
 }
-
-}  // namespace
 
 std::vector<Row> buckled_shape_rows() {
   const char* group = "Buckled shape before the push";
@@ -142,10 +142,10 @@ std::vector<Row> elastica_rows() {
       const std::vector<ElasticaState> reference = push_path(elastica_of(test), test.travel);
       for (std::size_t i = 0; i < test.travel.size(); ++i) {
         if (i >= reference.size() || !reference[i].report.usable()) break;
-        const double value = i < result.curve.points.size() ? result.curve.points[i].force : std::nan("");
+        const double value = i < result.curve.points.size() ? result.curve.points[i].force : not_computed;
         rows.push_back({group,
-                        fmt::format("force, {} at {:g} mm, travel {:g} mm",
-                                    radius > 0.0 ? "cylinder" : "knife edge", position, test.travel[i] / mm),
+                        fmt::format("force, {} at {:g} mm, travel {:g} mm", radius > 0.0 ? "cylinder" : "knife edge",
+                                    position, test.travel[i] / mm),
                         "N", multiple_shooting, reference[i].force, value, ErrorKind::relative, 1e-4});
       }
     }
@@ -167,7 +167,7 @@ std::vector<Row> wrapped_rows() {
     const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
     for (const std::size_t i : {std::size_t{2}, std::size_t{3}, std::size_t{5}}) {
       if (i >= reference.size() || !reference[i].report.usable()) break;
-      const double value = i < result.curve.points.size() ? result.curve.points[i].force : std::nan("");
+      const double value = i < result.curve.points.size() ? result.curve.points[i].force : not_computed;
       rows.push_back({group,
                       fmt::format("force at {:g} mm, travel {:g} mm, {}", position, test.travel[i] / mm,
                                   reference[i].wrapped ? "wrapped" : "at a point"),
@@ -182,9 +182,9 @@ std::vector<Row> shallow_outward_rows() {
     double position, force, deflection;
   };
   // (f, a) of the inextensible shallow wire, P = 20, 0, -100, -1000.
-  constexpr Entry table[] = {{0.5, 61.181, 0.641347},   {0.5, 123.936, 0.645497},  {0.5, 435.748, 0.659454},
-                             {0.5, 3142.19, 0.686182},  {0.4, 67.100, 0.605935},   {0.4, 134.479, 0.619677},
-                             {0.4, 459.565, 0.643166},  {0.4, 3231.43, 0.671176}};
+  constexpr Entry table[] = {{0.5, 61.181, 0.641347},  {0.5, 123.936, 0.645497}, {0.5, 435.748, 0.659454},
+                             {0.5, 3142.19, 0.686182}, {0.4, 67.100, 0.605935},  {0.4, 134.479, 0.619677},
+                             {0.4, 459.565, 0.643166}, {0.4, 3231.43, 0.671176}};
   std::vector<Row> rows;
   for (const Entry& e : table) {
     // The printed deflection has six digits: use the closed form's own for the printed force.
@@ -246,8 +246,8 @@ std::vector<Row> shallow_inward_rows() {
     const double curvature = before - 2.0 * highest.force + after;
     highest.force -= 0.125 * (after - before) * (after - before) / curvature;
     const Normalised n = normalise(test, highest, 0.0);
-    rows.push_back({group, fmt::format("largest f under load control, s = {:g}", e.position), "", "closed form", e.largest,
-                    n.force, ErrorKind::relative, 3e-3});
+    rows.push_back({group, fmt::format("largest f under load control, s = {:g}", e.position), "", "closed form",
+                    e.largest, n.force, ErrorKind::relative, 3e-3});
   }
   return rows;
 }
@@ -262,7 +262,8 @@ std::vector<Row> taut_rows() {
     test.wire.length = test.mount.span / (1.0 + 50.0 / test.wire.axial_stiffness());
     const double travel = 1e-4 * mm;
     rows.push_back({group, fmt::format("stiffness at {:g} mm under 50 N, clamped", position[k]), "N/m",
-                    "w'''' - (T/EI) w'' = 0, closed form", digest[k], force_at(test, travel) / travel, ErrorKind::relative, 1e-4});
+                    "w'''' - (T/EI) w'' = 0, closed form", digest[k], force_at(test, travel) / travel,
+                    ErrorKind::relative, 1e-4});
   }
   PushProblem test = declared_wire(65.0 * mm, 0.0);
   test.wire.length = test.mount.span;
@@ -321,6 +322,20 @@ std::vector<Row> support_rows() {
   return {{group, "stiffness of a small push at mid-span", "N/m", "48 EI/l^3",
            three_point_stiffness(test.wire.bending_stiffness(), test.mount.span, test.contact_position),
            force_at(test, travel) / travel, ErrorKind::relative, 1e-4}};
+}
+
+}  // namespace
+
+std::vector<Check> static_wire_checks() {
+  return {{"buckled shape", buckled_shape_rows},
+          {"material mid-point", material_point_rows},
+          {"push on the declared wire", elastica_rows},
+          {"push on a soft wire that wraps the pusher", wrapped_rows},
+          {"shallow limit, outward", shallow_outward_rows},
+          {"shallow limit, inward", shallow_inward_rows},
+          {"taut and tensioned wires", taut_rows},
+          {"friction on the pusher", friction_rows},
+          {"three-point bending", support_rows}};
 }
 
 }  // namespace snare::validation

@@ -6,15 +6,8 @@
 
 namespace snare::validation {
 
-/// Rows of `static_wire_checks`, each group against closed forms or the elastica by multiple shooting.
-[[nodiscard]] std::vector<Row> buckled_shape_rows();
-[[nodiscard]] std::vector<Row> material_point_rows();
-[[nodiscard]] std::vector<Row> elastica_rows();
-[[nodiscard]] std::vector<Row> wrapped_rows();
-[[nodiscard]] std::vector<Row> shallow_outward_rows();
-[[nodiscard]] std::vector<Row> shallow_inward_rows();
-[[nodiscard]] std::vector<Row> taut_rows();
-[[nodiscard]] std::vector<Row> friction_rows();
-[[nodiscard]] std::vector<Row> support_rows();
+/// Everything about the static wire: buckled shape, push by knife edge and cylinder, friction, instability,
+/// supports. Takes some seconds in all.
+[[nodiscard]] std::vector<Check> static_wire_checks();
 
 }  // namespace snare::validation

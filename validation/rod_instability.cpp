@@ -9,7 +9,7 @@
 namespace snare::validation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Root in a bracket with a change of sign.
 template <class Function>
@@ -57,8 +57,8 @@ double HelicalBuckling::envelope(double arc_length) const {
   return t * t;
 }
 
-HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness, double length,
-                                 double shortening, double end_rotation) {
+HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness, double length, double shortening,
+                                 double end_rotation) {
   const double ratio = length / shortening;
   const double twist = 4.0 * ratio * bending_stiffness / torsional_stiffness;
   const auto excess = [&](double psi) { return twist * std::sin(2.0 * psi) + 4.0 * psi - end_rotation; };
@@ -82,7 +82,7 @@ HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stif
 
 double critical_torque_clamped(double bending_stiffness, double tension, double length) {
   const double product = 0.25 * tension * length * length / bending_stiffness;  // a b
-  assert(product > -kPi * kPi);
+  assert(product > -pi * pi);
   const auto condition = [&](double a) { return clamped_condition(a, product / a); };
   // a grows from the least real torque (tension) or from no torque (compression); the first change of sign.
   constexpr double step = 0.01;
@@ -93,12 +93,12 @@ double critical_torque_clamped(double bending_stiffness, double tension, double 
 }
 
 double critical_torque_pinned(double bending_stiffness, double tension, double length) {
-  const double bare = 2.0 * kPi * bending_stiffness / length;
+  const double bare = 2.0 * pi * bending_stiffness / length;
   return std::sqrt(4.0 * bending_stiffness * tension + bare * bare);
 }
 
 double critical_ring_twist(double bending_stiffness, double torsional_stiffness) {
-  return 2.0 * kPi * std::numbers::sqrt3 * bending_stiffness / torsional_stiffness;
+  return 2.0 * pi * std::numbers::sqrt3 * bending_stiffness / torsional_stiffness;
 }
 
 double lateral_buckling_load(double bending_stiffness, double torsional_stiffness, double length) {
@@ -107,7 +107,7 @@ double lateral_buckling_load(double bending_stiffness, double torsional_stiffnes
 }
 
 double lateral_buckling_moment(double bending_stiffness, double torsional_stiffness, double length) {
-  return kPi * std::sqrt(bending_stiffness * torsional_stiffness) / length;
+  return pi * std::sqrt(bending_stiffness * torsional_stiffness) / length;
 }
 
 }  // namespace snare::validation

@@ -11,8 +11,8 @@
 namespace snare::validation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kFirstLoad = 4.0 * kPi * kPi;
+using std::numbers::pi;
+constexpr double kFirstLoad = 4.0 * pi * pi;
 
 struct Compliance {
   double value = 0.0;
@@ -37,8 +37,7 @@ ShallowState shallow_state(double compression, double position) {
 }
 
 ShallowState shallow_state_at(double deflection, double position) {
-  assert(deflection >= shallow_natural_deflection(position) &&
-         deflection < shallow_taut_deflection(position));
+  assert(deflection >= shallow_natural_deflection(position) && deflection < shallow_taut_deflection(position));
   double low = -1.0;
   while (shallow_state(low, position).deflection < deflection) low *= 4.0;
   double high = kFirstLoad;
@@ -51,7 +50,7 @@ ShallowState shallow_state_at(double deflection, double position) {
 }
 
 double shallow_natural_deflection(double position) {
-  return (1.0 - std::cos(2.0 * kPi * position)) / kPi;
+  return (1.0 - std::cos(2.0 * pi * position)) / pi;
 }
 
 double shallow_taut_deflection(double position) {

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace snare::validation {
+
+/// Value of a row whose computation did not arrive: out of every limit.
+inline constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
 
 enum class ErrorKind { relative, absolute };
 
@@ -12,12 +16,12 @@ enum class ErrorKind { relative, absolute };
 struct Row {
   std::string group;
   std::string name;
-  std::string unit;     ///< of reference and value; empty for a pure number
-  std::string source;   ///< of the reference
+  std::string unit;    ///< of reference and value; empty for a pure number
+  std::string source;  ///< of the reference
   double reference = 0.0;
   double value = 0.0;
   ErrorKind kind = ErrorKind::relative;
-  double limit = 0.0;   ///< of the error, > 0
+  double limit = 0.0;  ///< of the error, > 0
 
   /// |value - reference|, over |reference| for a relative error. A value that is not finite is out of every limit.
   [[nodiscard]] double error() const;
@@ -30,9 +34,5 @@ struct Check {
   std::function<std::vector<Row>()> run;
   std::string skipped = "";  ///< why it cannot be run here; empty when it can
 };
-
-/// Everything about the static wire: buckled shape, push by knife edge and cylinder, friction, instability,
-/// supports. Takes some seconds in all.
-[[nodiscard]] std::vector<Check> static_wire_checks();
 
 }  // namespace snare::validation

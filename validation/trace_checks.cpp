@@ -1,5 +1,6 @@
 #include "validation/trace_checks.hpp"
 
+#include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
 #include "validation/blind_set.hpp"
 
@@ -22,24 +23,25 @@ double right(const BlindSet& set, const identification::Trace& t) {
 
 std::vector<Row> blind_rows() {
   std::vector<Row> rows;
-  for (const char* effect : {"none", "wire_length", "mount_slip", "contact_friction", "strand_hysteresis", "force_offset", "drift"}) {
+  for (const char* effect :
+       {"none", "wire_length", "mount_slip", "contact_friction", "strand_hysteresis", "force_offset", "drift"}) {
     const BlindSet set = make_blind_set(effect, 30.0, 101);
     identification::TraceOptions options;
     options.intervals = false;
     const identification::Trace t = identification::trace(set.experiment, options);
     const std::string source = "continuous wire by collocation, with the effect put in";
-    rows.push_back({"tracing of blind sets", fmt::format("right answer, inside: {}", effect), "", source, 1.0, right(set, t),
-                    ErrorKind::absolute, 0.5});
+    rows.push_back({"tracing of blind sets", fmt::format("right answer, inside: {}", effect), "", source, 1.0,
+                    right(set, t), ErrorKind::absolute, 0.5});
     if (set.effect == "drift") continue;
     // 234 readings: chi2 over its degrees of freedom has a standard deviation of 0.09.
-    rows.push_back({"tracing of blind sets", fmt::format("chi2 a degree of freedom after, inside: {}", effect), "", source, 1.0,
-                    t.final.chi2_dof, ErrorKind::absolute, 0.3});
+    rows.push_back({"tracing of blind sets", fmt::format("chi2 a degree of freedom after, inside: {}", effect), "",
+                    source, 1.0, t.final.chi2_dof, ErrorKind::absolute, 0.3});
   }
   return rows;
 }
 
-identification::Experiment strand_experiment(const std::vector<std::filesystem::path>& files, double diameter, double span,
-                                             double support_radius) {
+identification::Experiment strand_experiment(const std::vector<std::filesystem::path>& files, double diameter,
+                                             double span, double support_radius) {
   std::string text = fmt::format(R"(schema = "snare-experiment/1"
 [wire]
 construction = "strand"
@@ -57,26 +59,29 @@ shape = "cylinder"
 radius_mm = {}
 friction = 0.0
 direction = "inward"
-)", diameter, span + 20.0, span, support_radius, support_radius);
+)",
+                                 diameter, span + 20.0, span, support_radius, support_radius);
   for (const std::filesystem::path& file : files) {
-    text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\nfile = \"{}\"\n", file.stem().string(), 0.5 * span,
-                        std::filesystem::absolute(file).string());
+    text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\nfile = \"{}\"\n", file.stem().string(),
+                        0.5 * span, std::filesystem::absolute(file).string());
   }
-  return identification::parse_experiment("measured.toml", text);
+  return identification::parse_experiment("measured.toml", text, identification::parameters());
 }
 
-std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group, double diameter,
-                               double span, double support_radius) {
+std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group,
+                               double diameter, double span, double support_radius) {
   const identification::Experiment e = strand_experiment(files, diameter, span, support_radius);
   const identification::Trace t = identification::trace(e);
   const double sigma = t.noise.sigma.empty() ? 0.0 : t.noise.sigma.front();
   const std::string source = "measured: pulsevad-optimal, three-point bending of strands (replicates)";
-  std::string answer = t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
+  std::string answer =
+      t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
   return {{"tracing of measured strands", fmt::format("{}: explained ({})", group, answer), "", source, 1.0,
            t.explained ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
           {"tracing of measured strands",
-           fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most 1", group, t.base.rmse / sigma), "",
-           source, 0.0, t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
+           fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most 1", group,
+                       t.base.rmse / sigma),
+           "", source, 0.0, t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
 }
 
 }  // namespace
@@ -96,7 +101,8 @@ std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
     const std::string name = fmt::format("tracing of measured strands, {}", g.name);
     if (files.size() < 2) {
       checks.push_back({name, [] { return std::vector<Row>(); },
-                        fmt::format("the measured files {}_*.csv are not in {}", g.name, (measured / "three_point_bending").string())});
+                        fmt::format("the measured files {}_*.csv are not in {}", g.name,
+                                    (measured / "three_point_bending").string())});
       continue;
     }
     checks.push_back({name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius); }, ""});

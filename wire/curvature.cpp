@@ -1,6 +1,6 @@
 #include "wire/curvature.hpp"
 
-#include "wire/cross_matrix.hpp"
+#include "numerics/cross_matrix.hpp"
 
 #include <Eigen/Geometry>
 
@@ -19,6 +19,14 @@ Matrix3d symmetric_product(const Vector3d& x, const Vector3d& y) {
 
 }  // namespace
 
+// Everything below follows from two facts. With t = a/|a|, u = b/|b|:
+//   dt = (I - t t^T) da/|a|,   du = (I - u u^T) db/|b|;
+// a director w perpendicular to t that is carried along (W.20) changes by dw = -(w.dt) t, likewise one of u.
+// Hence for c = t.u, chi = 1 + c, kb = 2 t x u/chi, mean = (t + u)/chi:
+//   |a| dc/da = u - c t,           |b| dc/db = t - c u,
+//   |a| dkb/da = -2/chi [u]_x - kb mean^T,   |b| dkb/db = 2/chi [t]_x - kb mean^T,
+//   |a| dmean/da = (I - t t^T)/chi - mean (u - c t)^T/chi,   likewise by b.
+
 Turn make_turn(const Vector3d& before, const Vector3d& after) {
   Turn turn;
   turn.before = before;
@@ -31,17 +39,18 @@ Turn make_turn(const Vector3d& before, const Vector3d& after) {
   return turn;
 }
 
+// (W.23)  f(c):   df/da = f' dc/da,   dc/da = (u - c t)/|a|,   dc/db = (t - c u)/|b|;   first = f'.
 void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double first, PairGradient& out) {
   out.a += (first * inverse.a) * (turn.after - turn.cosine * turn.before);
   out.b += (first * inverse.b) * (turn.before - turn.cosine * turn.after);
 }
 
+// (W.23)  d2f = f' d2c + f'' dc dc^T;   first = f', second = f''. With p = u - c t, r = t - c u:
+//   |a|^2 d2c/da2 = -(t p^T + p t^T) - c (I - t t^T),   |b|^2 d2c/db2 = -(u r^T + r u^T) - c (I - u u^T),
+//   |a||b| d2c/da db = (I - t t^T)(I - u u^T) = I - t t^T - u u^T + c t u^T.
 void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double first, double second,
                         PairHessian& out) {
-  // With p = u - c t, r = t - c u:
-  //   |a|^2 d2c/da2 = -(t p^T + p t^T) - c (I - t t^T),   likewise by b with u and r,
-  //   |a||b| d2c/da db = (I - t t^T)(I - u u^T) = I - t t^T - u u^T + c t u^T.
-  // Every block is written as a sum of columns times (t, p)^T or (u, r)^T.
+  // Every block is written as a sum of columns times (t, p)^T or (u, r)^T and a multiple of I.
   const double c = turn.cosine;
   const Vector3d& t = turn.before;
   const Vector3d& u = turn.after;
@@ -72,11 +81,14 @@ void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double 
   }
 }
 
+// (W.24)  kappa_1 = 1/2 kb.(m2_- + m2_+),   kappa_2 = -1/2 kb.(m1_- + m1_+)
 Eigen::Vector2d curvatures(const Turn& turn, const Directors& before, const Directors& after) {
-  return {0.5 * turn.binormal.dot(before.second + after.second),
-          -0.5 * turn.binormal.dot(before.first + after.first)};
+  return {0.5 * turn.binormal.dot(before.second + after.second), -0.5 * turn.binormal.dot(before.first + after.first)};
 }
 
+// (W.25)  kappa = 1/2 kb.s with s = w_- + w_+. The carried directors change along t and u, where kb is zero,
+// so that only kb changes:
+//   |a| dkappa/da = A = u x s/chi - kappa mean,   |b| dkappa/db = B = -t x s/chi - kappa mean.
 WeightedCurvature::WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after,
                                      const Eigen::Vector2d& weights)
     : turn_(turn),
@@ -93,6 +105,7 @@ WeightedCurvature::WeightedCurvature(const Turn& turn, const Directors& before, 
   slope_b_ = -turned_b_ - value_ * turn.mean;
 }
 
+// By the angles dw/dtheta = -v:   dkappa/dtheta = -1/2 kb.v.
 void WeightedCurvature::add_gradient(const InverseLengths& inverse, PairGradient& out) const {
   out.a += inverse.a * slope_a_;
   out.b += inverse.b * slope_b_;
@@ -100,13 +113,24 @@ void WeightedCurvature::add_gradient(const InverseLengths& inverse, PairGradient
   out.theta_b -= 0.5 * turn_.binormal.dot(v_b_);
 }
 
+// (W.25)  Second derivatives. A changes with chi, kappa, mean, with s through dw_- = -(w_-.dt) t, for which
+// u x t = -chi/2 kb, and A/|a| with |a|:
+//   |a|^2 d2kappa/da2 = -(A mean^T + mean A^T) - kappa/chi (I - t t^T) + 1/2 kb w_-^T,
+//   |b|^2 d2kappa/db2 = -(B mean^T + mean B^T) - kappa/chi (I - u u^T) + 1/2 kb w_+^T,
+//   |a||b| d2kappa/da db = -A mean^T - mean B^T - kappa/chi (I + t u^T) - [s]_x/chi,
+// where of kb w^T the symmetric part is taken. By an edge and an angle (v of the angle's edge), and by
+// angles:
+//   |a| d2kappa/da dtheta = 1/2 (kb.v) mean - u x v/chi,   |b| d2kappa/db dtheta = 1/2 (kb.v) mean + t x
+//     v/chi,
+//   d2kappa/dtheta^2 = -1/2 kb.w,   d2kappa/dtheta_- dtheta_+ = 0.
+// In the code A = turned_a - kappa mean and B = -turned_b - kappa mean are put in.
 void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& out) const {
   const Vector3d& t = turn_.before;
   const Vector3d& u = turn_.after;
   const Vector3d& kb = turn_.binormal;
   const Vector3d& mean = turn_.mean;
   const double inverse_chi = 1.0 / turn_.chi;
-  const double share = value_ * inverse_chi;
+  const double share = value_ * inverse_chi;  // kappa/chi
   // The frames of one edge are carried with it; they add 1/4 (kb w^T + w kb^T), the symmetric part of their
   // second variation: the skew part belongs to the holonomy of the transport and is no second derivative.
   const Matrix3d aa = 2.0 * value_ * mean * mean.transpose() - symmetric_product(turned_a_, mean) +
@@ -115,7 +139,7 @@ void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& 
                       share * u * u.transpose() + 0.25 * symmetric_product(kb, w_b_);
   const Matrix3d ab = 2.0 * value_ * mean * mean.transpose() - turned_a_ * mean.transpose() +
                       mean * turned_b_.transpose() - share * t * u.transpose() -
-                      cross_matrix(inverse_chi * (w_a_ + w_b_));
+                      numerics::cross_matrix(inverse_chi * (w_a_ + w_b_));
   const Matrix3d diagonal = share * Matrix3d::Identity();
   out.aa += (inverse.a * inverse.a) * (aa - diagonal);
   out.bb += (inverse.b * inverse.b) * (bb - diagonal);
@@ -133,12 +157,13 @@ void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& 
 }
 
 Vector3d WeightedCurvature::by_rotation() const {
-  // u and w_b turn by omega: d kb = 2 t x (omega x u)/chi - kb t.(omega x u)/chi.
+  // u and w_+ turn by omega: dkb = 2 t x (omega x u)/chi - kb t.(omega x u)/chi, dw_+ = omega x w_+.
   const Vector3d half_sum = 0.5 * (w_a_ + w_b_);
-  return 0.5 * w_b_.cross(turn_.binormal) +
-         (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) + 0.5 * value_ * turn_.binormal;
+  return 0.5 * w_b_.cross(turn_.binormal) + (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) +
+         0.5 * value_ * turn_.binormal;
 }
 
+// d2(f^2/2) = df df^T + f d2f: the first term, times `factor`.
 void add_square(const PairGradient& g, double factor, PairHessian& out) {
   const Vector3d a = factor * g.a;
   const Vector3d b = factor * g.b;

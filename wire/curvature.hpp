@@ -26,6 +26,10 @@ struct PairGradient {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double theta_a = 0.0;
   double theta_b = 0.0;
+
+  /// By one edge and its angle.
+  [[nodiscard]] Eigen::Vector4d of_before() const { return {a.x(), a.y(), a.z(), theta_a}; }
+  [[nodiscard]] Eigen::Vector4d of_after() const { return {b.x(), b.y(), b.z(), theta_b}; }
 };
 
 /// Second derivatives of a scalar of a vertex; `ab` has rows of a and columns of b.
@@ -40,6 +44,14 @@ struct PairHessian {
   double theta_aa = 0.0;
   double theta_ab = 0.0;
   double theta_bb = 0.0;
+
+  /// By one edge and its angle.
+  [[nodiscard]] Eigen::Matrix4d of_before() const {
+    return (Eigen::Matrix4d() << aa, a_theta_a, a_theta_a.transpose(), theta_aa).finished();
+  }
+  [[nodiscard]] Eigen::Matrix4d of_after() const {
+    return (Eigen::Matrix4d() << bb, b_theta_b, b_theta_b.transpose(), theta_bb).finished();
+  }
 };
 
 /// Reciprocal lengths of the two edges beside a vertex [1/m]; 0 for a mount's direction, which makes every
@@ -55,8 +67,7 @@ void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double
 
 /// Adds first * hessian of c + second * (gradient of c)(gradient of c)^T: the Hessian of a function of c with
 /// those derivatives.                                                                       theory.md (W.23)
-void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double first, double second,
-                        PairHessian& out);
+void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double first, double second, PairHessian& out);
 
 /// Material directors of an edge.
 struct Directors {
@@ -76,8 +87,7 @@ struct Directors {
 /// Novelia and O'Reilly 2018, sec. 7.2, there for kappa_1 and kappa_2 one by one. The weights are constants.
 class WeightedCurvature {
  public:
-  WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after,
-                    const Eigen::Vector2d& weights);
+  WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after, const Eigen::Vector2d& weights);
 
   /// kappa_w [-].
   [[nodiscard]] double value() const noexcept { return value_; }

@@ -23,16 +23,16 @@ struct EquilibriumOptions {
 };
 
 struct EquilibriumReport : numerics::SolveReport {
-  int negative_pivots = 0;    ///< of the tangent at the end: 0 means stable
-  double pivot_ratio = 0.0;   ///< smallest over largest |pivot|: near 0 means a neutral direction
+  int negative_pivots = 0;   ///< of the tangent at the end: 0 means stable
+  double pivot_ratio = 0.0;  ///< smallest over largest |pivot|: near 0 means a neutral direction
 };
 
 /// Force below which a residual of the rod is round-off or of no account [N].
 ///
-/// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the shortest
-/// edge, eps L (EA/2h + 2 EI/h^3): an iteration may stall at some times that.
-inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness,
-                              double length, double shortest_edge, double largest_force) {
+/// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the
+/// shortest edge, eps L (EA/2h + 2 EI/h^3): an iteration may stall at some times that.
+inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness, double length,
+                              double shortest_edge, double largest_force) {
   const double scale = bending_stiffness / (length * length) + largest_force;
   const double h = shortest_edge;
   const double round_off = std::numeric_limits<double>::epsilon() * length *
@@ -42,16 +42,16 @@ inline double force_tolerance(double tolerance, double bending_stiffness, double
 
 /// Finds an equilibrium of a rod that only its mounts and its weight hold.            theory.md (W.9)
 ///
-/// Damped Newton: the Hessian is shifted until all its pivots are positive (Branch::stable), the step is halved
-/// until the energy falls (stable) or the residual does (nearest). `state` holds the start and the result; on
-/// failure the last state with a lower energy (residual).
+/// Damped Newton: the Hessian is shifted until all its pivots are positive (Branch::stable), the step is
+/// halved until the energy falls (stable) or the residual does (nearest). `state` holds the start and the
+/// result; on failure the last state with a lower energy (residual).
 template <class Rod, class State>
 EquilibriumReport find_equilibrium(const Rod& rod, State& state, const EquilibriumOptions& options = {}) {
   constexpr std::array<bool, 3> no_controls{false, false, false};
   EquilibriumReport report;
   RodAssembly assembly;
   numerics::BandLdlt factor;
-  const double length = state.controls[2] - state.controls[0];
+  const double length = state.controls.length();
   double shortest = length;
   for (int e = 0; e < rod.mesh().edges(); ++e) {
     shortest = std::min(shortest, rod.mesh().rest_length(e, state.controls));
@@ -61,8 +61,8 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
   double shift = 0.0;
   double previous = std::numeric_limits<double>::max();
 
-  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times an
-  // edge.
+  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times
+  // an edge.
   const auto is_angle = [](Eigen::Index i) { return i % Rod::block >= Rod::dimension; };
   const auto evaluate = [&](const State& at) {
     rod.assemble(at, no_controls, assembly);
@@ -97,8 +97,10 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     if (report.iterations == options.max_iterations) break;
 
     if (options.branch == Branch::stable) {
-      // Shift until positive definite; start from the last shift, so that a long descent does not search anew.
-      double trial = (factored && factor.negative_pivots() == 0) ? 0.0 : std::max(shift, 1e-3 * ei / std::pow(length, 3));
+      // Shift until positive definite; start from the last shift, so that a long descent does not search
+      // anew.
+      double trial =
+          (factored && factor.negative_pivots() == 0) ? 0.0 : std::max(shift, 1e-3 * ei / std::pow(length, 3));
       while (trial > 0.0) {
         numerics::SymmetricBandMatrix shifted = assembly.hessian;
         for (int i = 0; i < shifted.order(); ++i) shifted.lower(i, i) += trial;
@@ -135,7 +137,8 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
       if (!std::isfinite(residual)) continue;
       // Near the end energies differ by round-off only: a falling residual then is enough.
       accepted = residual <= 0.5 * old_residual && options.branch == Branch::nearest;
-      accepted = accepted || (options.branch == Branch::stable && assembly.energy <= old_energy + 1e-4 * fraction * slope);
+      accepted =
+          accepted || (options.branch == Branch::stable && assembly.energy <= old_energy + 1e-4 * fraction * slope);
       accepted = accepted || (std::abs(fraction * slope) < 1e-12 * std::abs(old_energy) && residual < old_residual);
       accepted = accepted || (options.branch == Branch::nearest && residual < (1.0 - 1e-4 * fraction) * old_residual);
       if (accepted) break;

@@ -41,7 +41,7 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
   const PlanarRodProperties& p = rod.properties();
   const MaterialMesh& mesh = rod.mesh();
   const int n = mesh.edges();
-  const double length = controls[2] - controls[0];
+  const double length = controls.length();
   const Eigen::Vector2d chord = p.right.position - p.left.position;
   const double span = chord.norm();
   LooseWire result;
@@ -55,10 +55,9 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
     Eigen::Vector2d x = p.left.position;
     result.state.q.segment<2>(0) = x;
     for (int e = 0; e < n; ++e) {
-      const double middle = 0.5 * (mesh.coordinate(e, controls) + mesh.coordinate(e + 1, controls)) - controls[0];
+      const double middle = 0.5 * (mesh.coordinate(e, controls) + mesh.coordinate(e + 1, controls)) - controls.left;
       const double angle = amplitude * mode_angle(p.left.kind, mode, middle / length);
-      x += mesh.rest_length(e, controls) * buckled_length / length *
-           Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      x += mesh.rest_length(e, controls) * buckled_length / length * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       result.state.q.segment<2>(2 * (e + 1)) = x;
     }
     return x.x() - p.left.position.x();
@@ -86,13 +85,13 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
   } else {
     for (int i = 0; i <= n; ++i) {
       result.state.q.segment<2>(2 * i) =
-          p.left.position + chord * ((mesh.coordinate(i, controls) - controls[0]) / length);
+          p.left.position + chord * ((mesh.coordinate(i, controls) - controls.left) / length);
     }
   }
   // What is left of the gap to the right mount is shared out along the wire.
   const Eigen::Vector2d gap = p.right.position - vertex(result.state, n);
   for (int i = 1; i < n; ++i) {
-    result.state.q.segment<2>(2 * i) += (mesh.coordinate(i, controls) - controls[0]) / length * gap;
+    result.state.q.segment<2>(2 * i) += (mesh.coordinate(i, controls) - controls.left) / length * gap;
   }
   result.state.q.segment<2>(2 * n) = p.right.position;
 

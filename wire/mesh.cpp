@@ -38,9 +38,9 @@ MaterialMesh MaterialMesh::coarsened(int factor) const {
 }
 
 double MaterialMesh::coordinate(int i, const Controls& controls) const {
-  const std::size_t a = i < left_edges_ ? 0 : 1;
-  const double xi = position_[static_cast<std::size_t>(i)];
-  return (1.0 - xi) * controls[a] + xi * controls[a + 1];
+  const double xi = position_[base::at(i)];
+  return i < left_edges_ ? (1.0 - xi) * controls.left + xi * controls.contact
+                         : (1.0 - xi) * controls.contact + xi * controls.right;
 }
 
 MaterialMesh make_mesh(int edges, double fraction, double grading) {

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <array>
+#include "base/index.hpp"
+
+#include <cstddef>
 #include <vector>
 
 namespace snare::wire {
@@ -9,7 +11,18 @@ namespace snare::wire {
 /// the wire, measured along the unstretched wire [m], increasing.
 ///
 /// Feeding through a mount moves `left` or `right`; sliding over the pusher moves `contact`.
-using Controls = std::array<double, 3>;
+struct Controls {
+  double left = 0.0;
+  double contact = 0.0;
+  double right = 0.0;
+
+  /// Control k in this order, 0 to 2, as in derivatives by the controls.
+  [[nodiscard]] double& operator[](std::size_t k) noexcept { return k == 0 ? left : (k == 1 ? contact : right); }
+  [[nodiscard]] double operator[](std::size_t k) const noexcept { return k == 0 ? left : (k == 1 ? contact : right); }
+  [[nodiscard]] bool operator==(const Controls&) const = default;
+  /// Unstretched length between the mounts [m].
+  [[nodiscard]] double length() const noexcept { return right - left; }
+};
 
 /// A mesh that moves with the contact.                                             theory.md (W.10)
 ///
@@ -35,14 +48,13 @@ class MaterialMesh {
   [[nodiscard]] double coordinate(int i, const Controls& controls) const;
   /// Rest length of edge e [m], > 0 for increasing controls.
   [[nodiscard]] double rest_length(int e, const Controls& controls) const {
-    const int a = first_control(e);
-    return rest_share_[static_cast<std::size_t>(e)] *
-           (controls[static_cast<std::size_t>(a + 1)] - controls[static_cast<std::size_t>(a)]);
+    const double side = e < left_edges_ ? controls.contact - controls.left : controls.right - controls.contact;
+    return rest_share_[base::at(e)] * side;
   }
   /// Derivative of the rest length of edge e by control k: -share, +share or 0 [-].
   [[nodiscard]] double rest_length_derivative(int e, int k) const {
     const int a = first_control(e);
-    const double share = rest_share_[static_cast<std::size_t>(e)];
+    const double share = rest_share_[base::at(e)];
     return k == a ? -share : (k == a + 1 ? share : 0.0);
   }
 

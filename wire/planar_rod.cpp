@@ -1,5 +1,7 @@
 #include "wire/planar_rod.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -24,9 +26,9 @@ struct Cell {
   double moment = 0.0;     // dE/dphi
   double stiffness = 0.0;  // d2E/dphi2
   double energy = 0.0;
-  double by_length = 0.0;             // dE/d l_i
-  double moment_by_length = 0.0;      // d2E/dphi d l_i
-  double by_length_twice = 0.0;       // d2E/d l_i^2
+  double by_length = 0.0;         // dE/d l_i
+  double moment_by_length = 0.0;  // d2E/dphi d l_i
+  double by_length_twice = 0.0;   // d2E/d l_i^2
 };
 
 Edge make_edge(double ex, double ey, double rest) {
@@ -35,7 +37,7 @@ Edge make_edge(double ex, double ey, double rest) {
   return {ex * inv, ey * inv, length, rest, -ey * inv * inv, ex * inv * inv};
 }
 
-/// Integrated curvature 2 tan(phi/2).
+/// Integrated curvature 2 tan(phi/2) = 2 sin(phi)/(1 + cos(phi)).                             theory.md (W.2)
 double integrated_curvature(const Edge& before, const Edge& after) {
   const double cross = before.tx * after.ty - before.ty * after.tx;
   const double dot = before.tx * after.tx + before.ty * after.ty;
@@ -50,7 +52,12 @@ struct CellLaw {
   const double* slipped;     // of the sliders; null: virgin
 };
 
-/// E = 1/2 k (kappa - kappa_nat l)^2, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives.
+/// E = 1/2 k s^2, s = kappa - n l, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives
+/// (W.6), n the natural curvature. With kappa' = dkappa/dphi = 1 + kappa^2/4, kappa'' = kappa kappa'/2, dk/dl
+/// = -k^2/EI, d2k/dl2 = -2 k (dk/dl)/EI:
+///   dE/dphi = k s kappa',   d2E/dphi2 = k (kappa'^2 + s kappa kappa'/2),   d2E/dphi dl = (s dk/dl - k n)
+///     kappa',
+///   dE/dl = 1/2 s^2 dk/dl - k n s,   d2E/dl2 = 1/2 s^2 d2k/dl2 - 2 n s dk/dl + k n^2
 Cell bend_elastic(double kappa, double ei, const CellLaw& law, double natural_curvature) {
   const double k = 1.0 / (law.length / ei + law.mount_flexibility);
   const double strain = kappa - natural_curvature * law.length;
@@ -63,12 +70,14 @@ Cell bend_elastic(double kappa, double ei, const CellLaw& law, double natural_cu
   cell.stiffness = k * (slope * slope + 0.5 * strain * kappa * slope);
   cell.by_length = 0.5 * k1 * strain * strain - k * natural_curvature * strain;
   cell.moment_by_length = (k1 * strain - k * natural_curvature) * slope;
-  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain +
-                         k * natural_curvature * natural_curvature;
+  cell.by_length_twice =
+      0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain + k * natural_curvature * natural_curvature;
   return cell;
 }
 
-/// E = l W(c - kappa_nat) with c = kappa/l and W, M = W', M' of the section with its sliders.
+/// E = l W(c - n) with c = kappa/l and W, M = W', M' of the section with its sliders (W.13); kappa' as above:
+///   dE/dphi = M kappa',   d2E/dphi2 = M'/l kappa'^2 + M kappa kappa'/2,   d2E/dphi dl = -M' c/l kappa',
+///   dE/dl = W - c M,   d2E/dl2 = c^2 M'/l
 Cell bend_with_sliders(double kappa, double ei, const CellLaw& law, const PlanarRodProperties& p) {
   const double l = law.length;
   const double c = kappa / l;
@@ -105,12 +114,14 @@ Edge direction_of(const PlanarEnd& end) {
   return {end.direction.x(), end.direction.y(), 1.0, 1.0, 0.0, 0.0};
 }
 
-double flexibility(const PlanarEnd& end) { return 1.0 / end.rotational_stiffness; }
+double flexibility(const PlanarEnd& end) {
+  return 1.0 / end.rotational_stiffness;
+}
 
 /// Factor of EI at a material coordinate.
 double profile_at(const std::vector<double>& profile, double coordinate, const Controls& controls) {
   if (profile.empty()) return 1.0;
-  const double at = (coordinate - controls[0]) / (controls[2] - controls[0]) * static_cast<double>(profile.size() - 1);
+  const double at = (coordinate - controls.left) / controls.length() * static_cast<double>(profile.size() - 1);
   const double cell = std::clamp(std::floor(at), 0.0, static_cast<double>(profile.size()) - 2.0);
   const auto j = static_cast<std::size_t>(cell);
   return profile[j] + (at - cell) * (profile[j + 1] - profile[j]);
@@ -135,8 +146,8 @@ Corner corner_at(int i, const std::vector<Edge>& edges, const PlanarRodPropertie
     return {before, direction_of(p.right), 0.5 * before.rest, flexibility(p.right),
             p.right.kind == PlanarEnd::Kind::clamp};
   }
-  const Edge& before = edges[static_cast<std::size_t>(i - 1)];
-  const Edge& after = edges[static_cast<std::size_t>(i)];
+  const Edge& before = edges[base::at(i - 1)];
+  const Edge& after = edges[base::at(i)];
   return {before, after, 0.5 * (before.rest + after.rest), 0.0, true};
 }
 
@@ -150,7 +161,7 @@ Cell bend_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p
                             : profile_at(p.bending_profile, mesh.coordinate(i, state.controls), state.controls);
   const double* slipped = nullptr;
   if (state.memory != nullptr && !p.bending_sliders.empty()) {
-    slipped = state.memory->bending.data() + static_cast<std::size_t>(i) * p.bending_sliders.size();
+    slipped = state.memory->bending.data() + base::at(i) * p.bending_sliders.size();
   }
   return bend(corner.before, corner.after, {corner.length, factor, corner.mount_flexibility, slipped}, p);
 }
@@ -162,19 +173,98 @@ SectionResponse stretch_at(int e, double strain, const PlanarRodProperties& p, c
     return {force, p.axial_stiffness, 0.5 * force * strain};
   }
   const double* slipped =
-      state.memory == nullptr ? nullptr
-                              : state.memory->axial.data() + static_cast<std::size_t>(e) * p.axial_sliders.size();
+      state.memory == nullptr ? nullptr : state.memory->axial.data() + base::at(e) * p.axial_sliders.size();
   return respond(p.axial_stiffness, p.axial_sliders, strain, slipped);
 }
 
 void fill_edges(const MaterialMesh& mesh, const PlanarState& state, std::vector<Edge>& edges) {
   const int n = mesh.edges();
-  edges.resize(static_cast<std::size_t>(n));
+  edges.resize(base::at(n));
   const double* q = state.q.data();
   for (int e = 0; e < n; ++e) {
-    edges[static_cast<std::size_t>(e)] = make_edge(q[2 * e + 2] - q[2 * e], q[2 * e + 3] - q[2 * e + 1],
-                                                   mesh.rest_length(e, state.controls));
+    edges[base::at(e)] =
+        make_edge(q[2 * e + 2] - q[2 * e], q[2 * e + 3] - q[2 * e + 1], mesh.rest_length(e, state.controls));
   }
+}
+
+/// Forces on the two vertices of an edge, x and y of the first at `row`: -f and f of the edge (W.3), less
+/// half its weight on either.
+void add_forces(int row, const std::array<double, 2>& f, const std::array<double, 2>& half_weight, RodAssembly& out) {
+  double* near = out.gradient.data() + row;
+  double* far = near + PlanarRod::block;
+  for (std::size_t r = 0; r < 2; ++r) {
+    near[r] -= f[r] + half_weight[r];
+    far[r] += f[r] - half_weight[r];
+  }
+}
+
+/// d2E/de2 of an edge, e = x_{e+1} - x_e.
+struct EdgeStiffness {
+  double xx, xy, yy;
+};
+
+/// Adds it to the edge's two vertices: [K -K; -K K], lower triangle; column(j)[i - j] is the entry (i, j).
+void add_edge_stiffness(int row, const EdgeStiffness& k, numerics::SymmetricBandMatrix& hessian) {
+  double* near_x = hessian.column(row);
+  double* near_y = hessian.column(row + 1);
+  double* far_x = hessian.column(row + 2);
+  double* far_y = hessian.column(row + 3);
+  near_x[0] += k.xx;
+  near_x[1] += k.xy;
+  near_x[2] -= k.xx;
+  near_x[3] -= k.xy;
+  near_y[0] += k.yy;
+  near_y[1] -= k.xy;
+  near_y[2] -= k.yy;
+  far_x[0] += k.xx;
+  far_x[1] += k.xy;
+  far_y[0] += k.yy;
+}
+
+/// d phi_i/d(x_{i-1}, x_i, x_{i+1}) = (d_-, -d_- - d_+, d_+) with d = d alpha/de of the edges before and
+/// after: phi = alpha_+ - alpha_-, e_- = x_i - x_{i-1}, e_+ = x_{i+1} - x_i. A mount's direction has d = 0.
+/// (W.4)
+struct TurnGradient {
+  std::array<double, 6> values{};
+  int row;         // unknown of values[0]
+  int first, end;  // values that belong to vertices
+
+  TurnGradient(int i, const std::vector<Edge>& edges) : row(PlanarRod::block * (i - 1)) {
+    const bool has_before = i > 0;
+    const bool has_after = i < static_cast<int>(edges.size());
+    auto& [before_x, before_y, middle_x, middle_y, after_x, after_y] = values;
+    if (has_before) {
+      before_x = edges[base::at(i - 1)].ax;
+      before_y = edges[base::at(i - 1)].ay;
+    }
+    if (has_after) {
+      after_x = edges[base::at(i)].ax;
+      after_y = edges[base::at(i)].ay;
+    }
+    middle_x = -before_x - after_x;
+    middle_y = -before_y - after_y;
+    first = has_before ? 0 : PlanarRod::block;
+    end = has_after ? 6 : 4;
+  }
+};
+
+/// Adds factor * v v^T.
+void add_rank_one(const TurnGradient& v, double factor, numerics::SymmetricBandMatrix& hessian) {
+  for (int a = v.first; a < v.end; ++a) {
+    double* column = hessian.column(v.row + a);
+    const double s = factor * v.values[base::at(a)];
+    for (int b = a; b < v.end; ++b) column[b - a] += s * v.values[base::at(b)];
+  }
+}
+
+/// dl/dS_k of vertex i's cell.
+std::array<double, 3> length_by_controls(int i, const MaterialMesh& mesh) {
+  std::array<double, 3> share{};
+  for (int k = 0; k < 3; ++k) {
+    share[base::at(k)] = 0.5 * ((i > 0 ? mesh.rest_length_derivative(i - 1, k) : 0.0) +
+                                (i < mesh.edges() ? mesh.rest_length_derivative(i, k) : 0.0));
+  }
+  return share;
 }
 
 }  // namespace
@@ -189,7 +279,7 @@ double PlanarRod::energy(const PlanarState& state) const {
   fill_edges(mesh_, state, edges);
   double sum = 0.0;
   for (int e = 0; e < mesh_.edges(); ++e) {
-    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    const Edge& edge = edges[base::at(e)];
     const double strain = edge.length / edge.rest - 1.0;
     sum += stretch_at(e, strain, properties_, state).energy * edge.rest;
     sum -= 0.5 * edge.rest * properties_.weight.dot(vertex(state, e) + vertex(state, e + 1));
@@ -209,8 +299,8 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
   const int n = mesh_.edges();
   const int unknown_count = unknowns();
   fill_edges(mesh_, state, edges);
-  cells.resize(static_cast<std::size_t>(n + 1));
-  for (int i = 0; i <= n; ++i) cells[static_cast<std::size_t>(i)] = bend_at(i, edges, properties_, mesh_, state);
+  cells.resize(base::at(n + 1));
+  for (int i = 0; i <= n; ++i) cells[base::at(i)] = bend_at(i, edges, properties_, mesh_, state);
 
   out.gradient.setZero(unknown_count);
   if (out.hessian.order() != unknown_count) {
@@ -228,65 +318,48 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
   const double wx = properties_.weight.x();
   const double wy = properties_.weight.y();
   for (int e = 0; e < n; ++e) {
-    const Edge& edge = edges[static_cast<std::size_t>(e)];
-    const Cell& left = cells[static_cast<std::size_t>(e)];
-    const Cell& right = cells[static_cast<std::size_t>(e + 1)];
+    const Edge& edge = edges[base::at(e)];
+    const Cell& left = cells[base::at(e)];
+    const Cell& right = cells[base::at(e + 1)];
     const double stretch = edge.length / edge.rest;
     const SectionResponse section = stretch_at(e, stretch - 1.0, properties_, state);
     const double tension = section.resultant;
-    // The edge turns with alpha: it is the outgoing edge of its left vertex, the incoming of its right one.
+    // dE/de = T t + (M_i - M_{i+1}) e_perp/l^2 (W.3): a turn of the edge by alpha adds to phi_i of its left
+    // vertex, whose outgoing edge it is, and takes from phi_{i+1} of its right one.
     const double turn = left.moment - right.moment;
     const double gx = tension * edge.tx + turn * edge.ax;
     const double gy = tension * edge.ty + turn * edge.ay;
-    double* g = out.gradient.data() + 2 * e;
     const double half = 0.5 * edge.rest;
-    g[0] -= gx + half * wx;
-    g[1] -= gy + half * wy;
-    g[2] += gx - half * wx;
-    g[3] += gy - half * wy;
+    add_forces(2 * e, {gx, gy}, {half * wx, half * wy}, out);
 
-    // d2l/de2 = (I - t t^T)/l,  d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4.
+    // d2l/de2 = (I - t t^T)/l, so that stretching has EA/h t t^T + T (I - t t^T)/l;
+    // d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4 (W.4).
     const double axial = section.tangent / edge.rest;
     const double lateral = tension / edge.length;
     const double bxx = (axial - lateral) * edge.tx * edge.tx + lateral;
     const double bxy = (axial - lateral) * edge.tx * edge.ty;
     const double byy = (axial - lateral) * edge.ty * edge.ty + lateral;
     const double twist = -turn / (edge.length * edge.length);
-    const double cxx = bxx - 2.0 * twist * edge.tx * edge.ty;
-    const double cxy = bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty);
-    const double cyy = byy + 2.0 * twist * edge.tx * edge.ty;
-    double* c0 = out.hessian.column(2 * e);
-    double* c1 = out.hessian.column(2 * e + 1);
-    double* c2 = out.hessian.column(2 * e + 2);
-    double* c3 = out.hessian.column(2 * e + 3);
-    c0[0] += cxx;
-    c0[1] += cxy;
-    c0[2] -= cxx;
-    c0[3] -= cxy;
-    c1[0] += cyy;
-    c1[1] -= cxy;
-    c1[2] -= cyy;
-    c2[0] += cxx;
-    c2[1] += cxy;
-    c3[0] += cyy;
+    add_edge_stiffness(2 * e,
+                       {bxx - 2.0 * twist * edge.tx * edge.ty, bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty),
+                        byy + 2.0 * twist * edge.tx * edge.ty},
+                       out.hessian);
 
     // By the rest length, through the edge and through the two cells it belongs to.
     const double middle_x = 0.5 * (state.q[2 * e] + state.q[2 * e + 2]);
     const double middle_y = 0.5 * (state.q[2 * e + 1] + state.q[2 * e + 3]);
     const double weight_work = wx * middle_x + wy * middle_y;
     out.energy += section.energy * edge.rest - edge.rest * weight_work;
-    const double by_rest = section.energy - stretch * tension - weight_work +
-                           0.5 * (left.by_length + right.by_length);
+    const double by_rest = section.energy - stretch * tension - weight_work + 0.5 * (left.by_length + right.by_length);
     for (int k = 0; k < 3; ++k) {
       const double share = mesh_.rest_length_derivative(e, k);
       if (share == 0.0) continue;
       out.control_gradient[k] += share * by_rest;
       for (int m = 0; m < 3; ++m) {
-        out.control_hessian(k, m) +=
-            share * mesh_.rest_length_derivative(e, m) * axial * stretch * stretch;
+        out.control_hessian(k, m) += share * mesh_.rest_length_derivative(e, m) * axial * stretch * stretch;
       }
-      if (!wanted[static_cast<std::size_t>(k)]) continue;
-      double* column = out.control_columns[static_cast<std::size_t>(k)].data() + 2 * e;
+      if (!wanted[base::at(k)]) continue;
+      double* column = out.control_columns[base::at(k)].data() + 2 * e;
       const double pull = -share * axial * stretch;
       column[0] -= pull * edge.tx + 0.5 * share * wx;
       column[1] -= pull * edge.ty + 0.5 * share * wy;
@@ -295,6 +368,7 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     }
   }
 
+  // Mounts that give along x: 1/2 k (x - X)^2 (W.6).
   const auto spring = [&](const PlanarEnd& end, int row) {
     if (end.kind == PlanarEnd::Kind::free || std::isinf(end.translational_stiffness)) return;
     const double give = state.q[row] - end.position.x();
@@ -305,46 +379,25 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
   spring(properties_.left, 0);
   spring(properties_.right, 2 * n);
 
-  // Rank-one part of bending: stiffness v v^T with v = d phi / d(x_{i-1}, x_i, x_{i+1}).
+  // Rank-one part of bending (W.4): M' v v^T with v = d phi/d(x_{i-1}, x_i, x_{i+1}), M' = d2E/dphi2.
   for (int i = 0; i <= n; ++i) {
-    const Cell& cell = cells[static_cast<std::size_t>(i)];
+    const Cell& cell = cells[base::at(i)];
     out.energy += cell.energy;
     if (cell.stiffness == 0.0) continue;
-    const bool has_before = i > 0;
-    const bool has_after = i < n;
-    double v[6] = {};
-    if (has_before) {
-      const Edge& edge = edges[static_cast<std::size_t>(i - 1)];
-      v[0] = edge.ax;
-      v[1] = edge.ay;
-    }
-    if (has_after) {
-      const Edge& edge = edges[static_cast<std::size_t>(i)];
-      v[4] = edge.ax;
-      v[5] = edge.ay;
-    }
-    v[2] = -v[0] - v[4];
-    v[3] = -v[1] - v[5];
-    const int first = has_before ? 0 : 2;
-    const int end = has_after ? 6 : 4;
-    const int base = 2 * i - 2;
-    for (int a = first; a < end; ++a) {
-      double* column = out.hessian.column(base + a);
-      const double s = cell.stiffness * v[a];
-      for (int b = a; b < end; ++b) column[b - a] += s * v[b];
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double share = 0.5 * ((has_before ? mesh_.rest_length_derivative(i - 1, k) : 0.0) +
-                                  (has_after ? mesh_.rest_length_derivative(i, k) : 0.0));
-      if (share == 0.0) continue;
-      for (int m = 0; m < 3; ++m) {
-        const double other = 0.5 * ((has_before ? mesh_.rest_length_derivative(i - 1, m) : 0.0) +
-                                    (has_after ? mesh_.rest_length_derivative(i, m) : 0.0));
-        out.control_hessian(k, m) += share * other * cell.by_length_twice;
+    const TurnGradient v(i, edges);
+    add_rank_one(v, cell.stiffness, out.hessian);
+    // By the cell's length l = (h_{i-1} + h_i)/2, linear in the controls (W.10).
+    const std::array<double, 3> share = length_by_controls(i, mesh_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (share[k] == 0.0) continue;
+      for (std::size_t m = 0; m < 3; ++m) {
+        out.control_hessian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(m)) +=
+            share[k] * share[m] * cell.by_length_twice;
       }
-      if (!wanted[static_cast<std::size_t>(k)]) continue;
-      Eigen::VectorXd& column = out.control_columns[static_cast<std::size_t>(k)];
-      for (int a = first; a < end; ++a) column[base + a] += share * cell.moment_by_length * v[a];
+      if (!wanted[k]) continue;
+      Eigen::VectorXd& column = out.control_columns[k];
+      for (int a = v.first; a < v.end; ++a)
+        column[v.row + a] += share[k] * cell.moment_by_length * v.values[base::at(a)];
     }
   }
 }
@@ -392,29 +445,29 @@ Eigen::VectorXd PlanarRod::tensions(const PlanarState& state) const {
   fill_edges(mesh_, state, edges);
   Eigen::VectorXd result(mesh_.edges());
   for (int e = 0; e < mesh_.edges(); ++e) {
-    const Edge& edge = edges[static_cast<std::size_t>(e)];
+    const Edge& edge = edges[base::at(e)];
     result[e] = stretch_at(e, edge.length / edge.rest - 1.0, properties_, state).resultant;
   }
   return result;
 }
 
 double PlanarRod::rate_form(const PlanarState& state, const PlanarState& rate) const {
-  // Central differences of strain and curvature along the rate: exact to the square of a step that moves the wire by a
-  // millionth of its length.
+  // Central differences of strain and curvature along the rate: exact to the square of a step that moves the
+  // wire by a millionth of its length.
   const double largest = std::max(rate.q.lpNorm<Eigen::Infinity>(), 1e-300);
-  const double h = 1e-6 * (state.controls[2] - state.controls[0]) / largest;
+  const double h = 1e-6 * state.controls.length() / largest;
   std::array<std::vector<Edge>, 2> edges;
   for (const int side : {0, 1}) {
     PlanarState moved = state;
     const double sign = side == 0 ? -h : h;
     moved.q += sign * rate.q;
     for (std::size_t k = 0; k < 3; ++k) moved.controls[k] += sign * rate.controls[k];
-    fill_edges(mesh_, moved, edges[static_cast<std::size_t>(side)]);
+    fill_edges(mesh_, moved, edges[base::at(side)]);
   }
   double sum = 0.0;
   for (int e = 0; e < mesh_.edges(); ++e) {
-    const Edge& low = edges[0][static_cast<std::size_t>(e)];
-    const Edge& high = edges[1][static_cast<std::size_t>(e)];
+    const Edge& low = edges[0][base::at(e)];
+    const Edge& high = edges[1][base::at(e)];
     const double strain_rate = (high.length / high.rest - low.length / low.rest) / (2.0 * h);
     sum += properties_.axial_stiffness * strain_rate * strain_rate * mesh_.rest_length(e, state.controls);
   }
@@ -424,7 +477,8 @@ double PlanarRod::rate_form(const PlanarState& state, const PlanarState& rate) c
     const Corner high = corner_at(i, edges[1], properties_);
     const double length = 0.5 * (low.length + high.length);
     const double curvature_rate = (integrated_curvature(high.before, high.after) / high.length -
-                                   integrated_curvature(low.before, low.after) / low.length) / (2.0 * h);
+                                   integrated_curvature(low.before, low.after) / low.length) /
+                                  (2.0 * h);
     sum += properties_.bending_stiffness * curvature_rate * curvature_rate * length;
   }
   return sum;
@@ -442,23 +496,25 @@ SectionMemory PlanarRod::remembered(const PlanarState& state) const {
   }
   const std::size_t bending = p.bending_sliders.size();
   const std::size_t axial = p.axial_sliders.size();
-  result.bending.resize(bending * static_cast<std::size_t>(mesh_.vertices()), 0.0);
-  result.axial.resize(axial * static_cast<std::size_t>(mesh_.edges()), 0.0);
+  result.bending.resize(bending * base::at(mesh_.vertices()), 0.0);
+  result.axial.resize(axial * base::at(mesh_.edges()), 0.0);
   for (int i = 0; i <= mesh_.edges() && bending > 0; ++i) {
     const Corner corner = corner_at(i, edges, p);
     if (!corner.bends || corner.mount_flexibility > 0.0) continue;
     slide(p.bending_sliders, integrated_curvature(corner.before, corner.after) / corner.length - p.natural_curvature,
-          result.bending.data() + static_cast<std::size_t>(i) * bending);
+          result.bending.data() + base::at(i) * bending);
   }
   for (int e = 0; e < mesh_.edges() && axial > 0; ++e) {
-    const Edge& edge = edges[static_cast<std::size_t>(e)];
-    slide(p.axial_sliders, edge.length / edge.rest - 1.0, result.axial.data() + static_cast<std::size_t>(e) * axial);
+    const Edge& edge = edges[base::at(e)];
+    slide(p.axial_sliders, edge.length / edge.rest - 1.0, result.axial.data() + base::at(e) * axial);
   }
-  // Within the step the sliders went along with the vertices; what had slipped before belongs to the material.
+  // Within the step the sliders went along with the vertices; what had slipped before belongs to the
+  // material.
   if (state.memory != nullptr && state.memory->controls != state.controls) {
-    const auto carry = [&](const std::vector<double>& old, std::vector<double>& now, std::size_t elements, bool of_edges) {
-      const std::vector<double> carried = carried_over(mesh_, old, static_cast<int>(elements), of_edges,
-                                                       state.memory->controls, state.controls);
+    const auto carry = [&](const std::vector<double>& old, std::vector<double>& now, std::size_t elements,
+                           bool of_edges) {
+      const std::vector<double> carried =
+          carried_over(mesh_, old, static_cast<int>(elements), of_edges, state.memory->controls, state.controls);
       for (std::size_t i = 0; i < now.size(); ++i) now[i] += carried[i] - old[i];
     };
     carry(state.memory->bending, result.bending, bending, false);

@@ -34,10 +34,10 @@ struct PlanarRodProperties {
   double axial_stiffness = 0.0;    ///< EA [N], > 0; likewise
   std::vector<SliderElement> bending_sliders;  ///< on curvature less the natural one
   std::vector<SliderElement> axial_sliders;    ///< on the axial strain
-  /// Factor of EI along the wire: at stations evenly spread over the material between the mounts, linear between;
-  /// empty: uniform. Each > 0.
+  /// Factor of EI along the wire: at stations evenly spread over the material between the mounts, linear
+  /// between; empty: uniform. Each > 0.
   std::vector<double> bending_profile;
-  double natural_curvature = 0.0;  ///< [1/m], positive for turning left along the wire
+  double natural_curvature = 0.0;                    ///< [1/m], positive for turning left along the wire
   Eigen::Vector2d weight = Eigen::Vector2d::Zero();  ///< force per unstretched length [N/m]
   PlanarEnd left;
   PlanarEnd right;
@@ -53,23 +53,24 @@ struct PlanarState {
 /// Energy and derivatives at one state. `hessian` is by q; `control_columns[k]` = d gradient / d control k is
 /// filled for the controls asked for.
 struct RodAssembly {
-  double energy = 0.0;                  ///< [J]
-  Eigen::VectorXd gradient;             ///< dE/dq, rows of held unknowns included [N]
+  double energy = 0.0;       ///< [J]
+  Eigen::VectorXd gradient;  ///< dE/dq, rows of held unknowns included [N]
   numerics::SymmetricBandMatrix hessian;
   std::array<Eigen::VectorXd, 3> control_columns;
   Eigen::Vector3d control_gradient = Eigen::Vector3d::Zero();  ///< dE/dS_k, all three [N]
   Eigen::Matrix3d control_hessian = Eigen::Matrix3d::Zero();   ///< d2E/dS_k dS_l [N/m]
 };
 
-/// The discrete elastic rod in its plane.                      theory.md (W.1)-(W.9); Bergou et al. 2008, 2010
+/// The discrete elastic rod in its plane.                     theory.md (W.1)-(W.9); Bergou et al. 2008, 2010
 ///
 ///   E = sum_edges 1/2 EA (l/l0 - 1)^2 l0 + sum_vertices 1/2 k_i (kappa_i - kappa_nat l_i)^2 - sum w.x m
 ///
-/// with the integrated curvature kappa_i = 2 tan(phi_i/2) of the turning angle phi_i, l_i half of the two rest
-/// lengths beside the vertex, k_i = EI/l_i. A clamp is the vertex at the mount with the mount's direction as its
-/// outer edge and half a cell, l_0/2, so that force and moment converge at second order; a clamp that gives
-/// has k_0 in series with its rotational stiffness. With sliders the energies are those of respond(), strain
-/// kappa_i / l_i - kappa_nat at vertices (sliders do not slip in the half cell of a clamp that gives) and l/l0 - 1 at edges.
+/// with the integrated curvature kappa_i = 2 tan(phi_i/2) of the turning angle phi_i, l_i half of the two
+/// rest lengths beside the vertex, k_i = EI/l_i. A clamp is the vertex at the mount with the mount's
+/// direction as its outer edge and half a cell, l_0/2, so that force and moment converge at second order; a
+/// clamp that gives has k_0 in series with its rotational stiffness. With sliders the energies are those of
+/// respond(), strain kappa_i / l_i - kappa_nat at vertices (sliders do not slip in the half cell of a clamp
+/// that gives) and l/l0 - 1 at edges.
 class PlanarRod {
  public:
   static constexpr int dimension = 2;
@@ -86,8 +87,8 @@ class PlanarRod {
   [[nodiscard]] double energy(const PlanarState& state) const;
 
   /// Everything at once into `out`, whose storage is reused. wanted[k]: fill control_columns[k].
-  /// Springs of the mounts are in; rigidly held unknowns are not yet applied, so that the gradient there is the
-  /// reaction: see `hold_mounts`.
+  /// Springs of the mounts are in; rigidly held unknowns are not yet applied, so that the gradient there is
+  /// the reaction: see `hold_mounts`.
   void assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const;
 
   /// Holds the rigid positions: gradient entries of held unknowns become zero, their rows and columns those
@@ -97,12 +98,15 @@ class PlanarRod {
   /// Makes the entries of held unknowns zero.
   void clear_held(Eigen::VectorXd& band) const;
 
-  /// Turning moment M_i at the vertices [N m], positive for turning left; the end values belong to the mounts.
+  /// Turning moment M_i at the vertices [N m], positive for turning left; the end values belong to the
+  /// mounts.
   [[nodiscard]] Eigen::VectorXd moments(const PlanarState& state) const;
   /// Axial force of every edge [N], tension positive.
   [[nodiscard]] Eigen::VectorXd tensions(const PlanarState& state) const;
-  /// Bending stiffness times integrated curvature rates and axial stiffness times strain rates: for a rate dq/dt of the
-  /// state the quadratic form sum EA (de)^2 l0 + sum k_i (dkappa_i)^2 of the elastic springs [J/s^2].  theory.md (W.14)
+  /// Bending stiffness times integrated curvature rates and axial stiffness times strain rates: for a rate
+  /// dq/dt of the state the quadratic form sum EA (de)^2 l0 + sum k_i (dkappa_i)^2 of the elastic springs
+  /// [J/s^2].
+  ///                                                                                         theory.md (W.14)
   [[nodiscard]] double rate_form(const PlanarState& state, const PlanarState& rate) const;
 
   [[nodiscard]] bool has_memory() const noexcept {
@@ -117,7 +121,9 @@ class PlanarRod {
 };
 
 /// Adds a step to the unknowns. (The spatial rod transports its frames here as well.)
-inline void advance(PlanarState& state, const Eigen::VectorXd& step) { state.q += step; }
+inline void advance(PlanarState& state, const Eigen::VectorXd& step) {
+  state.q += step;
+}
 
 /// Position of vertex i [m].
 [[nodiscard]] inline Eigen::Vector2d vertex(const PlanarState& state, int i) {

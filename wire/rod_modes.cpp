@@ -1,5 +1,7 @@
 #include "wire/rod_modes.hpp"
 
+#include "wire/rod_part.hpp"
+
 #include <Eigen/Dense>
 
 #include <cassert>
@@ -39,9 +41,8 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
   assert(rest.cols() == n);
   VectorXd q = VectorXd::Zero(statics.unknowns());
   for (int i = 0; i < n; ++i) q.segment<3>(block * i) = rest.col(i);
-  const double half = rod.length * (rod.elements / 2) / rod.elements;
   RodAssembly tangent;
-  statics.assemble(statics.make_state(q, {0.0, half, rod.length}), {false, false, false}, tangent);
+  statics.assemble(statics.make_state(q, rod.controls()), {false, false, false}, tangent);
   std::vector<int> moving;
   std::vector<int> turning;
   const bool twist_free = !rod.properties.left.orients() && !rod.properties.right.orients();
@@ -49,7 +50,7 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
     for (int k = 0; k < 3; ++k) {
       if (!part.is_held(i, k)) moving.push_back(block * i + k);
     }
-    if (i + 1 < n && !(twist_free && i == 0)) turning.push_back(block * i + 3);
+    if (i + 1 < n && !(twist_free && i == 0)) turning.push_back(block * i + SpatialRod::angle);
   }
   const auto entries = [&](const std::vector<int>& rows, const std::vector<int>& columns) {
     MatrixXd m(rows.size(), columns.size());

@@ -58,7 +58,7 @@ std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<dou
   int j = 0;
   for (int i = 0; i < count; ++i) {
     const double s = place(i, to);
-    if (s < from[0] || s > from[2]) continue;  // new material
+    if (s < from.left || s > from.right) continue;  // new material
     while (j < count - 2 && place(j + 1, from) < s) ++j;
     const double a = place(j, from);
     const double part = std::clamp((s - a) / (place(j + 1, from) - a), 0.0, 1.0);

@@ -1,70 +1,16 @@
 #pragma once
 
-#include "wire/frames.hpp"
+#include "wire/end.hpp"
 #include "wire/mesh.hpp"
 #include "wire/planar_rod.hpp"
+#include "wire/spatial_properties.hpp"
+#include "wire/spatial_state.hpp"
 
 #include <Eigen/Core>
 
 #include <array>
-#include <limits>
-#include <optional>
-#include <vector>
 
 namespace snare::wire {
-
-/// How a mount holds one end of a spatial rod.
-struct SpatialEnd {
-  enum class Kind {
-    clamp,         ///< position, direction and twist
-    twisting_pin,  ///< position and twist, free to turn in any direction (a constant-velocity joint)
-    pin,           ///< position (a ball joint)
-    free           ///< nothing
-  };
-  Kind kind = Kind::clamp;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< [m]
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of increasing arc length; unit
-  Eigen::Vector3d director = Eigen::Vector3d::UnitY();   ///< d1 of the mount, perpendicular to it; unit
-  /// Of the rod's material director m1 from `director`, about `direction` [rad]; any number of turns.
-  double twist_angle = 0.0;
-  /// Of a clamp that gives in bending, the same about both axes [N m/rad], > 0. In series with the half cell
-  /// beside the mount, for kappa_1 and kappa_2 each: the law is linear in 2 tan(phi/2) of the mount's and the
-  /// half cell's turn together, so it errs by the third power of the angle by which the mount gives.
-  double rotational_stiffness = std::numeric_limits<double>::infinity();
-  /// Of a mount that gives in twist [N m/rad], > 0.
-  double twisting_stiffness = std::numeric_limits<double>::infinity();
-  /// Along x, of a mount that gives [N/m], > 0.
-  double translational_stiffness = std::numeric_limits<double>::infinity();
-
-  /// Whether the mount has a direction and a director that the rod feels.
-  [[nodiscard]] bool orients() const noexcept { return kind == Kind::clamp || kind == Kind::twisting_pin; }
-};
-
-/// Constants of a uniform spatial rod.
-struct SpatialRodProperties {
-  double bending_stiffness = 0.0;         ///< EI_1 of kappa_1, towards director m1 [N m^2], > 0
-  double second_bending_stiffness = 0.0;  ///< EI_2 of kappa_2, towards director m2 [N m^2], > 0
-  double torsional_stiffness = 0.0;       ///< GJ [N m^2], > 0
-  double axial_stiffness = 0.0;           ///< EA [N], > 0
-  Eigen::Vector2d natural_curvature = Eigen::Vector2d::Zero();  ///< of kappa_1, kappa_2 [1/m]
-  double natural_twist = 0.0;                                   ///< [rad/m]
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();             ///< force per unstretched length [N/m]
-  SpatialEnd left;
-  SpatialEnd right;
-};
-
-/// Unknowns of the spatial rod, q = (x_0, y_0, z_0, theta_0, x_1, ...) [m, rad] with theta_i of the edge that
-/// starts at vertex i (the last one is unused), what carries the mesh, and the time-parallel frames.
-///
-/// Change q through `accept` or `advance` only: they carry the frames along.
-struct SpatialState {
-  Eigen::VectorXd q;
-  Controls controls{};
-  std::vector<Frame> frames;        ///< reference frames of the edges
-  std::optional<Frame> left_mount;  ///< of a mount that orients
-  std::optional<Frame> right_mount;
-  std::vector<double> reference_twist;  ///< m of every vertex [rad]
-};
 
 /// The discrete elastic rod in space.                       theory.md (W.20)-(W.30); Bergou et al. 2008, 2010
 ///
@@ -83,7 +29,8 @@ struct SpatialState {
 class SpatialRod {
  public:
   static constexpr int dimension = 3;
-  static constexpr int block = 4;            ///< unknowns a vertex
+  static constexpr int block = SpatialState::block;
+  static constexpr int angle = SpatialState::angle;
   static constexpr int half_bandwidth = 10;  ///< x_i and z_{i+2}
 
   SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties);
@@ -91,6 +38,8 @@ class SpatialRod {
   [[nodiscard]] const MaterialMesh& mesh() const noexcept { return mesh_; }
   [[nodiscard]] const SpatialRodProperties& properties() const noexcept { return properties_; }
   [[nodiscard]] int unknowns() const noexcept { return block * mesh_.vertices(); }
+  /// First unknown of the vertex at an end.
+  [[nodiscard]] int row_of(End end) const noexcept { return end == End::left ? 0 : block * mesh_.edges(); }
 
   /// Moves or turns the mounts; bring a state along with `adopt_mounts`.
   void set_mounts(const SpatialEnd& left, const SpatialEnd& right);
@@ -124,21 +73,21 @@ class SpatialRod {
   /// rod about itself stays free: the caller must hold it.
   void hold_mounts(RodAssembly& assembly) const;
 
-  /// Gradient and Hessian of the cell at one end (bending and twisting against the mount) by the edge beside it and its
-  /// angle: at the left end those of the edge after, at the right end those of the edge before.
+  /// Gradient and Hessian of the cell at one end (bending and twisting against the mount) by the edge beside
+  /// it and its angle: at the left end those of the edge after, at the right end those of the edge before.
   struct EndCell {
-    Eigen::Matrix<double, 4, 1> gradient = Eigen::Matrix<double, 4, 1>::Zero();  ///< edge vector [N], angle [N m]
+    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();  ///< by the edge vector [N], by the angle [N m]
     Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
   };
-  [[nodiscard]] EndCell end_cell(const SpatialState& state, bool right) const;
+  [[nodiscard]] EndCell end_cell(const SpatialState& state, End end) const;
 
   /// Moment vector of every vertex, (3, vertices) [N m]: dE by a rigid rotation of all that follows the
   /// vertex, which is the moment that the part after it exerts on the part before; positive about z for
   /// turning left in the plane, with the torque as component along the wire. The end columns belong to the
   /// mounts.                                                                              theory.md (W.29)
   [[nodiscard]] Eigen::Matrix3Xd moments(const SpatialState& state) const;
-  /// The end columns of `moments`: the couple of the left mount on the rod is minus the first, that of the right mount
-  /// the second [N m].
+  /// The end columns of `moments`: the couple of the left mount on the rod is minus the first, that of the
+  /// right mount the second [N m].
   [[nodiscard]] std::array<Eigen::Vector3d, 2> end_moments(const SpatialState& state) const;
   /// Twisting moment of every vertex [N m], positive for a right-handed turn along the wire.
   [[nodiscard]] Eigen::VectorXd torques(const SpatialState& state) const;
@@ -149,19 +98,5 @@ class SpatialRod {
   MaterialMesh mesh_;
   SpatialRodProperties properties_;
 };
-
-/// Sets the unknowns and carries the reference frames to the new tangents; the reference twist follows
-/// without jumps while it changes by less than pi a step at every vertex.
-void accept(SpatialState& state, const Eigen::VectorXd& q);
-
-/// Adds a step to the unknowns.
-inline void advance(SpatialState& state, const Eigen::VectorXd& step) {
-  accept(state, state.q + step);
-}
-
-/// Position of vertex i [m].
-[[nodiscard]] inline Eigen::Vector3d vertex(const SpatialState& state, int i) {
-  return state.q.segment<3>(SpatialRod::block * i);
-}
 
 }  // namespace snare::wire

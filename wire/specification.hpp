@@ -7,34 +7,34 @@ namespace snare::wire {
 
 enum class Construction { solid, strand };
 
-/// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands, a
-/// stiffness that acts until the curvature has changed by slip_curvature and slides then.       theory.md (W.13)
+/// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands,
+/// a stiffness that acts until the curvature has changed by slip_curvature and slides then.  theory.md (W.13)
 struct StrandFriction {
   double extra_stiffness = 0.0;  ///< [N m^2], > 0
   double slip_curvature = 0.0;   ///< [1/m], > 0
 };
 
-/// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by fibre in
-/// bending, all at once in tension, the two without regard to each other; strains are stresses over the moduli that give
-/// EI and EA with the round section.                                                  theory.md (W.13)
+/// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by
+/// fibre in bending, all at once in tension, the two without regard to each other; strains are stresses over
+/// the moduli that give EI and EA with the round section.                                    theory.md (W.13)
 struct Yielding {
-  double yield_stress = 0.0;  ///< [Pa], > 0
-  double hardening_ratio = usual_hardening;  ///< tangent over elastic modulus beyond it, in (0, 1)
+  double yield_stress = 0.0;                       ///< [Pa], > 0
+  double hardening_ratio = usual_hardening;        ///< tangent over elastic modulus beyond it, in (0, 1)
   static constexpr double usual_hardening = 0.02;  ///< cold-drawn wire: 1 to 4 % (assumed)
 };
 
 /// A uniform round wire as it is declared. SI units.
 struct WireSpecification {
   Construction construction = Construction::solid;
-  double diameter = 0.0;        ///< outer diameter [m], > 0
-  double length = 0.0;          ///< unstretched length between the mounts [m], > 0
-  double youngs_modulus = 0.0;  ///< [Pa], > 0
-  double poisson_ratio = 0.3;   ///< [-], in (-1, 0.5]
-  double density = 0.0;         ///< of the metal [kg/m^3], > 0
+  double diameter = 0.0;                               ///< outer diameter [m], > 0
+  double length = 0.0;                                 ///< unstretched length between the mounts [m], > 0
+  double youngs_modulus = 0.0;                         ///< [Pa], > 0
+  double poisson_ratio = 0.3;                          ///< [-], in (-1, 0.5]
+  double density = 0.0;                                ///< of the metal [kg/m^3], > 0
   std::optional<double> bending_stiffness_override;    ///< EI [N m^2], > 0
   std::optional<double> axial_stiffness_override;      ///< EA [N], > 0
   std::optional<double> torsional_stiffness_override;  ///< GJ [N m^2], > 0
-  double natural_curvature = 0.0;  ///< in the plane of the bulge, positive with the bulge [1/m]
+  double natural_curvature = 0.0;                      ///< in the plane of the bulge, positive with the bulge [1/m]
   std::optional<StrandFriction> strand_friction;
   std::optional<Yielding> yielding;
   /// Factor of EI at stations evenly spread over the wire between the mounts, each > 0; empty: uniform.
@@ -59,11 +59,11 @@ enum class MountKind {
 /// The two mounts; the chord runs along +x from the left mount at the origin, the bulge towards +y.
 struct MountSpecification {
   MountKind kind = MountKind::clamped;
-  double span = 0.0;            ///< distance of the mounts (or of the supports' centres) [m], > 0
-  double support_radius = 0.0;  ///< supports only [m], >= 0
+  double span = 0.0;                              ///< distance of the mounts (or of the supports' centres) [m], > 0
+  double support_radius = 0.0;                    ///< supports only [m], >= 0
   std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
   std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
-  std::optional<double> slip_tension;  ///< wire feeds through the left mount beyond this |tension| [N]
+  std::optional<double> slip_tension;             ///< wire feeds through the left mount beyond this |tension| [N]
 };
 
 }  // namespace snare::wire

@@ -1,7 +1,7 @@
 #include "app/report/compare_report.hpp"
 
-#include "app/commands.hpp"
 #include "app/report/report_page.hpp"
+#include "app/report/version.hpp"
 
 #include <fmt/format.h>
 
@@ -24,11 +24,9 @@ void close_up(PlotSpecification& plot, const std::vector<double>& shown, bool dw
 
 }  // namespace
 
-std::string compare_report_html(const std::string& title,
-                                const std::vector<reduction::CaseComparison>& cases) {
-  ReportPage page(
-      title.empty() ? "Models of a snare wire compared" : title,
-      "Accuracy against the full wire and the measured force, cost, range and numbers of every model.");
+std::string compare_report_html(const std::string& title, const std::vector<reduction::CaseComparison>& cases) {
+  ReportPage page(title.empty() ? "Models of a snare wire compared" : title,
+                  "Accuracy against the full wire and the measured force, cost, range and numbers of every model.");
   for (const reduction::CaseComparison& one : cases) {
     page.heading(one.name);
     if (!one.report.usable()) page.callout("The full wire stopped: " + one.report.message, Tone::bad);
@@ -47,8 +45,7 @@ std::string compare_report_html(const std::string& title,
     PlotSpecification error{"Error against the full wire", {"travel", "mm"}, {"model less full wire", "N"}};
     std::vector<double> travel = one.travel;
     for (double& d : travel) d *= 1e3;
-    if (!one.measured.empty())
-      force.curves.push_back({"measured", travel, one.measured, CurveStyle::points, 0});
+    if (!one.measured.empty()) force.curves.push_back({"measured", travel, one.measured, CurveStyle::points, 0});
     const reduction::ModelResult& full = one.models.front();
     int colour = 1;
     bool dwarfed = false;
@@ -59,13 +56,11 @@ std::string compare_report_html(const std::string& title,
       if (!far) forces.insert(forces.end(), m.force.begin(), m.force.end());
       table.rows.push_back(
           {m.model, format_significant(m.largest_error),
-           one.force_range > 0.0 ? format_significant(100.0 * m.largest_error / one.force_range, 2) + " %"
-                                 : "-",
+           one.force_range > 0.0 ? format_significant(100.0 * m.largest_error / one.force_range, 2) + " %" : "-",
            format_significant(m.rms_error), m.measured_rms ? format_significant(*m.measured_rms) : "-",
            format_significant(m.seconds, 2), format_significant(full.seconds / m.seconds, 2),
            format_number(1e3 * m.range.high, 4), std::to_string(m.parameters)});
-      force.curves.push_back(
-          {m.model, travel, m.force, &m == &full ? CurveStyle::line : CurveStyle::dashes, colour});
+      force.curves.push_back({m.model, travel, m.force, &m == &full ? CurveStyle::line : CurveStyle::dashes, colour});
       if (&m != &full) {
         std::vector<double> off = m.force;
         for (std::size_t i = 0; i < off.size(); ++i) off[i] -= full.force[i];

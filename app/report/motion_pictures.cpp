@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double mm = 1e3;  // [mm/m]
+constexpr double mm_per_m = 1e3;
 
 /// Every so many samples give a frame.
 std::size_t stride(const std::vector<MotionSample>& samples) {
@@ -31,7 +31,7 @@ std::string label_of(const MotionSample& s) {
 AnimationFrame::Line polyline(const Eigen::Matrix3Xd& points, Eigen::Index across) {
   AnimationFrame::Line line;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    line.insert(line.end(), {mm * points(across, i), mm * points(1, i)});
+    line.insert(line.end(), {mm_per_m * points(across, i), mm_per_m * points(1, i)});
   return line;
 }
 
@@ -48,7 +48,8 @@ std::vector<AnimationFrame::Line> skeleton(const multibody::Tree& tree, const Ei
     std::vector<Vector3d> chain;
     for (int i = end; i >= 0; i = tree.body(i).parent) chain.push_back(pose(i).p);
     std::reverse(chain.begin(), chain.end());
-    lines.push_back(polyline(Eigen::Map<const Eigen::Matrix3Xd>(chain.front().data(), 3, static_cast<Eigen::Index>(chain.size())), across));
+    lines.push_back(polyline(
+        Eigen::Map<const Eigen::Matrix3Xd>(chain.front().data(), 3, static_cast<Eigen::Index>(chain.size())), across));
     for (const multibody::TreeFrame& f : tree.frames()) {
       if (f.body != end) continue;
       Eigen::Matrix3Xd line(3, 2);
@@ -66,7 +67,7 @@ std::vector<std::vector<Eigen::Matrix3Xd>> shapes_of(const coupling::Motion& mot
   for (const coupling::MotionContact& c : motion.contacts) {
     if (!drawn.emplace(c.body, c.shape.get()).second) continue;
     for (const Eigen::Matrix3Xd& line : c.shape->drawing())
-      lines[static_cast<std::size_t>(c.body)].emplace_back((c.shape_rotation * line).colwise() + c.shape_position);
+      lines[static_cast<std::size_t>(c.body)].emplace_back((c.X_BS.R * line).colwise() + c.X_BS.p);
   }
   return lines;
 }
@@ -77,7 +78,7 @@ Eigen::Matrix3Xd in_world(const multibody::RigidBodyState& body, const Eigen::Ma
 
 }  // namespace
 
-AnimationSpecification animation_of(const scenario::ContactScenario& scenario, const std::string& model,
+AnimationSpecification animation_of(const scenario::Probe& probe, const std::string& model,
                                     const std::vector<MotionSample>& samples) {
   AnimationSpecification animation{
       "Wire and probe: " + model,
@@ -85,21 +86,24 @@ AnimationSpecification animation_of(const scenario::ContactScenario& scenario, c
       {},
       "To scale; the probe is the circle, the line from it leads to the body's centre of mass."};
   constexpr int corners = 36;
-  const Eigen::Matrix3Xd circle = coupling::circle_drawing(scenario.push.pusher.radius, 0.0, corners);
+  const Eigen::Matrix3Xd circle = coupling::circle_drawing(probe.radius, 0.0, corners);
   for (std::size_t k = 0; k < samples.size(); k += stride(samples)) {
     const MotionSample& s = samples[k];
     AnimationFrame frame{label_of(s), {{}, {}, {}}};
     for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines[0].push_back(polyline(w, 0));
     const multibody::RigidBodyState& b = s.bodies.front();
-    const Vector3d probe = b.position + b.orientation * scenario.probe;
-    frame.outlines[1].push_back(polyline(circle.colwise() + probe, 0));
-    frame.outlines[2] = {{mm * probe.x(), mm * probe.y(), mm * b.position.x(), mm * b.position.y()}};
+    const Vector3d axis = b.position + b.orientation * probe.place;
+    frame.outlines[1].push_back(polyline(circle.colwise() + axis, 0));
+    Eigen::Matrix3Xd way(3, 2);
+    way << axis, b.position;
+    frame.outlines[2] = {polyline(way, 0)};
     animation.frames.push_back(std::move(frame));
   }
   return animation;
 }
 
-AnimationSpecification animation_of(const coupling::Motion& motion, const std::vector<MotionSample>& samples, View view) {
+AnimationSpecification animation_of(const coupling::Motion& motion, const std::vector<MotionSample>& samples,
+                                    View view) {
   const bool along_z = view == View::along_z;
   const Eigen::Index across = along_z ? 0 : 2;
   AnimationSpecification animation{
@@ -107,7 +111,8 @@ AnimationSpecification animation_of(const coupling::Motion& motion, const std::v
       {},
       {},
       motion.arms.empty() ? "To scale; of the bodies their shapes, and their centres of mass as small crosses."
-                          : "To scale; of the bodies their shapes, and their centres of mass as small crosses; the arm from joint to joint."};
+                          : "To scale; of the bodies their shapes, and their centres of mass as small crosses; the arm "
+                            "from joint to joint."};
   const std::vector<std::vector<Eigen::Matrix3Xd>> shapes = shapes_of(motion);
   const double cross = motion.arms.empty() ? 2.0 : 100.0;  // half its size, that it may be seen beside an arm [mm]
   for (std::size_t k = 0; k < samples.size(); k += stride(samples)) {
@@ -115,8 +120,8 @@ AnimationSpecification animation_of(const coupling::Motion& motion, const std::v
     AnimationFrame frame{label_of(s), {}};
     for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines.push_back({polyline(w, across)});
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-      const double x = mm * s.bodies[b].position[across];
-      const double y = mm * s.bodies[b].position.y();
+      const double x = mm_per_m * s.bodies[b].position[across];
+      const double y = mm_per_m * s.bodies[b].position.y();
       std::vector<AnimationFrame::Line> lines{{x - cross, y, x + cross, y}, {x, y - cross, x, y + cross}};
       for (const Eigen::Matrix3Xd& line : shapes[b]) lines.push_back(polyline(in_world(s.bodies[b], line), across));
       frame.outlines.push_back(std::move(lines));

@@ -2,7 +2,7 @@
 
 #include "app/report/paraview.hpp"
 #include "app/report/report_page.hpp"
-#include "scenario/contact_scenario.hpp"
+#include "scenario/world.hpp"
 
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ enum class View {
 };
 
 /// Wire, probe and the way to the body's centre of mass, seen along z, to scale.
-[[nodiscard]] AnimationSpecification animation_of(const scenario::ContactScenario& scenario, const std::string& model,
+[[nodiscard]] AnimationSpecification animation_of(const scenario::Probe& probe, const std::string& model,
                                                   const std::vector<coupling::MotionSample>& samples);
 
 /// Wires, bodies (centres of mass and shapes) and arms (lines from joint to joint), to scale.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/report/plot.hpp"
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -8,73 +10,6 @@
 #include <vector>
 
 namespace snare::app {
-
-enum class CurveStyle { line, dashes, points };
-
-enum class AxesScale {
-  independent,  ///< each axis fills the frame
-  equal         ///< one unit is equally long on both axes: shapes drawn to scale
-};
-
-enum class Palette {
-  categorical,  ///< unrelated curves: black, blue, vermillion, ... (Okabe and Ito 2008, safe for colour-blind readers)
-  sequential  ///< a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
-};
-
-enum class PlotWidth { half, full };
-
-/// Scatter or uncertainty around a curve, in the unit of its y; both as long as the curve.
-struct Band {
-  std::vector<double> lower;
-  std::vector<double> upper;
-};
-
-/// One curve of a plot. x need not be sorted: load and unload, closed outlines.
-struct Curve {
-  std::string
-      name;  ///< in the legend; empty: belongs to the named curve before it (its pusher, its other half)
-  std::vector<double> x;
-  std::vector<double> y;  ///< as long as x
-  CurveStyle style = CurveStyle::line;
-  int colour = 0;  ///< index into the palette, >= 0
-  std::optional<Band> band = std::nullopt;
-};
-
-struct Axis {
-  std::string label;
-  std::string unit;  ///< e.g. "mm"; empty for a pure number
-};
-
-struct Range {
-  double lower = 0.0;
-  double upper = 0.0;
-};
-
-struct PlotSpecification {
-  std::string title;
-  Axis x;
-  Axis y;
-  std::vector<Curve> curves = {};
-  AxesScale scale = AxesScale::independent;
-  Palette palette = Palette::categorical;
-  PlotWidth width = PlotWidth::half;
-  std::optional<Range> y_window =
-      std::nullopt;       ///< shown first, when some curve dwarfs the rest; a button shows all
-  std::string note = {};  ///< printed under the plot; may be empty
-};
-
-/// Outlines that move, drawn to scale: one for every name in every frame.
-struct AnimationFrame {
-  using Line = std::vector<double>;       ///< x0, y0, x1, y1, ... in the unit of the plot
-  std::string label;                      ///< "t = 0.120 s"
-  std::vector<std::vector<Line>> outlines;  ///< each of any number of lines
-};
-struct AnimationSpecification {
-  std::string title;
-  std::vector<std::string> names;  ///< in the legend; one an outline
-  std::vector<AnimationFrame> frames;
-  std::string note = {};
-};
 
 enum class Tone { plain, good, bad };
 
@@ -117,9 +52,6 @@ struct KeyFigure {
 /// see docs/decisions/0003-report-plots.md; half plots added one after the other share rows.
 class ReportPage {
  public:
-  /// Curves of more points than this are thinned, keeping the extremes of every stretch.
-  static constexpr std::size_t max_points_per_curve = 4000;
-
   ReportPage(std::string title, std::string subtitle);
 
   /// Starts a section; it is listed in the page's contents.
@@ -161,6 +93,12 @@ class ReportPage {
   int plot_count_ = 0;
   bool animated_ = false;
 };
+
+/// First sentences of the small print of a page beside `files`, e.g. "trace.json and curves.csv".
+[[nodiscard]] std::string written_by(std::string_view version, std::string_view files);
+/// Last sentence of it, on pages with plots to read closely.
+inline constexpr const char* plot_help =
+    " In a plot: hover for values, drag to zoom, double-click to return, click the legend to hide a curve.";
 
 /// At most `digits` significant digits, no trailing zeros: 1.5, 719880, 2.3e-07.
 /// Throws std::invalid_argument when the value is not finite.

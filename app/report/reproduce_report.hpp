@@ -1,15 +1,15 @@
 #pragma once
 
-#include <string>
+#include "app/report/reproduce_result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace snare::app {
 
-/// The page of `snare reproduce`, from the content of reproduce.json (docs/reproduce_json.md).
+/// The page of `snare reproduce`.
 ///
-/// What is absent or null is left out or shown as a dash, and what stopped early is said so: a page can be had from
-/// any run. Throws std::invalid_argument, naming the key, when a value has the wrong type or is not finite.
-std::string reproduce_report_html(const nlohmann::json& result);
+/// What was not computed is left out or shown as a dash, and what stopped early is said so: a page can be had from any
+/// run. Throws std::invalid_argument, naming plot and curve, when a value of a curve is not finite.
+[[nodiscard]] std::string reproduce_report_html(const Reproduction& result, const std::string& version);
 
 }  // namespace snare::app

@@ -1,13 +1,12 @@
 #pragma once
 
 #include "app/report/report_page.hpp"
-
-#include <nlohmann/json_fwd.hpp>
+#include "app/report/reproduce_result.hpp"
 
 namespace snare::app {
 
-/// What the tracing says of the published curves, and how it depends on what the paper does not print: the part of the page of
-/// `snare reproduce` made from `trace` and `verdicts` (docs/reproduce_json.md). Nothing when both are absent.
-void add_verdicts(ReportPage& page, const nlohmann::json& result);
+/// What the tracing says of the published curves, and how it depends on what the paper does not print: a section of the
+/// page of `snare reproduce`. Nothing without a trace and verdicts.
+void add_verdicts(ReportPage& page, const Reproduction& result);
 
 }  // namespace snare::app

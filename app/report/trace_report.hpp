@@ -1,15 +1,16 @@
 #pragma once
 
-#include <string>
+#include "identification/tracing/trace.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace snare::app {
 
-/// The page of `snare trace`, from the content of trace.json (docs/trace_json.md).
+/// The page of `snare trace`.
 ///
-/// What is absent or null is left out or shown as a dash. Throws std::invalid_argument, naming the key, when a value has
-/// the wrong type or is not finite.
-std::string trace_report_html(const nlohmann::json& result);
+/// A trace that was interrupted, or that lacks predictions, gives a page, too: what is not known is left out or shown
+/// as a dash. Throws std::invalid_argument, naming plot and curve, when a value of a curve is not finite.
+[[nodiscard]] std::string trace_report_html(const identification::Experiment& experiment,
+                                            const identification::Trace& trace, const std::string& version);
 
 }  // namespace snare::app

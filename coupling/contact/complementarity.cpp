@@ -23,7 +23,8 @@ VectorXd complementary_impulses(const MatrixXd& a, const VectorXd& b, const Vect
     }
     p.setZero();
     if (!active.empty()) {
-      const VectorXd solution = MatrixXd(a(active, active)).completeOrthogonalDecomposition().solve(VectorXd(-b(active)));
+      const VectorXd solution =
+          MatrixXd(a(active, active)).completeOrthogonalDecomposition().solve(VectorXd(-b(active)));
       p(active) = solution;
     }
     const VectorXd w = a * p + b;

@@ -2,25 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace snare::coupling {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
 
-/// Nothing pulls.
-Vector3d pushing(const Vector3d& force) {
-  return force.x() > 0.0 ? force : Vector3d::Zero();
+/// The place of (L.4): mid-span; a form of the stretched wire asks for no bending stiffness.
+LawPlace middle(double half_length, double half_span) {
+  return {2.0 * half_span, half_span, 2.0 * half_length, 0.0};
 }
 
 }  // namespace
 
-ContactLaw spring_dashpot(double k, double c) {
-  return [k, c](double d, double rate) {
-    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    return pushing({k * d + c * rate, k, c});
+ContactLaw contact_law(SpringLawPointer spring, Damping damping) {
+  return [spring = std::move(spring), damping = std::move(damping)](double d, double rate) -> Vector3d {
+    if (d <= 0.0) return Vector3d::Zero();
+    Vector3d force(spring->force(d), spring->stiffness(d), 0.0);
+    if (damping) force += damping(d, rate);
+    return force.x() > 0.0 ? force : Vector3d::Zero();
   };
+}
+
+Damping linear_damping(double c) {
+  return [c](double, double rate) { return Vector3d(c * rate, 0.0, c); };
+}
+
+Damping power_damping(double c, double q, double n) {
+  return [c, q, n](double d, double rate) {
+    const double depth = c * std::pow(d, n);
+    const double damping = depth * std::copysign(std::pow(std::abs(rate), q), rate);
+    return Vector3d(damping, n * damping / d, depth * q * std::pow(std::abs(rate), q - 1.0));
+  };
+}
+
+Damping step_damping(double c, double depth) {
+  return [c, depth](double d, double rate) {
+    // G = x^2 (3 - 2 x), x = d/depth, 1 beyond the depth.
+    const double x = std::min(d / depth, 1.0);
+    const double step = x * x * (3.0 - 2.0 * x);
+    const double slope = 6.0 * x * (1.0 - x) / depth;
+    return Vector3d(c * step * rate, c * slope * rate, c * step);
+  };
+}
+
+ContactLaw spring_dashpot(double k, double c) {
+  return contact_law(linear_law()->with(Eigen::VectorXd::Constant(1, k)), linear_damping(c));
 }
 
 ContactLaw power_law(double k, double p, double c, double q) {
@@ -28,49 +58,24 @@ ContactLaw power_law(double k, double p, double c, double q) {
 }
 
 ContactLaw power_law(double k, double p, double c, double q, double n) {
-  return [k, p, c, q, n](double d, double rate) {
-    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    const double spring = k * std::pow(d, p);
-    const double depth = c * std::pow(d, n);
-    const double damping = depth * std::copysign(std::pow(std::abs(rate), q), rate);
-    return pushing({spring + damping, (p * spring + n * damping) / d, depth * q * std::pow(std::abs(rate), q - 1.0)});
-  };
+  return contact_law(power_law()->with(Vector2d(k, p)), power_damping(c, q, n));
 }
 
 ContactLaw step_damped_law(double k, double p, double c, double depth) {
-  return [k, p, c, depth](double d, double rate) {
-    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    const double x = std::min(d / depth, 1.0);
-    const double step = x * x * (3.0 - 2.0 * x);
-    const double slope = 6.0 * x * (1.0 - x) / depth;
-    const double spring = k * std::pow(d, p);
-    return pushing({spring + c * step * rate, p * spring / d + c * slope * rate, c * step});
-  };
+  return contact_law(power_law()->with(Vector2d(k, p)), step_damping(c, depth));
 }
 
 ContactLaw quadratic_law(double a, double b, double c) {
-  return [a, b, c](double d, double) {
-    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    return pushing({(a * d + b) * d + c, 2.0 * a * d + b, 0.0});
-  };
+  return contact_law(quadratic_law()->with(Vector3d(a, b, c)));
 }
 
 ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span) {
-  const double h = std::sqrt(half_length * half_length - half_span * half_span);
-  return [k = stiffness, l = half_length, h](double d, double) {
-    if (d <= 0.0) return Vector3d(0.0, 0.0, 0.0);
-    const double squared = l * l + (2.0 * h + d) * d;
-    const double now = std::sqrt(squared);
-    // 1 - l/now without cancellation.
-    const double share = (2.0 * h + d) * d / (now * (now + l));
-    return Vector3d(2.0 * k * share * (h + d), 2.0 * k * (share + l * (h + d) * (h + d) / (squared * now)),
-                    0.0);
-  };
+  return contact_law(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)));
 }
 
 ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span) {
-  const double l = half_length;
-  return spring_dashpot(2.0 * stiffness * (l * l - half_span * half_span) / (l * l), 0.0);
+  return contact_law(
+      stretched_wire_linearised(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)));
 }
 
 }  // namespace snare::coupling

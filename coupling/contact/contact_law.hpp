@@ -1,14 +1,31 @@
 #pragma once
 
+#include "coupling/contact/law_form.hpp"
+
 #include <Eigen/Core>
 
 #include <functional>
 
 namespace snare::coupling {
 
-/// A contact force as a function of penetration d [m] and its rate [m/s], with its derivatives by both: (F, dF/dd, dF/dd').
+/// A contact force as a function of penetration d [m] and its rate [m/s], with its derivatives: (F, dF/dd, dF/dd').
 /// Zero without penetration, and never negative: what would pull is cut off.
 using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate)>;
+
+/// What damping adds to a spring at penetration d > 0: (D, dD/dd, dD/dd').
+using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
+
+/// F = max(0, S(d) + D(d, d')): a law of law_form.hpp with its numbers, and the damping of a motion; none when empty.
+[[nodiscard]] ContactLaw contact_law(SpringLawPointer spring, Damping damping = {});
+
+/// D = c d'.                                                            c >= 0 [N s/m]
+[[nodiscard]] Damping linear_damping(double c);
+/// D = c d^n |d'|^q sgn d'. n = 0 (a force jump at the touch) or n >= 1; q >= 1; c >= 0 [N s^q/m^(n+q)].
+[[nodiscard]] Damping power_damping(double c, double q, double n);
+/// D = c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  c >= 0 [N s/m], depth > 0 [m].
+[[nodiscard]] Damping step_damping(double c, double depth);
+
+// Each of the following is the law of the same name in law_form.hpp with these numbers.
 
 /// F = k d + c d'.                                                      theory.md (L.1); Abiko et al., eq. 4
 /// k >= 0 [N/m], c >= 0 [N s/m].
@@ -18,7 +35,7 @@ using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate
 /// q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q);
 
-/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 (a force jump at the touch) or n >= 1.
+/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 or n >= 1.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q, double n);
 
 /// F = k d^p + c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  theory.md (L.2); Abiko et al., eq. 3
@@ -30,6 +47,7 @@ using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate
 
 /// Stretched wire, pushed at its middle from where it is taut:          theory.md (L.4); Honda et al. 2014, eq. 1
 ///   F = 2 K (1 - l/sqrt(l^2 + 2 h d + d^2)) (h + d),  h = sqrt(l^2 - L^2)
+/// which is (R.8) at mid-span with the axial stiffness K l and no free travel.
 /// K: stiffness of one half [N/m], > 0; l: half its length, L: half the distance of its ends [m], l >= L > 0.
 [[nodiscard]] ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span);
 

@@ -78,10 +78,8 @@ TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode, co
   const SlipLaw law = slip_law(friction, speed);
   t.by_normal = law.coefficient * direction;
   t.force = at.normal * t.by_normal;
-  t.by_bristle =
-      law.coefficient * at.normal / size * (Matrix2d::Identity() - direction * direction.transpose());
-  t.by_sliding =
-      friction.bristle_time * t.by_bristle + at.normal * law.slope * direction * at.sliding.transpose();
+  t.by_bristle = law.coefficient * at.normal / size * (Matrix2d::Identity() - direction * direction.transpose());
+  t.by_sliding = friction.bristle_time * t.by_bristle + at.normal * law.slope * direction * at.sliding.transpose();
   return t;
 }
 
@@ -93,8 +91,7 @@ Vector2d bristle_rate(const MotionFriction& friction, FrictionMode mode, const B
 
 double friction_margin(const MotionFriction& friction, FrictionMode mode, const BristleState& at) {
   const double size = friction.bristle_stiffness() * reach(friction, at).norm();
-  if (mode == FrictionMode::stick)
-    return (1.0 + slip_onset_margin) * friction.static_coefficient * at.normal - size;
+  if (mode == FrictionMode::stick) return (1.0 + slip_onset_margin) * friction.static_coefficient * at.normal - size;
   return size - slip_coefficient(friction, at.sliding.norm()) * at.normal;
 }
 

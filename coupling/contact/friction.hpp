@@ -17,12 +17,10 @@ enum class ContactFriction {
 /// slips. The default, 1 um at 10 N, is the order of two steel cylinders of 1.5 mm and 6 mm (Mindlin 1949: k = 8 a G*,
 /// 7e6 N/m at 10 N, 0.4 um): small beside every travel of interest, large beside the tolerances.
 struct MotionFriction {
-  double static_coefficient = 0.0;  ///< >= 0: of the stick; of the slip up to static_speed
-  double dynamic_coefficient =
-      0.0;                     ///< from dynamic_speed on, >= 0; at most the static one with stick and slip
-  double static_speed = 1e-3;  ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
-  double dynamic_speed =
-      1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
+  double static_coefficient = 0.0;   ///< >= 0: of the stick; of the slip up to static_speed
+  double dynamic_coefficient = 0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip
+  double static_speed = 1e-3;        ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
+  double dynamic_speed = 1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
   ContactFriction law = ContactFriction::stick_slip;
   double bristle_displacement = 1e-6;  ///< [m], > 0
   double bristle_force = 10.0;         ///< normal force to which the displacement belongs [N], > 0
@@ -31,9 +29,7 @@ struct MotionFriction {
   [[nodiscard]] bool acts() const { return static_coefficient > 0.0 || dynamic_coefficient > 0.0; }
   [[nodiscard]] bool has_bristle() const { return acts() && law == ContactFriction::stick_slip; }
   /// k [N/m].
-  [[nodiscard]] double bristle_stiffness() const {
-    return static_coefficient * bristle_force / bristle_displacement;
-  }
+  [[nodiscard]] double bristle_stiffness() const { return static_coefficient * bristle_force / bristle_displacement; }
 };
 
 enum class FrictionMode { stick, slip };
@@ -62,17 +58,14 @@ struct BristleState {
 ///   smooth:  f = mu(s)/s lambda w
 ///   stick:   f = k e,                  e = z + tau w
 ///   slip:    f = mu(s) lambda e/|e|
-[[nodiscard]] TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode,
-                                         const BristleState& at);
+[[nodiscard]] TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode, const BristleState& at);
 
 /// dz/dt = (f/k - z)/tau [m/s]: w in the stick, w less the sliding of the slider in the slip.
-[[nodiscard]] Eigen::Vector2d bristle_rate(const MotionFriction& friction, FrictionMode mode,
-                                           const BristleState& at);
+[[nodiscard]] Eigen::Vector2d bristle_rate(const MotionFriction& friction, FrictionMode mode, const BristleState& at);
 
 /// What keeps a bristle in its mode [N]: positive inside, zero where the mode ends.
 ///   stick:  mu_s lambda (1 + margin) - k |e|,    slip:  k |e| - mu(s) lambda
-[[nodiscard]] double friction_margin(const MotionFriction& friction, FrictionMode mode,
-                                     const BristleState& at);
+[[nodiscard]] double friction_margin(const MotionFriction& friction, FrictionMode mode, const BristleState& at);
 
 /// By this share of Coulomb's limit the force must exceed it before the slip begins: with equal coefficients both modes
 /// end where the other begins, and the integrator's noise in lambda would switch to and fro there.

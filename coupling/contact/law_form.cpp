@@ -27,11 +27,23 @@ std::string digits(double value) {
   return value < 0.0 ? "(" + text + ")" : text;
 }
 
+/// F = A d^2 + B d + C, by Horner's scheme.
+class PolynomialLaw final : public SpringLaw {
+ public:
+  PolynomialLaw(double a, double b, double c) : a_(a), b_(b), c_(c) {}
+
+  double force(double d) const override { return (a_ * d + b_) * d + c_; }
+  double stiffness(double d) const override { return 2.0 * a_ * d + b_; }
+  double energy(double d) const override { return a_ * std::pow(d, 3) / 3.0 + b_ * std::pow(d, 2) / 2.0 + c_ * d; }
+
+ private:
+  double a_, b_, c_;
+};
+
 /// Polynomials in the travel whose coefficients are the numbers, highest power first.
 class Polynomial final : public LawForm {
  public:
-  Polynomial(std::string name, std::vector<int> powers)
-      : name_(std::move(name)), powers_(std::move(powers)) {}
+  Polynomial(std::string name, std::vector<int> powers) : name_(std::move(name)), powers_(std::move(powers)) {}
 
   std::string name() const override { return name_; }
   std::string formula() const override {
@@ -62,31 +74,17 @@ class Polynomial final : public LawForm {
     }
     return text;
   }
-  double force(const VectorXd& p, double d) const override { return p.dot(by_parameters(p, d)); }
-  std::function<double(double)> with(const VectorXd& p) const override {
+  SpringLawPointer with(const VectorXd& p) const override {
     std::array<double, 3> by_power{};
     for (std::size_t i = 0; i < powers_.size(); ++i)
       by_power[static_cast<std::size_t>(powers_[i])] = p[static_cast<Eigen::Index>(i)];
-    return [c = by_power](double d) { return (c[2] * d + c[1]) * d + c[0]; };
+    return std::make_shared<PolynomialLaw>(by_power[2], by_power[1], by_power[0]);
   }
-  double stiffness(const VectorXd& p, double d) const override {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < powers_.size(); ++i) {
-      sum += p[static_cast<Eigen::Index>(i)] * (powers_[i] == 2 ? 2.0 * d : powers_[i]);
-    }
-    return sum;
-  }
-  double energy(const VectorXd& p, double d) const override {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < powers_.size(); ++i) {
-      sum += p[static_cast<Eigen::Index>(i)] * std::pow(d, powers_[i] + 1) / (powers_[i] + 1);
-    }
-    return sum;
-  }
+  // Linear in its numbers, F = p . dF/dp: a fit then sees the same columns in the force and in its Jacobian.
+  double force(const VectorXd& p, double d) const override { return p.dot(by_parameters(p, d)); }
   VectorXd by_parameters(const VectorXd&, double d) const override {
     VectorXd g(static_cast<Eigen::Index>(powers_.size()));
-    for (std::size_t i = 0; i < powers_.size(); ++i)
-      g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
+    for (std::size_t i = 0; i < powers_.size(); ++i) g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
     return g;
   }
   std::vector<VectorXd> guesses(double, double) const override {
@@ -98,6 +96,19 @@ class Polynomial final : public LawForm {
   std::vector<int> powers_;
 };
 
+/// F = k d^p.
+class PowerLaw final : public SpringLaw {
+ public:
+  PowerLaw(double k, double p) : k_(k), p_(p) {}
+
+  double force(double d) const override { return k_ * std::pow(d, p_); }
+  double stiffness(double d) const override { return k_ * p_ * std::pow(d, p_ - 1.0); }
+  double energy(double d) const override { return k_ * std::pow(d, p_ + 1.0) / (p_ + 1.0); }
+
+ private:
+  double k_, p_;
+};
+
 class Power final : public LawForm {
  public:
   std::string name() const override { return "power"; }
@@ -106,16 +117,7 @@ class Power final : public LawForm {
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
     return fmt::format("{} * {}pow(d, {})", digits(p[0]), prefix, digits(p[1]));
   }
-  double force(const VectorXd& p, double d) const override { return p[0] * std::pow(d, p[1]); }
-  std::function<double(double)> with(const VectorXd& p) const override {
-    return [k = p[0], power = p[1]](double d) { return k * std::pow(d, power); };
-  }
-  double stiffness(const VectorXd& p, double d) const override {
-    return p[0] * p[1] * std::pow(d, p[1] - 1.0);
-  }
-  double energy(const VectorXd& p, double d) const override {
-    return p[0] * std::pow(d, p[1] + 1.0) / (p[1] + 1.0);
-  }
+  SpringLawPointer with(const VectorXd& p) const override { return std::make_shared<PowerLaw>(p[0], p[1]); }
   VectorXd by_parameters(const VectorXd& p, double d) const override {
     const double power = std::pow(d, p[1]);
     return vector({power, d > 0.0 ? p[0] * power * std::log(d) : 0.0});
@@ -153,15 +155,41 @@ Pieces pieces_at(const LawPlace& w, double y) {
   return {(l1 + l2 - w.length) / w.length, y / l1 + y / l2, a * a / (l1 * l1 * l1) + b * b / (l2 * l2 * l2)};
 }
 
+/// F = K (l1 + l2 - L)/L (y/l1 + y/l2) at the height y = q + d - d0, 0 while slack; q the taut height.
+/// It is the gradient of the energy K L/2 ((l1 + l2 - L)/L)^2.
+class StretchedLaw final : public SpringLaw {
+ public:
+  StretchedLaw(const LawPlace& place, double taut, double axial_stiffness, double free_travel)
+      : place_(place), taut_(taut), k_(axial_stiffness), free_travel_(free_travel) {}
+
+  double force(double d) const override {
+    const Pieces now = pieces(d);
+    return now.stretch > 0.0 ? k_ * now.stretch * now.lift : 0.0;
+  }
+  double stiffness(double d) const override {
+    const Pieces now = pieces(d);
+    return now.stretch > 0.0 ? k_ * (now.lift * now.lift / place_.length + now.stretch * now.bend) : 0.0;
+  }
+  double energy(double d) const override { return stored(d) - stored(0.0); }
+
+ private:
+  [[nodiscard]] Pieces pieces(double d) const { return pieces_at(place_, taut_ + d - free_travel_); }
+  [[nodiscard]] double stored(double d) const {
+    const Pieces now = pieces(d);
+    return now.stretch > 0.0 ? 0.5 * k_ * place_.length * now.stretch * now.stretch : 0.0;
+  }
+
+  LawPlace place_;
+  double taut_, k_, free_travel_;
+};
+
 /// Numbers K (axial stiffness [N]) and d0 (free travel [m]).
-class Stretched : public LawForm {
+class Stretched final : public LawForm {
  public:
   explicit Stretched(const LawPlace& place) : place_(place), height_(taut_height(place)) {}
 
   std::string name() const override { return "stretched_wire"; }
-  std::string formula() const override {
-    return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, 0 while slack";
-  }
+  std::string formula() const override { return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, 0 while slack"; }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
     // Written with y = y0 + d; slack below the taut height.
@@ -171,31 +199,12 @@ class Stretched : public LawForm {
     };
     const std::string l1 = length(place_.position);
     const std::string l2 = length(place_.span - place_.position);
-    const std::string strain =
-        fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
-    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix,
-                       strain, y, l1, y, l2);
+    const std::string strain = fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
+    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix, strain, y,
+                       l1, y, l2);
   }
-  double force(const VectorXd& p, double d) const override {
-    const Pieces now = pieces_at(place_, height_ + d - p[1]);
-    return now.stretch > 0.0 ? p[0] * now.stretch * now.lift : 0.0;
-  }
-  std::function<double(double)> with(const VectorXd& p) const override {
-    return [w = place_, k = p[0], base = height_ - p[1]](double d) {
-      const Pieces now = pieces_at(w, base + d);
-      return now.stretch > 0.0 ? k * now.stretch * now.lift : 0.0;
-    };
-  }
-  double stiffness(const VectorXd& p, double d) const override {
-    const Pieces now = pieces_at(place_, height_ + d - p[1]);
-    return now.stretch > 0.0 ? p[0] * (now.lift * now.lift / place_.length + now.stretch * now.bend) : 0.0;
-  }
-  double energy(const VectorXd& p, double d) const override {
-    const auto stored = [&](double at) {
-      const Pieces now = pieces_at(place_, height_ + at - p[1]);
-      return now.stretch > 0.0 ? 0.5 * p[0] * place_.length * now.stretch * now.stretch : 0.0;
-    };
-    return stored(d) - stored(0.0);
+  SpringLawPointer with(const VectorXd& p) const override {
+    return std::make_shared<StretchedLaw>(place_, height_, p[0], p[1]);
   }
   VectorXd by_parameters(const VectorXd& p, double d) const override {
     return vector({force(p, d) / p[0], -stiffness(p, d)});
@@ -213,9 +222,24 @@ class Stretched : public LawForm {
     return p[0] > 0.0 && p[1] <= std::max(height_, 1e-3 * place_.span);
   }
 
- protected:
+ private:
   LawPlace place_;
-  double height_;
+  double height_;  // q, at which the wire is just taut [m]
+};
+
+/// F = k max(0, d - d0).
+class TautLinearLaw final : public SpringLaw {
+ public:
+  TautLinearLaw(double k, double free_travel) : k_(k), free_travel_(free_travel) {}
+
+  double force(double d) const override { return k_ * std::max(0.0, d - free_travel_); }
+  double stiffness(double d) const override { return d > free_travel_ ? k_ : 0.0; }
+  double energy(double d) const override { return stored(d) - stored(0.0); }
+
+ private:
+  [[nodiscard]] double stored(double d) const { return 0.5 * k_ * std::pow(std::max(0.0, d - free_travel_), 2); }
+
+  double k_, free_travel_;
 };
 
 /// The tangent at the taut height; straight wires have none, and their law begins with the chord.
@@ -226,22 +250,14 @@ class StretchedLinear final : public LawForm {
     unit_ = taut.lift * taut.lift / place.length + std::max(0.0, taut.stretch) * taut.bend;
   }
   std::string name() const override { return "stretched_wire_linear"; }
-  std::string formula() const override {
-    return "F = K (q/l1 + q/l2)^2/L (d - d0), 0 while slack";
-  }
+  std::string formula() const override { return "F = K (q/l1 + q/l2)^2/L (d - d0), 0 while slack"; }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
     const std::string x = fmt::format("(d - {})", digits(p[1]));
     return fmt::format("{} * 0.5 * ({} + {}fabs({}))", digits(p[0] * unit_), x, prefix, x);
   }
-  double force(const VectorXd& p, double d) const override { return p[0] * unit_ * std::max(0.0, d - p[1]); }
-  std::function<double(double)> with(const VectorXd& p) const override {
-    return [k = p[0] * unit_, free = p[1]](double d) { return k * std::max(0.0, d - free); };
-  }
-  double stiffness(const VectorXd& p, double d) const override { return d > p[1] ? p[0] * unit_ : 0.0; }
-  double energy(const VectorXd& p, double d) const override {
-    const auto stored = [&](double x) { return 0.5 * p[0] * unit_ * std::pow(std::max(0.0, x - p[1]), 2); };
-    return stored(d) - stored(0.0);
+  SpringLawPointer with(const VectorXd& p) const override {
+    return std::make_shared<TautLinearLaw>(p[0] * unit_, p[1]);
   }
   VectorXd by_parameters(const VectorXd& p, double d) const override {
     return vector({unit_ * std::max(0.0, d - p[1]), -stiffness(p, d)});
@@ -267,22 +283,14 @@ class Tensioned final : public LawForm {
   std::string name() const override { return "tensioned_wire"; }
   std::string formula() const override { return "F = k(EI, T, s) d, clamped-clamped under the tension T"; }
   std::vector<LawParameter> parameters() const override { return {{"T", "N"}}; }
-  std::string expression(const VectorXd& p, const std::string&) const override {
-    return digits(at(p).value) + " * d";
+  std::string expression(const VectorXd& p, const std::string&) const override { return digits(at(p).value) + " * d"; }
+  SpringLawPointer with(const VectorXd& p) const override {
+    return std::make_shared<PolynomialLaw>(0.0, at(p).value, 0.0);
   }
-  double force(const VectorXd& p, double d) const override { return at(p).value * d; }
-  std::function<double(double)> with(const VectorXd& p) const override {
-    return [k = at(p).value](double d) { return k * d; };
-  }
-  double stiffness(const VectorXd& p, double) const override { return at(p).value; }
-  double energy(const VectorXd& p, double d) const override { return 0.5 * at(p).value * d * d; }
-  VectorXd by_parameters(const VectorXd& p, double d) const override {
-    return vector({at(p).by_tension * d});
-  }
+  VectorXd by_parameters(const VectorXd& p, double d) const override { return vector({at(p).by_tension * d}); }
   std::vector<VectorXd> guesses(double force_scale, double travel) const override {
     const double s = place_.position;
-    const double string =
-        force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
+    const double string = force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
     return {vector({0.0}), vector({0.3 * string}), vector({string})};
   }
   bool admissible(const VectorXd& p) const override {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,8 +21,26 @@ struct LawParameter {
   std::string unit;  ///< SI; empty for a pure number
 };
 
-/// One way to write force against travel with a few numbers p. Travel d >= 0 from first touch; without contact
-/// (d < 0) the force is none and these functions are not asked.
+/// A contact force F of the travel alone, its numbers given: what a form becomes with numbers, and what a law of a
+/// motion (contact_law.hpp) adds its damping to. Travel d >= 0 from first touch [m]; without contact (d < 0) the force
+/// is none and these functions are not asked.
+class SpringLaw {
+ public:
+  virtual ~SpringLaw() = default;
+  SpringLaw(const SpringLaw&) = delete;
+  SpringLaw& operator=(const SpringLaw&) = delete;
+
+  [[nodiscard]] virtual double force(double d) const = 0;      ///< F [N]
+  [[nodiscard]] virtual double stiffness(double d) const = 0;  ///< dF/dd [N/m]
+  [[nodiscard]] virtual double energy(double d) const = 0;     ///< integral of F from 0 [J]
+
+ protected:
+  SpringLaw() = default;
+};
+
+using SpringLawPointer = std::shared_ptr<const SpringLaw>;
+
+/// One way to write force against travel with a few numbers p, which can be fitted.
 class LawForm {
  public:
   virtual ~LawForm() = default;
@@ -37,17 +54,17 @@ class LawForm {
   /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python).
   [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
 
-  [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const = 0;  ///< [N]
-  /// The force as a function of the travel alone, all that depends on the numbers done: for many evaluations.
-  [[nodiscard]] virtual std::function<double(double)> with(const Eigen::VectorXd& p) const = 0;
-  [[nodiscard]] virtual double stiffness(const Eigen::VectorXd& p, double d) const = 0;  ///< dF/dd [N/m]
-  [[nodiscard]] virtual double energy(const Eigen::VectorXd& p, double d) const = 0;  ///< integral from 0 [J]
+  /// The law with these numbers; all that depends on them alone is done here, for many evaluations.
+  [[nodiscard]] virtual SpringLawPointer with(const Eigen::VectorXd& p) const = 0;
+  [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const { return with(p)->force(d); }
+  [[nodiscard]] double stiffness(const Eigen::VectorXd& p, double d) const { return with(p)->stiffness(d); }
+  [[nodiscard]] double energy(const Eigen::VectorXd& p, double d) const { return with(p)->energy(d); }
+  /// dF/dp.
   [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;
 
   /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale and travel_scale:
   /// largest force and travel of the points.
-  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale,
-                                                             double travel_scale) const = 0;
+  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale, double travel_scale) const = 0;
   /// Whether numbers make sense (a positive power); a search does not leave them.
   [[nodiscard]] virtual bool admissible(const Eigen::VectorXd& /*p*/) const { return true; }
 
@@ -62,7 +79,7 @@ using LawFormPointer = std::shared_ptr<const LawForm>;
 [[nodiscard]] LawFormPointer quadratic_through_origin();
 /// F = k d, the spring of the spring-dashpot law.             Abiko et al., eq. 4
 [[nodiscard]] LawFormPointer linear_law();
-/// F = k d^p.                                                 Abiko et al., eq. 3 (Gilardi and Sharf 2002)
+/// F = k d^p, p >= 1.                                         Abiko et al., eq. 3 (Gilardi and Sharf 2002)
 [[nodiscard]] LawFormPointer power_law();
 /// Two straight pieces of an elastic wire, taut after a free travel d0; at mid-span Honda et al., eq. 1.
 ///   F = K (l1 + l2 - L)/L (y/l1 + y/l2),  y = q + d - d0,  q the height at which the wire is just taut  (R.8)

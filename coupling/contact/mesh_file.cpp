@@ -43,7 +43,9 @@ class Words {
     return !words_.empty();
   }
   [[nodiscard]] std::size_t count() const { return words_.size(); }
-  [[nodiscard]] std::string_view word(std::size_t k) const { return k < words_.size() ? words_[k] : std::string_view(); }
+  [[nodiscard]] std::string_view word(std::size_t k) const {
+    return k < words_.size() ? words_[k] : std::string_view();
+  }
   /// Words are case-blind in ascii STL.
   [[nodiscard]] bool is(std::size_t k, std::string_view lower) const {
     const std::string_view w = word(k);
@@ -59,7 +61,9 @@ class Words {
       fail(w, "must be a finite number");
     return value;
   }
-  [[nodiscard]] Vector3d point(std::size_t first) const { return {number(first), number(first + 1), number(first + 2)}; }
+  [[nodiscard]] Vector3d point(std::size_t first) const {
+    return {number(first), number(first + 1), number(first + 2)};
+  }
   [[nodiscard]] long integer(std::string_view w, const std::string& requirement) const {
     long value = 0;
     const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
@@ -94,7 +98,8 @@ class Weld {
  public:
   explicit Weld(TriangleMesh& mesh) : mesh_(mesh) {}
   int operator()(const Vector3d& p) {
-    const auto [place, added] = index_.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}, static_cast<int>(mesh_.points.size()));
+    const auto [place, added] =
+        index_.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}, static_cast<int>(mesh_.points.size()));
     if (added) mesh_.points.push_back(p);
     return place->second;
   }
@@ -120,10 +125,12 @@ void read_ascii_stl(Words& words, TriangleMesh& mesh) {
     if (!words.next_line() || !words.is(0, "outer")) words.fail(words.word(0), "must be \"outer loop\"");
     std::array<int, 3> triangle{};
     for (int& corner : triangle) {
-      if (!words.next_line() || !words.is(0, "vertex")) words.fail(words.word(0), "must be \"vertex\" with three numbers");
+      if (!words.next_line() || !words.is(0, "vertex"))
+        words.fail(words.word(0), "must be \"vertex\" with three numbers");
       corner = weld(words.point(1));
     }
-    if (!words.next_line() || !words.is(0, "endloop")) words.fail(words.word(0), "must be \"endloop\": facets are triangles");
+    if (!words.next_line() || !words.is(0, "endloop"))
+      words.fail(words.word(0), "must be \"endloop\": facets are triangles");
     if (!words.next_line() || !words.is(0, "endfacet")) words.fail(words.word(0), "must be \"endfacet\"");
     mesh.triangles.push_back(triangle);
   }
@@ -161,7 +168,8 @@ void read_binary_stl(std::string_view data, TriangleMesh& mesh) {
 
 /// Fan of a polygon.
 void add_polygon(const std::vector<int>& corners, TriangleMesh& mesh) {
-  for (std::size_t k = 1; k + 1 < corners.size(); ++k) mesh.triangles.push_back({corners[0], corners[k], corners[k + 1]});
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+    mesh.triangles.push_back({corners[0], corners[k], corners[k + 1]});
 }
 
 void read_obj(Words& words, TriangleMesh& mesh) {
@@ -172,7 +180,8 @@ void read_obj(Words& words, TriangleMesh& mesh) {
     } else if (words.word(0) == "f") {
       corners.clear();
       const auto points = static_cast<long>(mesh.points.size());
-      const std::string requirement = fmt::format("must be a point's number, 1 to {} (or -1 to -{} from the last)", points, points);
+      const std::string requirement =
+          fmt::format("must be a point's number, 1 to {} (or -1 to -{} from the last)", points, points);
       if (words.count() < 4) words.fail(words.word(0), "must have three corners or more");
       for (std::size_t k = 1; k < words.count(); ++k) {
         const std::string_view w = words.word(k);
@@ -255,7 +264,8 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& file, double unit) 
                                                fixed + count * stl_triangle, count));
   }
   if (mesh.triangles.empty()) refuse("0 triangles", "must have some");
-  if (mesh.triangles.size() > most_triangles) refuse(fmt::format("{} triangles", mesh.triangles.size()), fmt::format("must have at most {}", most_triangles));
+  if (mesh.triangles.size() > most_triangles)
+    refuse(fmt::format("{} triangles", mesh.triangles.size()), fmt::format("must have at most {}", most_triangles));
   for (Vector3d& p : mesh.points) p *= unit;
   return mesh;
 }

@@ -104,9 +104,11 @@ void check_edges(const TriangleMesh& mesh, Problems& problems) {
     std::vector<std::size_t> all = sides.forward;
     all.insert(all.end(), sides.backward.begin(), sides.backward.end());
     if (all.size() == 1) {
-      problems.add(key, fmt::format("triangle {}", all[0]), "must have a triangle on its other side too: the surface is not closed");
+      problems.add(key, fmt::format("triangle {}", all[0]),
+                   "must have a triangle on its other side too: the surface is not closed");
     } else if (all.size() > 2) {
-      problems.add(key, fmt::format("{} triangles, the first {} and {}", all.size(), all[0], all[1]), "must have two triangles");
+      problems.add(key, fmt::format("{} triangles, the first {} and {}", all.size(), all[0], all[1]),
+                   "must have two triangles");
     } else if (sides.forward.size() != 1) {
       problems.add(key, fmt::format("triangles {} and {}", all[0], all[1]),
                    "must be run along in opposite directions: one of them is flipped");
@@ -128,7 +130,8 @@ double volume_of(const Mesh& m) {
 
 struct MeshShape::Surface {
   Mesh mesh;
-  std::vector<Vector3d> face_normal, edge_normal, vertex_normal;  // outward; of edges and vertices of no length in particular
+  std::vector<Vector3d> face_normal, edge_normal,
+      vertex_normal;   // outward; of edges and vertices of no length in particular
   FastMesh fast_mesh;  // faces as in mesh
   std::unique_ptr<Tree> tree;
   std::unique_ptr<CGAL::Side_of_triangle_mesh<Mesh, Kernel>> side;
@@ -220,7 +223,9 @@ MeshShape::Near MeshShape::nearest(const Vector3d& p) const {
   for (std::size_t k = 0; k < 3; ++k) corner[k] = vector(m.point(m.source(sides[k])));
   const Vector3d& normal = surface_->face_normal[face.idx()];
   constexpr double straight = 1.0 - 1e-10;  // cosine of 1.4e-5 rad
-  const auto above = [&](const Vector3d& foot) { return std::abs((p - foot).dot(normal)) >= straight * (p - foot).norm(); };
+  const auto above = [&](const Vector3d& foot) {
+    return std::abs((p - foot).dot(normal)) >= straight * (p - foot).norm();
+  };
   Near near;
   near.foot = p - (p - corner[0]).dot(normal) * normal;
   near.outward = normal;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "coupling/contact/curve.hpp"
+
 #include <Eigen/Core>
 
 namespace snare::coupling {
@@ -7,30 +9,19 @@ namespace snare::coupling {
 /// Signed angle from a to b [rad].
 [[nodiscard]] double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 
-/// The wire's tangent at a vertex, of the C1 curve through the vertices.               theory.md (C.1)
-///
-///   u = h1/(h0 (h0 + h1)) e0 + h0/(h1 (h0 + h1)) e1,  t = u/|u|
-///
-/// the slope of the parabola through the three vertices, second order on unequal edges (rest lengths h0, h1). At
-/// an end of the wire the slope of the only edge (no moment acts on a wire that slides over a support).
+/// The wire's tangent at a vertex of the curve of contact, in the plane: t = u/|u|.         theory.md (C.1)
 struct VertexTangent {
-  Eigen::Vector2d t;             ///< unit tangent
-  Eigen::Vector2d normal;        ///< t turned left by a right angle
-  double size = 1.0;             ///< |u|, about the stretch
-  double before = 0.0;           ///< factor of e0 [1/m]; 0 at the left end
-  double after = 0.0;            ///< factor of e1 [1/m]; 0 at the right end
-  Eigen::Vector2d by_before;     ///< du/d h0 [1/m]
-  Eigen::Vector2d by_after;      ///< du/d h1 [1/m]
+  VertexSlope<2> slope;
+  Eigen::Vector2d t;       ///< unit tangent
+  Eigen::Vector2d normal;  ///< t turned left by a right angle
+  double size = 1.0;       ///< |u|, about the stretch
 
   /// Change of the direction angle of t for a change of u.
   [[nodiscard]] Eigen::RowVector2d angle_by_u() const { return normal.transpose() / size; }
 };
+[[nodiscard]] VertexTangent vertex_tangent(const VertexSlope<2>& slope);
 
-/// e0, e1: edge vectors before and after the vertex [m]; h0, h1: their rest lengths [m], 0 where there is none.
-[[nodiscard]] VertexTangent vertex_tangent(const Eigen::Vector2d& e0, const Eigen::Vector2d& e1, double h0,
-                                           double h1);
-
-/// How a guided contact stands.
+/// How a sliding contact stands.
 enum class ContactStatus {
   open,      ///< the gap is positive, no force
   touching,  ///< gap and force are zero; how far the pusher comes towards the wire is the unknown
@@ -41,24 +32,28 @@ enum class ContactStatus {
 
 /// A round, rigid pin that the wire slides over at a mesh-carrying vertex.          theory.md (C.2)-(C.6)
 ///
-/// The vertex sits at x = p + (R + g) n with the wire's own normal n = side * (t turned left), so that the contact is tangent
-/// and the vertex is the material point of contact; the material coordinate of the vertex is the unknown that
-/// sliding changes. R = 0 is a knife edge.
+/// The vertex sits at x = p + (R + g) n with the wire's own normal n = side * (t turned left), so that the
+/// contact is tangent and the vertex is the material point of contact; the material coordinate of the vertex
+/// is the unknown that sliding changes. R = 0 is a knife edge.
 struct SlidingContact {
-  int node = 0;            ///< vertex
-  int control = 1;         ///< control (material coordinate) that moves with it
-  double side = 1.0;       ///< +1: the pin lies to the right of the wire and pushes it to the left; -1: the reverse
-  double radius = 0.0;     ///< of the pin plus that of the wire [m], >= 0
-  double friction = 0.0;   ///< Coulomb coefficient, >= 0
+  int node = 0;     ///< vertex
+  int control = 1;  ///< control (material coordinate) that moves with it
+  /// +1: the pin lies to the right of the wire and pushes it to the left; -1: the reverse
+  double side = 1.0;
+  double radius = 0.0;                               ///< of the pin plus that of the wire [m], >= 0
+  double friction = 0.0;                             ///< Coulomb coefficient, >= 0
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< at parameter 0 [m]
   Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< d centre / d parameter; unit or zero
   ContactStatus status = ContactStatus::slip;
-  double slip_sign = 0.0;           ///< of the increase of material coordinate + side R angle, when it slips
-  bool holds_material = false;      ///< the material point never changes (the gauge of a wire on supports)
-  double last_coordinate = 0.0;     ///< material coordinate at the last accepted state [m]
+  /// Of the increase of material coordinate + side R angle, when it slips
+  double slip_sign = 0.0;
+  /// The material point never changes (the gauge of a wire on supports)
+  bool holds_material = false;
+  double last_coordinate = 0.0;                             ///< material coordinate at the last accepted state [m]
   Eigen::Vector2d last_tangent = Eigen::Vector2d::UnitX();  ///< t at the last accepted state
-  Eigen::Vector2d last_force = Eigen::Vector2d::Zero();     ///< on the wire at the last accepted state [N]
-  double last_gap = 0.0;                                    ///< at the last accepted state [m]
+  /// On the wire at the last accepted state [N]
+  Eigen::Vector2d last_force = Eigen::Vector2d::Zero();
+  double last_gap = 0.0;  ///< at the last accepted state [m]
 
   /// Unit vector from the pin towards the wire, normal to the chord: how it comes to the first touch.
   [[nodiscard]] Eigen::Vector2d approach() const { return side * Eigen::Vector2d::UnitY(); }
@@ -68,10 +63,11 @@ struct SlidingContact {
 struct WrappedContact {
   int node = 0;
   double friction = 0.0;
-  ContactStatus status = ContactStatus::slip;  ///< stick or slip
-  double slip_sign = 0.0;                      ///< of the increase of its angle about the pin's centre
+  ContactStatus status = ContactStatus::slip;              ///< stick or slip
+  double slip_sign = 0.0;                                  ///< of the increase of its angle about the pin's centre
   Eigen::Vector2d last_radial = Eigen::Vector2d::UnitY();  ///< unit vector from the pin's centre
-  Eigen::Vector2d last_force = Eigen::Vector2d::Zero();    ///< on the wire at the last accepted state [N]
+  /// On the wire at the last accepted state [N]
+  Eigen::Vector2d last_force = Eigen::Vector2d::Zero();
 };
 
 }  // namespace snare::coupling

@@ -42,9 +42,11 @@ bool segments_cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, con
 RevolvedShape::RevolvedShape(double start, std::vector<ProfilePiece> pieces) {
   std::vector<base::InputProblem> problems;
   const auto complain = [&problems](std::size_t k, const Vector2d& value, const std::string& requirement) {
-    problems.push_back({"", 0, fmt::format("profile[{}]", k + 1), fmt::format("({}, {})", value.x(), value.y()), requirement});
+    problems.push_back(
+        {"", 0, fmt::format("profile[{}]", k + 1), fmt::format("({}, {})", value.x(), value.y()), requirement});
   };
-  if (pieces.size() < 2) problems.push_back({"", 0, "profile", fmt::format("{} pieces", pieces.size()), "must have two or more"});
+  if (pieces.size() < 2)
+    problems.push_back({"", 0, "profile", fmt::format("{} pieces", pieces.size()), "must have two or more"});
   Vector2d from(0.0, start);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const ProfilePiece& given = pieces[k];
@@ -58,7 +60,8 @@ RevolvedShape::RevolvedShape(double start, std::vector<ProfilePiece> pieces) {
     } else if (piece.length == 0.0) {
       complain(k, given.end, "must not be where the piece begins");
     } else if (std::abs(given.curvature) * piece.length > 2.0) {
-      complain(k, given.end, fmt::format("needs a radius of curvature of half its chord of {} m or more", piece.length));
+      complain(k, given.end,
+               fmt::format("needs a radius of curvature of half its chord of {} m or more", piece.length));
     } else if (k + 1 == pieces.size() && given.end.x() != 0.0) {
       complain(k, given.end, "must end on the axis");
     }
@@ -76,14 +79,15 @@ RevolvedShape::RevolvedShape(double start, std::vector<ProfilePiece> pieces) {
     const std::vector<Vector2d> line = outline(test_chords);
     double area = 0.0;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) area += 0.5 * cross(line[i], line[i + 1]);
-    if (!(area > 0.0))
-      problems.push_back({"", 0, "profile", "", "must run upward, with the outside on its right"});
+    if (!(area > 0.0)) problems.push_back({"", 0, "profile", "", "must run upward, with the outside on its right"});
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
       if (line[i].x() < 0.0)
-        problems.push_back({"", 0, "profile", fmt::format("({}, {})", line[i].x(), line[i].y()), "must not cross the axis"});
+        problems.push_back(
+            {"", 0, "profile", fmt::format("({}, {})", line[i].x(), line[i].y()), "must not cross the axis"});
       for (std::size_t j = i + 2; j + 1 < line.size(); ++j) {
         if (segments_cross(line[i], line[i + 1], line[j], line[j + 1]))
-          problems.push_back({"", 0, "profile", fmt::format("({}, {})", line[i].x(), line[i].y()), "must not cross itself"});
+          problems.push_back(
+              {"", 0, "profile", fmt::format("({}, {})", line[i].x(), line[i].y()), "must not cross itself"});
       }
     }
   }
@@ -165,7 +169,8 @@ RevolvedShape::Near RevolvedShape::nearest(const Vector2d& p) const {
       const double convex = std::copysign(1.0, piece.curvature);
       const Vector2d radial = p - piece.centre;
       // A convex arc turns to the left about its centre, a concave one to the right; both sweep half a turn at most.
-      if (convex * cross(piece.from - piece.centre, radial) > 0.0 && convex * cross(radial, piece.to - piece.centre) > 0.0) {
+      if (convex * cross(piece.from - piece.centre, radial) > 0.0 &&
+          convex * cross(radial, piece.to - piece.centre) > 0.0) {
         const double signed_distance = convex * (radial.norm() - 1.0 / std::abs(piece.curvature));
         if (std::abs(signed_distance) < least) {
           least = std::abs(signed_distance);
@@ -206,7 +211,7 @@ DistanceField RevolvedShape::at(const Vector3d& p) const {
   // On the axis d_rho vanishes where phi is smooth, and d_rho/rho becomes d_rho_rho; beside it the quotient is round-off.
   constexpr double close = 1e-6;  // d_rho/rho - d_rho_rho is of second order in rho
   const bool on_axis = rho * std::abs(near.bending) < close && std::abs(near.normal.x()) < close && rho < close;
-  const double hoop = on_axis ? near.bending * near.normal.y() * near.normal.y()
+  const double hoop = on_axis     ? near.bending * near.normal.y() * near.normal.y()
                       : rho > 0.0 ? near.normal.x() / rho
                                   : 0.0;
   field.hessian = near.bending * tangent * tangent.transpose() + hoop * around * around.transpose();
@@ -239,8 +244,10 @@ std::shared_ptr<const RevolvedShape> grapple_shaft(const GrappleShaft& s) {
   require(s.cam_radius > s.shaft_radius, "cam_radius", s.cam_radius, "must be > shaft_radius");
   require(s.underside_length >= 0.0, "underside_length", s.underside_length, "must be >= 0");
   require(s.cam_length > 0.0, "cam_length", s.cam_length, "must be > 0");
-  require(s.end_radius > 0.0 && s.end_radius < s.cam_radius, "end_radius", s.end_radius, "must be > 0 and < cam_radius");
-  require(s.bulge >= 0.0 && s.bulge <= 0.5 * chord, "bulge", s.bulge, fmt::format("must be >= 0 and <= {}, half its chord", 0.5 * chord));
+  require(s.end_radius > 0.0 && s.end_radius < s.cam_radius, "end_radius", s.end_radius,
+          "must be > 0 and < cam_radius");
+  require(s.bulge >= 0.0 && s.bulge <= 0.5 * chord, "bulge", s.bulge,
+          fmt::format("must be >= 0 and <= {}, half its chord", 0.5 * chord));
   if (!problems.empty()) throw base::InputError(problems);
   // Radius of an arc of height b over a chord c: (c^2/4 + b^2)/(2 b).
   const double curvature = 2.0 * s.bulge / (0.25 * chord * chord + s.bulge * s.bulge);

@@ -35,7 +35,7 @@ class RevolvedShape final : public ContactShape {
     Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();     // of an arc
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of the chord, unit
-    double length = 0.0;        // of the chord
+    double length = 0.0;                                  // of the chord
     double curvature = 0.0;
   };
   /// The nearest point of the profile.
@@ -48,7 +48,8 @@ class RevolvedShape final : public ContactShape {
   [[nodiscard]] Eigen::Vector2d normal_at(const Piece& piece, const Eigen::Vector2d& p) const;
 
   std::vector<Piece> pieces_;
-  std::vector<Eigen::Vector2d> corner_normal_;  // sum of the normals on both sides of the start of every piece, and of the end
+  std::vector<Eigen::Vector2d>
+      corner_normal_;  // sum of the normals on both sides of the start of every piece, and of the end
 };
 
 /// A finite cylinder with sharp rims about z, centred at the origin; radius, length > 0 [m].
@@ -56,7 +57,8 @@ class RevolvedShape final : public ContactShape {
 
 /// A truncated cone with sharp rims about z, centred at the origin: radii at z = -length/2 and length/2, >= 0 and not both 0 [m]; one
 /// of 0 is a full cone.
-[[nodiscard]] std::shared_ptr<const ContactShape> truncated_cone(double lower_radius, double upper_radius, double length);
+[[nodiscard]] std::shared_ptr<const ContactShape> truncated_cone(double lower_radius, double upper_radius,
+                                                                 double length);
 
 /// The shaft of a grapple fixture with its cam-shaped tip: what the closing wires meet. From z = 0, its foot on the target's
 /// plate, a cylinder; then a cone (the cam's underside, behind which the wires cannot slip off), an arc that bulges by
@@ -65,13 +67,13 @@ class RevolvedShape final : public ContactShape {
 /// No dimension is published in the sources at hand; the defaults are assumptions: a shaft as thick as the pin of the published
 /// static tests is taken to be, a cam of twice its radius.
 struct GrappleShaft {
-  double shaft_radius = 6e-3;    ///< [m], > 0
-  double shaft_length = 60e-3;   ///< up to where the cam begins [m], > 0
-  double cam_radius = 12e-3;     ///< largest [m], > shaft_radius
+  double shaft_radius = 6e-3;      ///< [m], > 0
+  double shaft_length = 60e-3;     ///< up to where the cam begins [m], > 0
+  double cam_radius = 12e-3;       ///< largest [m], > shaft_radius
   double underside_length = 6e-3;  ///< height of the cone under the cam's largest radius [m], >= 0
-  double cam_length = 18e-3;     ///< from the largest radius to the flat end [m], > 0
-  double end_radius = 4e-3;      ///< of the flat end [m], > 0, < cam_radius
-  double bulge = 2e-3;           ///< of the arc over its chord [m], >= 0, at most half the chord
+  double cam_length = 18e-3;       ///< from the largest radius to the flat end [m], > 0
+  double end_radius = 4e-3;        ///< of the flat end [m], > 0, < cam_radius
+  double bulge = 2e-3;             ///< of the arc over its chord [m], >= 0, at most half the chord
 };
 [[nodiscard]] std::shared_ptr<const RevolvedShape> grapple_shaft(const GrappleShaft& shaft);
 

@@ -53,7 +53,8 @@ std::vector<Eigen::Matrix3Xd> Capsule::drawing() const {
   for (Eigen::Index k = 0; k < cut.cols(); ++k) cut(2, k) += 2 * k < chords ? half_length_ : -half_length_;
   cut.conservativeResize(3, cut.cols() + 1);
   cut.rightCols<1>() = cut.col(0);
-  return {cut, exchanged(cut, 0, 1), circle_drawing(radius_, -half_length_, chords), circle_drawing(radius_, half_length_, chords)};
+  return {cut, exchanged(cut, 0, 1), circle_drawing(radius_, -half_length_, chords),
+          circle_drawing(radius_, half_length_, chords)};
 }
 
 DistanceField Ball::at(const Vector3d& p) const {

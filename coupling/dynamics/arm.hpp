@@ -1,6 +1,7 @@
 #pragma once
 
 #include "multibody/arm/arm_part.hpp"
+#include "wire/end.hpp"
 
 #include <string>
 #include <vector>
@@ -37,8 +38,8 @@ struct MotionWeld {
 /// motion. The mount must be rigid: clamp, twisting pin or pin.
 struct MotionMount {
   std::string name = "mount";
-  int wire = 0;        ///< index
-  bool right = false;  ///< end of the wire
+  int wire = 0;  ///< index
+  wire::End end = wire::End::left;
   MotionCarrier carrier;
 };
 

@@ -44,7 +44,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
 // Of a contact's force (or impulse) on its wire: what a driven body gives, with its work, and what goes on to rigidly
 // held components, where it is no part of the rod's own reaction.
 void MotionRun::add_reactions(const ContactHandle& contact, const Vector3d& force, const DaePoint& at,
-                        Eigen::Ref<VectorXd> rates) const {
+                              Eigen::Ref<VectorXd> rates) const {
   const ContactPart& c = *contact.part;
   const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact.contact].wire)];
   const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact.contact].body)];
@@ -68,8 +68,8 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer) += w.mount_forces[0] + w.mount_forces[1] +
                                          c.mass_per_length * c.length * motion_.gravity -
                                          c.damping.mass_rate * w.momentum;
-    rates.segment<3>(integral::outer_moment) += w.mount_moments[0] + w.mount_moments[1] + w.weight_moment -
-                                                c.damping.mass_rate * w.angular_momentum;
+    rates.segment<3>(integral::outer_moment) +=
+        w.mount_moments[0] + w.mount_moments[1] + w.weight_moment - c.damping.mass_rate * w.angular_momentum;
   }
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
@@ -97,10 +97,10 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
-  const ConstraintSet::Outer linked = constraints_->outer(at);
-  rates.segment<3>(integral::outer) += linked.force;
-  rates.segment<3>(integral::outer_moment) += linked.moment;
-  rates[integral::work] += linked.power;
+  const ConstraintSet::Outer held = constraints_->outer(at);
+  rates.segment<3>(integral::outer) += held.force;
+  rates.segment<3>(integral::outer_moment) += held.moment;
+  rates[integral::work] += held.power;
 }
 
 // Extremes over the accepted steps.

@@ -10,15 +10,6 @@ using Eigen::Vector4d;
 using numerics::DaeKind;
 using numerics::DaePoint;
 
-namespace {
-
-constexpr int unknowns = 14;
-
-// Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
-constexpr double no_tolerance = 1e6;
-
-}  // namespace
-
 BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const MotionOptions& options)
     : body_(body),
       force_(body.force + body.properties.mass * gravity),
@@ -29,11 +20,10 @@ void BodyPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::string& name = body_.name;
   first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0});
-  layout.add(
-      {name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0});
+  layout.add({name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0});
   layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.body_velocity_tolerance, 0});
   layout.add({name + " angular velocity", axes, 3, DaeKind::differential, options_.spin_tolerance, 0});
-  layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, no_tolerance, 0});
+  layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, numerics::no_tolerance, 0});
 }
 
 void BodyPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
@@ -42,20 +32,19 @@ void BodyPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
       for (int j = 0; j < columns; ++j) entries.emplace_back(first_ + row + i, first_ + column + j);
     }
   };
-  for (int i = 0; i < unknowns; ++i) add(i, 1, i, 1);
-  for (int k = 0; k < 3; ++k) add(k, 1, 7 + k, 1);
-  add(3, 4, 3, 4);
-  add(3, 4, 10, 4);
-  add(10, 3, 10, 3);
-  add(13, 1, 3, 4);
+  for (int i = 0; i < Local::count; ++i) add(i, 1, i, 1);
+  for (int k = 0; k < 3; ++k) add(Local::position + k, 1, Local::velocity + k, 1);
+  add(Local::quaternion, 4, Local::quaternion, 4);
+  add(Local::quaternion, 4, Local::spin, 3);
+  add(Local::quaternion, 4, Local::length, 1);
+  add(Local::spin, 3, Local::spin, 3);
+  add(Local::length, 1, Local::quaternion, 4);
 }
 
 void BodyPart::attach_pattern(const numerics::SparseMatrix& pattern) {
-  slots_.assign(unknowns * unknowns, -1);
-  for (int i = 0; i < unknowns; ++i) {
-    for (int j = 0; j < unknowns; ++j) {
-      slots_[static_cast<std::size_t>(unknowns * i + j)] = pattern.slot(first_ + i, first_ + j);
-    }
+  slots_.clear();
+  for (int i = 0; i < Local::count; ++i) {
+    for (int j = 0; j < Local::count; ++j) slots_.push_back(pattern.slot(first_ + i, first_ + j));
   }
 }
 
@@ -63,6 +52,7 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   const Vector4d q = at.y.segment<4>(quaternion());
   const Vector3d v = at.y.segment<3>(velocity());
   const Vector3d w = at.y.segment<3>(spin());
+  // p' - v = 0,  q' - Q(q) w - nu q = 0,  |q|^2 - 1 = 0
   rows.segment<3>(position()) += at.rate.segment<3>(position()) - v;
   rows.segment<4>(quaternion()) +=
       at.rate.segment<4>(quaternion()) - multibody::quaternion_rates(q) * w - at.y[length_multiplier()] * q;
@@ -72,50 +62,51 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
     rows.segment<3>(spin()) += w;
     return;
   }
+  // Inertia less forces: m v' + c v - F = 0 in the world, I w' + w x I w + c w = 0 in the body. Others add theirs.
   const Matrix3d& inertia = body_.properties.inertia;
   rows.segment<3>(velocity()) +=
       body_.properties.mass * at.rate.segment<3>(velocity()) + body_.linear_drag * v - force_;
-  rows.segment<3>(spin()) +=
-      inertia * at.rate.segment<3>(spin()) + w.cross(inertia * w) + body_.angular_drag * w;
+  rows.segment<3>(spin()) += inertia * at.rate.segment<3>(spin()) + w.cross(inertia * w) + body_.angular_drag * w;
 }
 
 void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const auto add = [&](int i, int j, double value) {
-    const int slot = slots_[static_cast<std::size_t>(unknowns * i + j)];
+    const int slot = slots_[static_cast<std::size_t>(Local::count * i + j)];
     if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
   };
   const Vector4d q = at.y.segment<4>(quaternion());
   const Vector3d w = at.y.segment<3>(spin());
+  // p' - v
   for (int k = 0; k < 3; ++k) {
-    add(k, k, c);
-    add(k, 7 + k, -1.0);
+    add(Local::position + k, Local::position + k, c);
+    add(Local::position + k, Local::velocity + k, -1.0);
   }
-  // q' - Q(q) w is bilinear: the matrix on q is that of w.
-  Eigen::Matrix4d by_q;
-  by_q << 0.0, -w.x(), -w.y(), -w.z(), w.x(), 0.0, w.z(), -w.y(), w.y(), -w.z(), 0.0, w.x(), w.z(), w.y(),
-      -w.x(), 0.0;
-  const Eigen::Matrix<double, 4, 3> by_w = multibody::quaternion_rates(q);
+  // q' - Q(q) w - nu q: Q(q) w is bilinear, 1/2 W(w) q as well. |q|^2 - 1.
+  Eigen::Matrix4d W;
+  W << 0.0, -w.x(), -w.y(), -w.z(), w.x(), 0.0, w.z(), -w.y(), w.y(), -w.z(), 0.0, w.x(), w.z(), w.y(), -w.x(), 0.0;
+  const Eigen::Matrix<double, 4, 3> Q = multibody::quaternion_rates(q);
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
-      add(3 + i, 3 + j, (i == j ? c - at.y[length_multiplier()] : 0.0) - 0.5 * by_q(i, j));
+      add(Local::quaternion + i, Local::quaternion + j, (i == j ? c - at.y[length_multiplier()] : 0.0) - 0.5 * W(i, j));
     }
-    for (int j = 0; j < 3; ++j) add(3 + i, 10 + j, -by_w(i, j));
-    add(3 + i, 13, -q[i]);
-    add(13, 3 + i, 2.0 * q[i]);
+    for (int j = 0; j < 3; ++j) add(Local::quaternion + i, Local::spin + j, -Q(i, j));
+    add(Local::quaternion + i, Local::length, -q[i]);
+    add(Local::length, Local::quaternion + i, 2.0 * q[i]);
   }
   if (body_.driven) {
     for (int k = 0; k < 3; ++k) {
-      add(7 + k, 7 + k, 1.0);
-      add(10 + k, 10 + k, 1.0);
+      add(Local::velocity + k, Local::velocity + k, 1.0);
+      add(Local::spin + k, Local::spin + k, 1.0);
     }
     return;
   }
+  // d(w x I w) = ([w] I - [I w]) dw
   const Matrix3d& inertia = body_.properties.inertia;
-  const Matrix3d gyro = multibody::skew(w) * inertia - multibody::skew(inertia * w);
+  const Matrix3d gyro = numerics::cross_matrix(w) * inertia - numerics::cross_matrix(inertia * w);
   for (int i = 0; i < 3; ++i) {
-    add(7 + i, 7 + i, c * body_.properties.mass + body_.linear_drag);
+    add(Local::velocity + i, Local::velocity + i, c * body_.properties.mass + body_.linear_drag);
     for (int j = 0; j < 3; ++j) {
-      add(10 + i, 10 + j, c * inertia(i, j) + gyro(i, j) + (i == j ? body_.angular_drag : 0.0));
+      add(Local::spin + i, Local::spin + j, c * inertia(i, j) + gyro(i, j) + (i == j ? body_.angular_drag : 0.0));
     }
   }
 }

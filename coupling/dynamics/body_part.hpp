@@ -1,12 +1,17 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/options.hpp"
+#include "numerics/dae.hpp"
+
+#include <vector>
 
 namespace snare::coupling {
 
 /// A rigid body as part of a DAE.                                                       theory.md (M.5)
 ///   p' = v,  q' = 1/2 q (0, w) + nu q,  |q|^2 = 1,  m v' + c v = F,  I w' + w x I w + c w = T
-/// nu, which vanishes but for the integrator's error, keeps the quaternion's length.
+/// p, v of the centre of mass in the world; w, I and T in the body. A driven body has v = course(t), w = 0 instead. nu,
+/// which vanishes but for the integrator's error, keeps the quaternion's length.
 class BodyPart final : public numerics::DaePart {
  public:
   BodyPart(const MotionBody& body, const Eigen::Vector3d& gravity, const MotionOptions& options);
@@ -24,24 +29,31 @@ class BodyPart final : public numerics::DaePart {
   [[nodiscard]] multibody::RigidBodyState state(const numerics::VectorView& y) const;
   [[nodiscard]] const MotionBody& body() const { return body_; }
   [[nodiscard]] bool moves_freely() const { return !body_.driven; }
-  /// First unknowns: p_WB, quaternion (w, x, y, z), v, w in B.
-  [[nodiscard]] int position() const { return first_; }
-  [[nodiscard]] int quaternion() const { return first_ + 3; }
-  [[nodiscard]] int velocity() const { return first_ + 7; }
-  [[nodiscard]] int spin() const { return first_ + 10; }
-  [[nodiscard]] int length_multiplier() const { return first_ + 13; }
+  /// First unknowns, and rows of the equations above in their order: p_WB, quaternion (w, x, y, z), v, w in B, nu.
+  [[nodiscard]] int position() const { return first_ + Local::position; }
+  [[nodiscard]] int quaternion() const { return first_ + Local::quaternion; }
+  [[nodiscard]] int velocity() const { return first_ + Local::velocity; }
+  [[nodiscard]] int spin() const { return first_ + Local::spin; }
+  [[nodiscard]] int length_multiplier() const { return first_ + Local::length; }
+  static constexpr int coordinates = 7;  ///< from position() on: place and orientation
+  static constexpr int velocities = 6;   ///< from velocity() on, behind the coordinates
   [[nodiscard]] const Eigen::Matrix3d& inverse_inertia() const { return inverse_inertia_; }
   /// Power of the drag, lost [W], and of the constant forces, gained [W].
   [[nodiscard]] double drag_power(const numerics::VectorView& y) const;
   [[nodiscard]] double force_power(const numerics::VectorView& y) const;
 
  private:
+  /// Places of the unknowns and of their rows, from the first on.
+  struct Local {
+    static constexpr int position = 0, quaternion = 3, velocity = 7, spin = 10, length = 13, count = 14;
+  };
+
   MotionBody body_;
   Eigen::Vector3d force_;
   MotionOptions options_;
   Eigen::Matrix3d inverse_inertia_;
   int first_ = 0;
-  std::vector<int> slots_;  // 14 x 14
+  std::vector<int> slots_;  // of Local::count rows and columns, row by row
 };
 
 }  // namespace snare::coupling

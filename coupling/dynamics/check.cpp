@@ -1,9 +1,8 @@
 #include "coupling/dynamics/check.hpp"
 
+#include "coupling/dynamics/complaints.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
-#include "base/errors.hpp"
 
-#include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -11,21 +10,6 @@
 namespace snare::coupling {
 
 namespace {
-
-/// Collects what is wrong with a motion.
-class Complaints {
- public:
-  void require(bool fine, const std::string& key, double value, const std::string& requirement) {
-    if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
-  }
-  std::vector<base::InputProblem>& problems() { return problems_; }
-  void raise() {
-    if (!problems_.empty()) throw base::InputError(problems_);
-  }
-
- private:
-  std::vector<base::InputProblem> problems_;
-};
 
 void validate_friction(Complaints& c, const std::string& key, const MotionFriction& f) {
   const auto not_negative = [&](const std::string& name, double value) {
@@ -69,8 +53,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   positive("spin_tolerance", options.spin_tolerance);
   positive("newton_share", options.newton_share);
   c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
-  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order,
-            "must be 1 to 5");
+  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order, "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
     positive(w.name + ".length", w.rod.length);
     positive(w.name + ".mass_per_length", w.rod.mass_per_length);
@@ -82,8 +65,8 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
       positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
       positive(w.name + ".strands.time", w.rod.strands.time);
     }
-    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
-              static_cast<double>(w.positions.cols()), "must be one more than the elements");
+    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions", static_cast<double>(w.positions.cols()),
+              "must be one more than the elements");
     c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
               static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
     c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
@@ -96,8 +79,8 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
               "must be positive definite");
     c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
               b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
-    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
-              b.start.orientation.norm(), "must be a unit quaternion");
+    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
+              "must be a unit quaternion");
   }
   for (const MotionContact& k : motion.contacts) {
     c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
@@ -106,9 +89,10 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
     c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
-    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius, "must be >= 0");
-    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius", k.wire_radius,
-              "must be > 0 for a shape with edges");
+    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius,
+              "must be >= 0");
+    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius",
+              k.wire_radius, "must be > 0 for a shape with edges");
     validate_friction(c, k.name + ".friction.", k.friction);
   }
   for (const PointContactLaw& s : motion.springs) {
@@ -118,7 +102,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
               "must be a unit vector");
     c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
   }
-  ConstraintSet::check(motion, c.problems());
+  ConstraintSet::check(motion, c);
   c.raise();
 }
 

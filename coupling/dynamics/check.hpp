@@ -1,6 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/options.hpp"
 
 namespace snare::coupling {
 

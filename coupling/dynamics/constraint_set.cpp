@@ -1,6 +1,6 @@
 #include "coupling/dynamics/constraint_set.hpp"
 
-#include <fmt/format.h>
+#include "base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,13 @@ namespace snare::coupling {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using multibody::ElasticArmPart;
 using multibody::Pose;
 using numerics::DaePoint;
 using numerics::VectorView;
 
 namespace {
 
-std::size_t at_index(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr auto& at_index = base::at;  // points of the DAE are called `at` here
 
 Pose pose_of(const multibody::RigidBodyState& s) {
   return {s.orientation.toRotationMatrix(), s.position};
@@ -31,23 +28,13 @@ Pose mount_pose(const wire::SpatialEnd& end) {
   return X;
 }
 
-/// Collects what is wrong.
-struct Complaints {
-  std::vector<base::InputProblem>& problems;
-  bool require(bool fine, const std::string& key, double value, const std::string& requirement) {
-    if (!fine) problems.push_back({"", 0, key, fmt::format("{}", value), requirement});
-    return fine;
-  }
-};
-
-void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier,
-                   Complaints& c) {
+void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier, Complaints& c) {
   if (carrier.kind == MotionCarrier::Kind::body) {
     c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.bodies.size()), name + ".carrier",
               carrier.index, "must be the index of a body");
   } else if (carrier.kind == MotionCarrier::Kind::arm) {
-    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()),
-                   name + ".carrier", carrier.index, "must be the index of an arm"))
+    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()), name + ".carrier",
+                   carrier.index, "must be the index of an arm"))
       return;
     const auto frames = motion.arms[at_index(carrier.index)].arm.tree.frames().size();
     c.require(carrier.frame >= 0 && at_index(carrier.frame) < frames, name + ".carrier.frame", carrier.frame,
@@ -57,22 +44,21 @@ void check_carrier(const Motion& motion, const std::string& name, const MotionCa
 
 }  // namespace
 
-void ConstraintSet::check(const Motion& motion, std::vector<base::InputProblem>& problems) {
-  Complaints c{problems};
+void ConstraintSet::check(const Motion& motion, Complaints& c) {
+  // Arms: sizes, and frames of their loads.
   for (const MotionArm& a : motion.arms) {
     const int n = a.arm.motors();
-    const auto fits = [n](const std::vector<multibody::Drive>& drives) {
-      return static_cast<int>(drives.size()) == n;
-    };
+    const auto fits = [n](const std::vector<multibody::Drive>& drives) { return static_cast<int>(drives.size()) == n; };
     bool fit = fits(a.drives) && a.start.motor.size() == n && a.start.motor_rate.size() == n &&
                a.start.q.size() == a.arm.tree.coordinates() && a.start.v.size() == a.arm.tree.velocities();
     for (const multibody::DriveSwitch& s : a.switches) fit = fit && fits(s.drives) && s.joint < n;
     c.require(fit, a.name + ".joints", n, "must have one drive, angle and rate for each joint");
     for (const multibody::TimedLoad& load : a.loads) {
-      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads",
-                load.frame, "must act on a frame of the arm");
+      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads", load.frame,
+                "must act on a frame of the arm");
     }
   }
+  // Welds: each body on one, and a carrier on an earlier one, so that `place` meets carriers before what they hold.
   std::vector<bool> held(motion.bodies.size(), false), later(motion.bodies.size(), false);
   for (const MotionWeld& w : motion.welds) {
     if (w.body >= 0 && at_index(w.body) < later.size()) later[at_index(w.body)] = true;
@@ -91,6 +77,7 @@ void ConstraintSet::check(const Motion& motion, std::vector<base::InputProblem>&
                 "must be held, if at all, by an earlier weld");
     }
   }
+  // Mounts: rigid ones, each end once.
   std::vector<bool> taken(2 * motion.wires.size(), false);
   for (const MotionMount& m : motion.mounts) {
     check_carrier(motion, m.name, m.carrier, c);
@@ -98,19 +85,19 @@ void ConstraintSet::check(const Motion& motion, std::vector<base::InputProblem>&
                    "must be the index of a wire"))
       continue;
     const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
-    const wire::SpatialEnd& end = m.right ? p.right : p.left;
+    const wire::SpatialEnd& end = p.end(m.end);
     c.require(end.kind != wire::SpatialEnd::Kind::free && std::isinf(end.translational_stiffness), m.name + ".wire",
               m.wire, "must have a rigid mount there");
     c.require(!motion.wires[at_index(m.wire)].rod.strands.act(), m.name + ".wire", m.wire,
               "must not be of strands that slide: their moment on a moving mount is not computed");
-    const std::size_t k = 2 * at_index(m.wire) + (m.right ? 1 : 0);
+    const std::size_t k = 2 * at_index(m.wire) + index_of(m.end);
     c.require(!taken[k], m.name + ".wire", m.wire, "must not be held twice at one end");
     taken[k] = true;
   }
 }
 
 ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
-                 const MotionOptions& options)
+                             const MotionOptions& options)
     : motion_(motion), end_(options.duration) {
   for (const MotionArm& a : motion.arms) {
     Arm& arm = arms_.emplace_back();
@@ -122,26 +109,25 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
     const double motion_tolerance = std::min(options.position_tolerance, options.angle_tolerance);
     arm.part.emplace(arm.model, a.drives, a.loads, multibody::ArmTolerances{motion_tolerance, 1e-6},
                      multibody::BaseEquations::newton_euler);
-    arm.crowding = multibody::EventCrowding(arm.model.motors());
+    arm.stepper.emplace(*arm.part, a.switches);
   }
   for (const MotionWeld& w : motion.welds) {
     const BodyPart& body = bodies[at_index(w.body)];
-    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{},
-                        options);
+    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{}, options);
     held_.push_back(&body);
   }
   for (const MotionMount& m : motion.mounts) {
     const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
-    mounts_.emplace_back(m.name, frame_of(m.carrier, bodies, mount_pose(m.right ? p.right : p.left)),
-                         rods[at_index(m.wire)], m.right, options);
+    mounts_.emplace_back(m.name, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)], m.end,
+                         options);
   }
   for (const WeldPart& w : welds_) constraints_.push_back(&w);
   for (const MountPart& m : mounts_) constraints_.push_back(&m);
 }
 
-// The frame that a carrier holds where it is wanted at the start.
+// The frame that a carrier holds where it is wanted at the start: X_CF = X_WC^-1 X_WF.
 MovingFrame ConstraintSet::frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
-                              const Pose& X_WF) const {
+                                    const Pose& X_WF) const {
   switch (carrier.kind) {
     case MotionCarrier::Kind::world:
       break;
@@ -179,18 +165,20 @@ void ConstraintSet::place(VectorXd& y) {
     arms_[k].part->write_state(motion_.arms[k].start, y);
     arms_[k].part->settle(0.0, y);
   }
+  // What is held moves with its carrier, v = v_F and w_B = R_WF^T w_F: X_BH of a weld is the identity here.
   for (std::size_t k = 0; k < welds_.size(); ++k) {
     const MovingFrame::State s = welds_[k].carrier().state(y);
     y.segment<3>(held_[k]->velocity()) = s.linear;
     y.segment<3>(held_[k]->spin()) = s.X_WF.R.transpose() * s.angular;
   }
   for (const MountPart& m : mounts_)
-    y.segment<3>(m.rod().velocity_of(m.right() ? m.rod().vertices() - 1 : 0)) = m.carrier().state(y).linear;
+    y.segment<3>(m.rod().velocity_of(m.rod().model().vertex_at(m.end()))) = m.carrier().state(y).linear;
   enter(0.0);
 }
 
 void ConstraintSet::loosen(VectorXd& y) const {
-  for (const Constraint* link : constraints_) y.segment(link->multipliers(), 2 * link->constraints()).setZero();
+  // Multipliers and the stabilisers behind them.
+  for (const Constraint* c : constraints_) y.segment(c->multipliers(), 2 * c->constraints()).setZero();
 }
 
 void ConstraintSet::solve_rates(const VectorXd& y, const VectorXd& rows, VectorXd& rate) {
@@ -201,85 +189,50 @@ void ConstraintSet::project(const VectorXd& y, VectorXd& dv) const {
   static_cast<void>(coupling::project(constraints_, y, {}, dv));
 }
 
+// d(G v)/dt = G v' + (dG/dt) v = 0: the bias is the second term.
 VectorXd ConstraintSet::hold_rates(const VectorXd& y, VectorXd& rate) const {
   Eigen::Index n = 0;
-  for (const Constraint* link : constraints_) n += link->constraints();
+  for (const Constraint* c : constraints_) n += c->constraints();
   VectorXd bias(n);
   n = 0;
-  for (const Constraint* link : constraints_) {
-    bias.segment(n, link->constraints()) = link->acceleration_bias(y, rate);
-    n += link->constraints();
+  for (const Constraint* c : constraints_) {
+    bias.segment(n, c->constraints()) = c->acceleration_bias(y, rate);
+    n += c->constraints();
   }
   return coupling::project(constraints_, y, bias, rate);
 }
 
 void ConstraintSet::set_multipliers(const VectorXd& multipliers, VectorXd& y) const {
   Eigen::Index first = 0;
-  for (const Constraint* link : constraints_) {
-    y.segment(link->multipliers(), link->constraints()) = multipliers.segment(first, link->constraints());
-    first += link->constraints();
+  for (const Constraint* c : constraints_) {
+    y.segment(c->multipliers(), c->constraints()) = multipliers.segment(first, c->constraints());
+    first += c->constraints();
   }
 }
 
 void ConstraintSet::enter(double time) {
   limit_ = end_;
-  const auto consider = [&](double t) {
-    if (t > time && t < limit_) limit_ = t;
-  };
-  for (std::size_t k = 0; k < arms_.size(); ++k) {
-    for (const double t : arms_[k].part->breaks()) consider(t);
-    const auto& switches = motion_.arms[k].switches;
-    arms_[k].part->watch_torque(-1, 0.0);
-    if (arms_[k].next_switch >= switches.size()) continue;
-    const multibody::DriveSwitch& next = switches[arms_[k].next_switch];
-    consider(next.time);
-    if (next.joint >= 0 && next.time <= time) arms_[k].part->watch_torque(next.joint, next.torque);
-  }
+  for (Arm& a : arms_) limit_ = a.stepper->next_break(time, limit_);
   for (Arm& a : arms_) a.part->enter_interval(time, limit_);
 }
 
 bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, VectorXd& y) {
   if (arms_.empty()) return false;
-  constexpr double beyond = -1e-9;  // of functions scaled to one; far above the accuracy of a found event
-  const double time = at.time;      // `at` may view y, which changes
+  const double time = at.time;  // `at` may view y, which changes
   bool anew = false, drives_anew = false;
   std::size_t first = 0;
   for (std::size_t k = 0; k < arms_.size(); ++k) {
-    ElasticArmPart& part = *arms_[k].part;
-    const auto count = static_cast<std::size_t>(part.event_count());
-    values_.resize(count);
-    part.events(at, values_);
-    std::vector<int> ended_modes;
-    bool torque_reached = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!((!found.empty() && found[first + i] < 0) || values_[i] < beyond)) continue;
-      if (static_cast<int>(i) == part.torque_event()) {
-        torque_reached = true;
-        continue;
-      }
-      ended_modes.push_back(static_cast<int>(i));
-      const int joint = static_cast<int>(i) / ElasticArmPart::events_per_joint;
-      if (arms_[k].crowding.crowded(joint, time)) {
-        stuck_ = fmt::format(
-            "{}: joint {} stays at a jump of its law: a load between the torques on its two sides holds it "
-            "there; give the jump a width (jump_width_deg)",
-            motion_.arms[k].name, arms_[k].model.joints[at_index(joint)].name);
-      }
-    }
+    Arm& arm = arms_[k];
+    const auto count = at_index(arm.part->event_count());
+    const std::vector<int> ended_modes =
+        arm.stepper->ended_modes(at, found.empty() ? found : found.subspan(first, count));
     first += count;
+    if (const auto stuck = arm.stepper->crowding(ended_modes, time)) stuck_ = motion_.arms[k].name + ": " + *stuck;
     if (!ended_modes.empty()) {
-      part.leave_modes(time, y, ended_modes);
+      arm.part->leave_modes(time, y, ended_modes);
       anew = true;
     }
-    const auto& switches = motion_.arms[k].switches;
-    if (arms_[k].next_switch < switches.size()) {
-      const multibody::DriveSwitch& next = switches[arms_[k].next_switch];
-      if (next.joint >= 0 ? torque_reached : next.time <= time) {
-        part.set_drives(next.drives, y);
-        ++arms_[k].next_switch;
-        drives_anew = true;
-      }
-    }
+    drives_anew = arm.stepper->change_drives(time, y) || drives_anew;
   }
   if (drives_anew || (time >= limit_ && time < end_)) {
     enter(time);
@@ -290,20 +243,11 @@ bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, Vecto
 }
 
 void ConstraintSet::save_state(std::vector<double>& memory) const {
-  for (const Arm& a : arms_) {
-    memory.push_back(static_cast<double>(a.next_switch));
-    a.crowding.save_state(memory);
-  }
+  for (const Arm& a : arms_) a.stepper->save_state(memory);
 }
 
 void ConstraintSet::restore_state(double time, VectorXd& y, std::span<const double>& memory) {
-  for (std::size_t k = 0; k < arms_.size(); ++k) {
-    const auto& switches = motion_.arms[k].switches;
-    arms_[k].next_switch = std::min(static_cast<std::size_t>(numerics::take(memory)), switches.size());
-    arms_[k].crowding.restore_state(memory);
-    // A motor that the drives brake stands still in y already.
-    if (arms_[k].next_switch > 0) arms_[k].part->set_drives(switches[arms_[k].next_switch - 1].drives, y);
-  }
+  for (Arm& a : arms_) a.stepper->restore_state(y, memory);
   enter(time);
 }
 
@@ -313,6 +257,7 @@ void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, Motio
     multibody::Kinematics kinematics(a.model.tree);
     multibody::place(a.model.tree, state.q, kinematics);
     multibody::set_moving(a.model.tree, state.v, kinematics);
+    // Kinetic energy of the tree and of the motors (Im qm'^2/2); what is left of the total is that of the springs.
     const double links = multibody::kinetic_energy(a.model.tree, kinematics);
     const double potential = multibody::potential_energy(a.model.tree, kinematics);
     double motors = 0.0;
@@ -340,12 +285,14 @@ bool ConstraintSet::counted(const MovingFrame& frame) const {
   return false;
 }
 
+// Forces and moments about the origin on everything whose momentum is counted: what carriers give whose own is not, and
+// weight and loads of floating arms. A carrier that nothing moves freely works: P = F.v + M.w.
 ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   Outer sum;
-  const auto add = [&](const Constraint& link, const Vector3d& moment) {
-    const MovingFrame& carrier = link.carrier();
+  const auto add = [&](const Constraint& constraint, const Vector3d& moment) {
+    const MovingFrame& carrier = constraint.carrier();
     if (counted(carrier)) return;
-    const multibody::Wrench w = link.wrench(at.y);
+    const multibody::Wrench w = constraint.wrench(at.y);
     const MovingFrame::State s = carrier.state(at.y);
     sum.force += w.force;
     sum.moment += moment + s.X_WF.p.cross(w.force);
@@ -374,7 +321,7 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
 
 void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
   for (std::size_t k = 0; k < mounts_.size(); ++k) {
-    const auto i = 2 * at_index(motion_.mounts[k].wire) + (mounts_[k].right() ? 1 : 0);
+    const auto i = 2 * at_index(motion_.mounts[k].wire) + index_of(mounts_[k].end());
     sample.mount_forces[i] = mounts_[k].wrench(y).force;
   }
   for (const Arm& a : arms_) {
@@ -390,8 +337,7 @@ void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
 
 double ConstraintSet::largest_gap(const VectorView& y) const {
   double gap = 0.0;
-  for (const WeldPart& w : welds_) gap = std::max(gap, w.gap(y));
-  for (const MountPart& m : mounts_) gap = std::max(gap, m.gap(y));
+  for (const Constraint* c : constraints_) gap = std::max(gap, c->gap(y));
   return gap;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/complaints.hpp"
+#include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/mount_part.hpp"
-#include "multibody/arm/event_crowding.hpp"
-#include "base/errors.hpp"
+#include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/weld_part.hpp"
+#include "multibody/arm/arm_stepper.hpp"
 
 #include <deque>
 #include <optional>
@@ -15,11 +18,11 @@ namespace snare::coupling {
 /// Arms, welds and moving mounts of one run.                                           theory.md (M.15)-(M.17)
 class ConstraintSet {
  public:
-  /// What is wrong with them, appended.
-  static void check(const Motion& motion, std::vector<base::InputProblem>& problems);
+  /// What is wrong with them.
+  static void check(const Motion& motion, Complaints& complaints);
 
   ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
-          const MotionOptions& options);
+                const MotionOptions& options);
 
   /// Last among the parts of the system, in this order.
   void append(std::vector<numerics::DaePart*>& parts);
@@ -39,10 +42,10 @@ class ConstraintSet {
 
   /// Time up to which nothing of the arms jumps but by an event [s].
   [[nodiscard]] double limit() const { return limit_; }
-  /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms, empty
-  /// when it found none. True: the integration must start anew.
+  /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms,
+  /// empty when it found none. True: the integration must start anew.
   [[nodiscard]] bool follow(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
-  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: drives and crowding of events.
+  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: see ArmStepper.
   void save_state(std::vector<double>& memory) const;
   void restore_state(double time, Eigen::VectorXd& y, std::span<const double>& memory);
   /// Why it cannot go on, if so.
@@ -65,9 +68,8 @@ class ConstraintSet {
   struct Arm {
     multibody::ElasticArm model;
     std::optional<multibody::ElasticArmPart> part;
-    multibody::EventCrowding crowding{0};
-    std::size_t next_switch = 0;
-    bool floats = false;
+    std::optional<multibody::ArmStepper> stepper;
+    bool floats = false;  // nothing holds its base: its momentum is counted
   };
   [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
                                      const multibody::Pose& X_WF) const;
@@ -82,7 +84,6 @@ class ConstraintSet {
   std::deque<MountPart> mounts_;
   std::vector<const BodyPart*> held_;  // by each weld
   std::vector<const Constraint*> constraints_;
-  std::vector<double> values_;
   std::optional<std::string> stuck_;
 };
 

@@ -1,27 +1,23 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
-#include "coupling/dynamics/body_part.hpp"
+#include "coupling/contact/curve.hpp"
+#include "coupling/dynamics/contact_geometry.hpp"
+#include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/result.hpp"
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace snare::coupling {
 
-/// Weights of the four vertices first ... first + 3 in the C1 curve at a material coordinate, and their derivatives by
-/// it: X(S) = sum N_k x_k, the cubic Hermite curve with the slopes of (C.1).                theory.md (M.6)
-struct CurveWeights {
-  int first = 0;
-  Eigen::Vector4d value, slope, bend;  ///< N [-], N' [1/m], N'' [1/m^2]
-};
-[[nodiscard]] CurveWeights curve_weights(const wire::RodPart& rod, double coordinate);
-
-/// One point of contact between a wire and a body's shape: material coordinate zeta, normal force lambda, and the multiplier mu
-/// that stabilises the constraint (Gear, Gupta, Leimkuhler 1985).                          theory.md (M.7)-(M.9)
+/// One point of contact between a wire and a body's shape: material coordinate zeta, normal force lambda, and the
+/// multiplier mu that stabilises the constraint (Gear, Gupta, Leimkuhler 1985).            theory.md (M.7)-(M.9)
 ///
 ///   closed:  n.X'(zeta) = 0,  g = 0,  dg/dt = 0;   x_k' = v_k + N_k n mu/m_k
 ///   open:    zeta = where it was, lambda = 0, mu = 0
-/// Where the gap has no proper minimum (an end of the wire, a wire that follows the surface) zeta stays on its material point.  (G.9)
+/// Where the gap has no proper minimum (an end of the wire, a wire that follows the surface) zeta stays on its material
+/// point (G.9).
 /// A bristle adds its deflection z in the tangent plane's axes a = X'/|X'| and b = n x a, which go with wire and body:
 ///   closed:  dz/dt = (f/k - z)/tau, friction f of tangent_force;    open:  z = 0
 /// With a law instead of the constraint lambda = law(-g, -dg/dt) while closed.
@@ -46,9 +42,9 @@ class ContactPart final : public numerics::DaePart {
   /// Whether zeta stays on its material point.
   [[nodiscard]] bool is_fixed_to_wire() const { return fixed_; }
   /// Where an open contact keeps its material coordinate.
-  void wait_at(double coordinate, Eigen::VectorXd& y) { y[first_] = kept_coordinate_ = coordinate; }
-  /// The normal force with which the integration begins anew; it may pull by the forces' tolerance, and lifts off when it pulls by as much
-  /// more.
+  void wait_at(double coordinate, Eigen::VectorXd& y) { y[coordinate_unknown()] = kept_coordinate_ = coordinate; }
+  /// The normal force with which the integration begins anew; it may pull by the forces' tolerance, and lifts off when
+  /// it pulls by as much more.
   void begin_force(double force, Eigen::VectorXd& y);
   /// Keeps a closed point on its material point until the minimum comes back.
   void rest_on_wire();
@@ -90,11 +86,12 @@ class ContactPart final : public numerics::DaePart {
   /// From the body to the wire, unit, in the world frame.
   [[nodiscard]] Eigen::Vector3d normal(const numerics::VectorView& y) const;
 
-  [[nodiscard]] int coordinate_unknown() const { return first_; }
-  [[nodiscard]] int force_unknown() const { return first_ + 1; }
-  [[nodiscard]] int stabiliser_unknown() const { return first_ + 2; }
+  /// The unknowns zeta, lambda and mu, and the rows that determine them.
+  [[nodiscard]] int coordinate_unknown() const { return coordinate_; }
+  [[nodiscard]] int force_unknown() const { return coordinate_ + 1; }
+  [[nodiscard]] int stabiliser_unknown() const { return coordinate_ + 2; }
   /// First of the two of z; only with a bristle.
-  [[nodiscard]] int bristle_unknown() const { return first_ + 3; }
+  [[nodiscard]] int bristle_unknown() const { return coordinate_ + 3; }
 
   /// Velocity changes of an impulse at the contact [N s], added to dv.
   void apply_impulse(const numerics::VectorView& y, double impulse, Eigen::VectorXd& dv) const;
@@ -104,19 +101,20 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] double gap_rate_of(const numerics::VectorView& y, const Eigen::VectorXd& velocities) const;
 
  private:
-  /// Everything at one point of time.
-  struct Geometry;
-  /// A direction in the space of what the contact depends on, and what follows.
-  struct Direction;
-  struct Change;
+  /// Vertices in the pattern, more than the four of the curve so that it seldom changes.
+  static constexpr int window_size = 10;
+  struct Geometry : ContactGeometry {
+    CurveWeights weights;
+  };
   [[nodiscard]] Geometry geometry(const numerics::VectorView& y) const;
-  [[nodiscard]] Change change(const Geometry& g, const Direction& d) const;
+  /// At the unknown coordinate, on the wire.
+  [[nodiscard]] CurveWeights weights(const numerics::VectorView& y) const;
   [[nodiscard]] bool follow(const numerics::VectorView& y);
   /// d2 gap/d zeta2 [1/m].
   [[nodiscard]] double gap_curvature(const Geometry& g) const;
   [[nodiscard]] bool is_at_an_end(double coordinate) const;
   [[nodiscard]] std::vector<int> local_unknowns(int first_vertex) const;
-  [[nodiscard]] int own_unknowns() const { return has_bristle() ? 5 : 3; }
+  [[nodiscard]] std::vector<int> own_unknowns() const;
   void respond_along(const Geometry& g, const Eigen::Vector3d& impulse, Eigen::VectorXd& dv) const;
 
   MotionContact contact_;
@@ -131,7 +129,7 @@ class ContactPart final : public numerics::DaePart {
   double fixed_slope_ = 0.0;  // n.X' there at the last accepted state
   bool coupled_ = false;      // has been closed, and is in the pattern
   int window_ = 0;            // first vertex that the pattern covers
-  int first_ = 0;
+  int coordinate_ = 0;        // first of the own unknowns
   const numerics::SparseMatrix* pattern_ = nullptr;
 };
 

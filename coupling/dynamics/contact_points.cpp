@@ -26,7 +26,8 @@ constexpr double touch_together = 1e-9;
 
 }  // namespace
 
-ContactPoints::ContactPoints(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body, const MotionOptions& options)
+ContactPoints::ContactPoints(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
+                             const MotionOptions& options)
     : contact_(contact),
       rod_(rod),
       search_(contact, rod, body, options.position_tolerance),
@@ -88,7 +89,9 @@ std::optional<double> ContactPoints::first_touch(const ContactSearch::Step& step
 // many they are.
 std::vector<GapMinimum> ContactPoints::touching(const VectorView& y) const {
   std::vector<GapMinimum> found;
-  const auto at = [](double coordinate) { return [coordinate](const GapMinimum& m) { return m.coordinate == coordinate; }; };
+  const auto at = [](double coordinate) {
+    return [coordinate](const GapMinimum& m) { return m.coordinate == coordinate; };
+  };
   for (GapMinimum m : search_.touching(y, held(), touch_ + together_)) {
     const std::optional<double> vertex = points_.front().level_vertex(m.coordinate, y);
     const bool taken = vertex && std::any_of(points_.begin(), points_.end(), [&](const ContactPart& p) {

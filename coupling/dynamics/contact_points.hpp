@@ -14,7 +14,8 @@ namespace snare::coupling {
 /// of the gap.                                                                      theory.md (G.7)
 class ContactPoints {
  public:
-  ContactPoints(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body, const MotionOptions& options);
+  ContactPoints(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
+                const MotionOptions& options);
 
   [[nodiscard]] std::deque<ContactPart>& points() { return points_; }
   [[nodiscard]] const std::deque<ContactPart>& points() const { return points_; }

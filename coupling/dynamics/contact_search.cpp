@@ -9,10 +9,10 @@
 namespace snare::coupling {
 
 using Eigen::AlignedBox3d;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
+using multibody::Pose;
 using numerics::VectorView;
 
 namespace {
@@ -21,21 +21,21 @@ namespace {
 constexpr double level_slope = 1e-10;
 
 // Control points of the two halves of a cubic (de Casteljau).
-std::pair<WireCurve::Control, WireCurve::Control> halves(const WireCurve::Control& c) {
+std::pair<BezierWire::Control, BezierWire::Control> halves(const BezierWire::Control& c) {
   const Vector3d ab = 0.5 * (c.col(0) + c.col(1));
   const Vector3d bc = 0.5 * (c.col(1) + c.col(2));
   const Vector3d cd = 0.5 * (c.col(2) + c.col(3));
   const Vector3d abc = 0.5 * (ab + bc);
   const Vector3d bcd = 0.5 * (bc + cd);
   const Vector3d middle = 0.5 * (abc + bcd);
-  WireCurve::Control left;
-  WireCurve::Control right;
+  BezierWire::Control left;
+  BezierWire::Control right;
   left << c.col(0), ab, abc, middle;
   right << middle, bcd, cd, c.col(3);
   return {left, right};
 }
 
-AlignedBox3d box_of(const WireCurve::Control& c) {
+AlignedBox3d box_of(const BezierWire::Control& c) {
   return {c.rowwise().minCoeff(), c.rowwise().maxCoeff()};
 }
 
@@ -53,7 +53,7 @@ double rate_bound(std::size_t derivatives, double h, const Norm& norm) {
 
 }  // namespace
 
-WireCurve::WireCurve(const wire::RodPart& rod) : rod_(rod) {
+BezierWire::BezierWire(const wire::RodPart& rod) : rod_(rod) {
   for (int e = 0; e + 1 < rod.vertices(); ++e) {
     Piece piece;
     piece.begin = rod.coordinate(e);
@@ -69,22 +69,18 @@ WireCurve::WireCurve(const wire::RodPart& rod) : rod_(rod) {
   }
 }
 
-WireCurve::Control WireCurve::control(int element, const VectorView& y) const {
+BezierWire::Control BezierWire::control(int element, const VectorView& y) const {
   const Piece& piece = pieces_[static_cast<std::size_t>(element)];
   return Eigen::Map<const Control>(y.data() + rod_.position_of(piece.first)) * piece.weights;
 }
 
-double WireCurve::largest(const VectorXd& y, const Vector3d& offset) const {
-  return std::sqrt((Eigen::Map<const Eigen::Matrix3Xd>(y.data() + rod_.position_of(0), 3, rod_.vertices()).colwise() - offset)
-                       .colwise()
-                       .squaredNorm()
-                       .maxCoeff());
+double BezierWire::largest(const VectorXd& y, const Vector3d& offset) const {
+  return std::sqrt(
+      (Eigen::Map<const Eigen::Matrix3Xd>(y.data() + rod_.position_of(0), 3, rod_.vertices()).colwise() - offset)
+          .colwise()
+          .squaredNorm()
+          .maxCoeff());
 }
-
-struct ContactSearch::Pose {
-  Matrix3d r_ws;
-  Vector3d origin;  // p_WS
-};
 
 /// The gap and its slope at a material coordinate.
 struct ContactSearch::Place {
@@ -102,8 +98,7 @@ struct ContactSearch::Interval {
 ContactSearch::ContactSearch(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
                              double position_tolerance)
     : shape_(contact.shape),
-      shape_position_(contact.shape_position),
-      shape_rotation_(contact.shape_rotation),
+      X_BS_(contact.X_BS),
       wire_radius_(contact.wire_radius),
       rod_(rod),
       body_(body),
@@ -139,7 +134,7 @@ std::vector<int> ContactSearch::met_within(double way, const VectorView& y) {
   }
   std::vector<int> met;
   if (asked_.empty()) return met;
-  const Pose where = pose(y);
+  const Pose where = X_WS(y);
   for (const int e : asked_) {
     const double gap = lower_bound(where, box_of(curve_.control(e, y)));
     free_until_[static_cast<std::size_t>(e)] = passed_ + gap;
@@ -148,29 +143,31 @@ std::vector<int> ContactSearch::met_within(double way, const VectorView& y) {
   return met;
 }
 
-ContactSearch::Pose ContactSearch::pose(const VectorView& y) const {
-  const Matrix3d r_wb = multibody::rotation(y.segment<4>(body_.quaternion()));
-  return {r_wb * shape_rotation_, y.segment<3>(body_.position()) + r_wb * shape_position_};
+Pose ContactSearch::X_WS(const VectorView& y) const {
+  return Pose{multibody::rotation(y.segment<4>(body_.quaternion())), y.segment<3>(body_.position())} * X_BS_;
 }
 
-ContactSearch::Place ContactSearch::place(const Pose& pose, const WireCurve::Control& c, int element, double u) const {
+ContactSearch::Place ContactSearch::place(const Pose& X_WS, const BezierWire::Control& c, int element, double u) const {
   const double v = 1.0 - u;
-  const Vector3d x = v * v * v * c.col(0) + 3.0 * u * v * v * c.col(1) + 3.0 * u * u * v * c.col(2) + u * u * u * c.col(3);
-  const Vector3d slope = 3.0 / curve_.length(element) *
-                         (v * v * (c.col(1) - c.col(0)) + 2.0 * u * v * (c.col(2) - c.col(1)) + u * u * (c.col(3) - c.col(2)));
-  const DistanceField field = shape_->at(pose.r_ws.transpose() * (x - pose.origin));
+  const Vector3d x =
+      v * v * v * c.col(0) + 3.0 * u * v * v * c.col(1) + 3.0 * u * u * v * c.col(2) + u * u * u * c.col(3);
+  const Vector3d slope =
+      3.0 / curve_.length(element) *
+      (v * v * (c.col(1) - c.col(0)) + 2.0 * u * v * (c.col(2) - c.col(1)) + u * u * (c.col(3) - c.col(2)));
+  const DistanceField field = shape_->at(X_WS.R.transpose() * (x - X_WS.p));
   return {u, curve_.begin(element) + u * curve_.length(element), field.distance - wire_radius_,
-          (pose.r_ws * field.normal).dot(slope)};
+          (X_WS.R * field.normal).dot(slope)};
 }
 
 // The distance changes by no more than the way: nothing within a ball is nearer than its centre less its radius.
-double ContactSearch::lower_bound(const Pose& pose, const AlignedBox3d& box) const {
-  return shape_->distance(pose.r_ws.transpose() * (box.center() - pose.origin)) - 0.5 * box.diagonal().norm() - wire_radius_;
+double ContactSearch::lower_bound(const Pose& X_WS, const AlignedBox3d& box) const {
+  return shape_->distance(X_WS.R.transpose() * (box.center() - X_WS.p)) - 0.5 * box.diagonal().norm() - wire_radius_;
 }
 
 // Boxes of single elements, of pairs, of fours and so on; what is farther than `reach` is left out with all below it. `least` becomes a
 // lower bound of the gap everywhere.
-std::vector<int> ContactSearch::near_elements(const Pose& pose, const VectorView& y, double reach, double& least) const {
+std::vector<int> ContactSearch::near_elements(const Pose& X_WS, const VectorView& y, double reach,
+                                              double& least) const {
   std::vector<std::vector<AlignedBox3d>> levels(1);
   for (int e = 0; e < curve_.elements(); ++e) levels[0].push_back(box_of(curve_.control(e, y)));
   while (levels.back().size() > 1) {
@@ -186,7 +183,7 @@ std::vector<int> ContactSearch::near_elements(const Pose& pose, const VectorView
   while (!stack.empty()) {
     const auto [level, index] = stack.back();
     stack.pop_back();
-    const double bound = lower_bound(pose, levels[level][index]);
+    const double bound = lower_bound(X_WS, levels[level][index]);
     // Far parts are not looked at closer once something as near is known.
     if (bound >= reach && (bound >= least || level == 0)) {
       least = std::min(least, bound);
@@ -204,8 +201,9 @@ std::vector<int> ContactSearch::near_elements(const Pose& pose, const VectorView
 }
 
 // Between two places the gap cannot fall by more than the way there and back; the way is no longer than the control polygon.
-void ContactSearch::subdivide(const Pose& pose, int element, const WireCurve::Control& whole, const WireCurve::Control& part,
-                              const Place& from, const Place& to, double reach, std::vector<Interval>& out) const {
+void ContactSearch::subdivide(const Pose& X_WS, int element, const BezierWire::Control& whole,
+                              const BezierWire::Control& part, const Place& from, const Place& to, double reach,
+                              std::vector<Interval>& out) const {
   const double way = (part.rightCols<3>() - part.leftCols<3>()).colwise().norm().sum();
   if (0.5 * (from.gap + to.gap - way) >= reach) return;
   if (way <= resolution_) {
@@ -213,18 +211,19 @@ void ContactSearch::subdivide(const Pose& pose, int element, const WireCurve::Co
     return;
   }
   const auto [left, right] = halves(part);
-  const Place middle = place(pose, whole, element, 0.5 * (from.u + to.u));
-  subdivide(pose, element, whole, left, from, middle, reach, out);
-  subdivide(pose, element, whole, right, middle, to, reach, out);
+  const Place middle = place(X_WS, whole, element, 0.5 * (from.u + to.u));
+  subdivide(X_WS, element, whole, left, from, middle, reach, out);
+  subdivide(X_WS, element, whole, right, middle, to, reach, out);
 }
 
-std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& elements, const VectorView& y, double reach) const {
-  const Pose where = pose(y);
+std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& elements, const VectorView& y,
+                                                 double reach) const {
+  const Pose where = X_WS(y);
   std::vector<Interval> intervals;
   Place end;
   int before = -1;
   for (const int e : elements) {
-    const WireCurve::Control c = curve_.control(e, y);
+    const BezierWire::Control c = curve_.control(e, y);
     // The curve is C1: the end of one element is the beginning of the next.
     Place begin = end;
     begin.u = 0.0;
@@ -245,7 +244,7 @@ std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& element
     if (i.element == 0 && i.from.u == 0.0 && falls >= 0.0) add(i.from.coordinate, i.from.gap);
     if (falls < 0.0 && rises >= 0.0) {
       // Illinois; a root of a smooth function is found to round-off in about ten evaluations, one of a kink in a few more.
-      const WireCurve::Control c = curve_.control(i.element, y);
+      const BezierWire::Control c = curve_.control(i.element, y);
       Place low = i.from;
       Place high = i.to;
       Place best = high;
@@ -272,18 +271,18 @@ std::vector<GapMinimum> ContactSearch::minima_of(const std::vector<int>& element
 
 std::vector<GapMinimum> ContactSearch::minima(const VectorView& y, double reach) const {
   double least = 0.0;
-  return minima_of(near_elements(pose(y), y, reach, least), y, reach);
+  return minima_of(near_elements(X_WS(y), y, reach, least), y, reach);
 }
 
 double ContactSearch::clearance(const VectorView& y) const {
   double least = 0.0;
-  static_cast<void>(near_elements(pose(y), y, -std::numeric_limits<double>::infinity(), least));
+  static_cast<void>(near_elements(X_WS(y), y, -std::numeric_limits<double>::infinity(), least));
   return least;
 }
 
 GapMinimum ContactSearch::nearest(const VectorView& y) const {
   // The nearest end of an element bounds the least gap from above, which closes in on the elements around it.
-  const Pose where = pose(y);
+  const Pose where = X_WS(y);
   double bound = std::numeric_limits<double>::infinity();
   const int last = curve_.elements() - 1;
   double least = 0.0;
@@ -313,7 +312,8 @@ std::vector<GapMinimum> ContactSearch::open_minima(std::vector<GapMinimum> all, 
       return std::abs(a.coordinate - h) < std::abs(b.coordinate - h);
     });
     if (own != all.end() && std::abs(own->coordinate - h) < one.within) all.erase(own);
-    std::erase_if(all, [&](const GapMinimum& m) { return m.gap > -one.depth && std::abs(m.coordinate - h) < one.around; });
+    std::erase_if(all,
+                  [&](const GapMinimum& m) { return m.gap > -one.depth && std::abs(m.coordinate - h) < one.around; });
   }
   return all;
 }
@@ -321,7 +321,7 @@ std::vector<GapMinimum> ContactSearch::open_minima(std::vector<GapMinimum> all, 
 // A stretch that lies flat has one minimum, and touches in all of its vertices at once.
 std::vector<GapMinimum> ContactSearch::flat_vertices(const VectorView& y, double touch) const {
   double least = 0.0;
-  const Pose where = pose(y);
+  const Pose where = X_WS(y);
   std::vector<GapMinimum> found;
   for (const int e : near_elements(where, y, touch + skip_depth_, least)) {
     if (e == 0) continue;
@@ -331,7 +331,8 @@ std::vector<GapMinimum> ContactSearch::flat_vertices(const VectorView& y, double
   return found;
 }
 
-std::vector<GapMinimum> ContactSearch::touching(const VectorView& y, const std::vector<Held>& held, double touch) const {
+std::vector<GapMinimum> ContactSearch::touching(const VectorView& y, const std::vector<Held>& held,
+                                                double touch) const {
   // Above the touch too, since a closed contact's own minimum may stand at round-off above it.
   std::vector<GapMinimum> found = open_minima(minima(y, touch + skip_depth_), y, held);
   std::erase_if(found, [touch](const GapMinimum& m) { return m.gap > touch; });
@@ -350,7 +351,8 @@ double ContactSearch::speed_bound(const Step& step) const {
   const double way = rate_bound(d.size(), h, [&](std::size_t k) {
     return curve_.largest_weight_sum() * curve_.largest(d[k], d[k].segment<3>(body_.position()));
   });
-  const double spin = 2.0 * rate_bound(d.size(), h, [&](std::size_t k) { return d[k].segment<4>(body_.quaternion()).norm(); });
+  const double spin =
+      2.0 * rate_bound(d.size(), h, [&](std::size_t k) { return d[k].segment<4>(body_.quaternion()).norm(); });
   if (spin == 0.0) return way;
   const double arm = curve_.largest_weight_sum() * curve_.largest(y, y.segment<3>(body_.position()));
   return way + spin * (arm + h * way);
@@ -360,9 +362,11 @@ double ContactSearch::speed_bound(const Step& step, const std::vector<int>& elem
   const double h = step.to - step.from;
   const std::vector<VectorXd>& d = step.derivatives;
   const VectorXd& y = step.ida.y();
-  const double spin = 2.0 * rate_bound(d.size(), h, [&](std::size_t k) { return d[k].segment<4>(body_.quaternion()).norm(); });
+  const double spin =
+      2.0 * rate_bound(d.size(), h, [&](std::size_t k) { return d[k].segment<4>(body_.quaternion()).norm(); });
   const auto largest = [&](int e, const VectorXd& v) {
-    return std::sqrt((curve_.control(e, v).colwise() - Vector3d(v.segment<3>(body_.position()))).colwise().squaredNorm().maxCoeff());
+    return std::sqrt(
+        (curve_.control(e, v).colwise() - Vector3d(v.segment<3>(body_.position()))).colwise().squaredNorm().maxCoeff());
   };
   double bound = 0.0;
   for (const int e : elements) {
@@ -373,7 +377,7 @@ double ContactSearch::speed_bound(const Step& step, const std::vector<int>& elem
 }
 
 std::optional<double> ContactSearch::first_touch(const Step& step, double until, const std::vector<Held>& held,
-                                                double touch) {
+                                                 double touch) {
   const double h = step.to - step.from;
   const double way = h * speed_bound(step);
   const VectorXd& end = step.ida.y();
@@ -386,7 +390,9 @@ std::optional<double> ContactSearch::first_touch(const Step& step, double until,
     const VectorXd y = t == step.to ? end : step.ida.interpolate(t);
     const std::vector<GapMinimum> open = open_minima(minima_of(candidates, y, reach), y, held);
     if (open.empty()) return std::nullopt;
-    return std::min_element(open.begin(), open.end(), [](const GapMinimum& a, const GapMinimum& b) { return a.gap < b.gap; })->gap;
+    return std::min_element(open.begin(), open.end(),
+                            [](const GapMinimum& a, const GapMinimum& b) { return a.gap < b.gap; })
+        ->gap;
   };
   // Nothing within the way of the whole step at its end: nothing was touched on it.
   if (!least(step.to, speed * h + skip_depth_)) return std::nullopt;
@@ -407,7 +413,9 @@ std::optional<double> ContactSearch::first_touch(const Step& step, double until,
   double low = before;
   double high = t;
   double f_low = *gap_before - touch;
-  const auto value = [&](double s) { return least(s, speed * (until - s) + skip_depth_).value_or(skip_depth_) - touch; };
+  const auto value = [&](double s) {
+    return least(s, speed * (until - s) + skip_depth_).value_or(skip_depth_) - touch;
+  };
   double f_high = value(high);
   constexpr double sharp = 1e-13;  // [m]
   for (int k = 0; k < 100 && f_high < -sharp && high - low > 1e-15 * std::max(high, h); ++k) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/dynamics/body_part.hpp"
+#include "coupling/dynamics/model.hpp"
 #include "numerics/ida.hpp"
 
 #include <Eigen/Core>
@@ -12,14 +12,14 @@
 
 namespace snare::coupling {
 
-/// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex hull of its four control
-/// points, and so does every derivative by time in the hull of theirs.                         theory.md (G.6)
-class WireCurve {
+/// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex hull of its
+/// four control points, and so does every derivative by time in the hull of theirs.          theory.md (G.6)
+class BezierWire {
  public:
   using Control = Eigen::Matrix<double, 3, 4>;
 
   /// The rod stays the caller's; where its unknowns are is asked when they are wanted.
-  explicit WireCurve(const wire::RodPart& rod);
+  explicit BezierWire(const wire::RodPart& rod);
 
   [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
   /// Control points of an element, from positions [m] or any derivative of them by time, in the layout of the unknowns.
@@ -51,7 +51,8 @@ struct GapMinimum {
 /// Finds where a wire comes near a shape, and when first within a step of the integrator.       theory.md (G.6)-(G.8)
 class ContactSearch {
  public:
-  ContactSearch(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body, double position_tolerance);
+  ContactSearch(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
+                double position_tolerance);
 
   /// Local minima of the gap below `reach` [m] along the wire, ends of the wire included. Two of them on a stretch shorter than
   /// `resolution` may count as one.
@@ -72,15 +73,17 @@ class ContactSearch {
   /// Of the integrator's last step, for all contacts.
   struct Step {
     const numerics::Ida& ida;
-    double from = 0.0, to = 0.0;             ///< [s]
+    double from = 0.0, to = 0.0;               ///< [s]
     std::vector<Eigen::VectorXd> derivatives;  ///< of the unknowns at its end, from the first on
   };
   /// First time in [step.from, until] at which a local minimum other than those `held` falls to `touch` [m, <= 0]: conservative
   /// advancement, which no speed and no thin shape passes by. Minima that dip by less than `skip_depth` between two positive gaps may be
   /// missed.
-  [[nodiscard]] std::optional<double> first_touch(const Step& step, double until, const std::vector<Held>& held, double touch);
+  [[nodiscard]] std::optional<double> first_touch(const Step& step, double until, const std::vector<Held>& held,
+                                                  double touch);
   /// Those minima at a state whose gap is at most `touch`.
-  [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held, double touch) const;
+  [[nodiscard]] std::vector<GapMinimum> touching(const numerics::VectorView& y, const std::vector<Held>& held,
+                                                 double touch) const;
   /// Of the wire [m].
   [[nodiscard]] double longest_element() const { return longest_element_; }
   [[nodiscard]] double skip_depth() const { return skip_depth_; }
@@ -90,29 +93,32 @@ class ContactSearch {
   [[nodiscard]] double known_clearance() const;
 
  private:
-  struct Pose;
   struct Place;
   struct Interval;
-  [[nodiscard]] Pose pose(const numerics::VectorView& y) const;
-  [[nodiscard]] Place place(const Pose& pose, const WireCurve::Control& control, int element, double u) const;
-  [[nodiscard]] double lower_bound(const Pose& pose, const Eigen::AlignedBox3d& box) const;
-  [[nodiscard]] std::vector<int> near_elements(const Pose& pose, const numerics::VectorView& y, double reach, double& least) const;
-  void subdivide(const Pose& pose, int element, const WireCurve::Control& whole, const WireCurve::Control& part, const Place& from,
-                 const Place& to, double reach, std::vector<Interval>& out) const;
-  [[nodiscard]] std::vector<GapMinimum> minima_of(const std::vector<int>& elements, const numerics::VectorView& y, double reach) const;
+  [[nodiscard]] multibody::Pose X_WS(const numerics::VectorView& y) const;
+  [[nodiscard]] Place place(const multibody::Pose& X_WS, const BezierWire::Control& control, int element,
+                            double u) const;
+  [[nodiscard]] double lower_bound(const multibody::Pose& X_WS, const Eigen::AlignedBox3d& box) const;
+  [[nodiscard]] std::vector<int> near_elements(const multibody::Pose& X_WS, const numerics::VectorView& y, double reach,
+                                               double& least) const;
+  void subdivide(const multibody::Pose& X_WS, int element, const BezierWire::Control& whole,
+                 const BezierWire::Control& part, const Place& from, const Place& to, double reach,
+                 std::vector<Interval>& out) const;
+  [[nodiscard]] std::vector<GapMinimum> minima_of(const std::vector<int>& elements, const numerics::VectorView& y,
+                                                  double reach) const;
   [[nodiscard]] std::vector<GapMinimum> flat_vertices(const numerics::VectorView& y, double touch) const;
-  [[nodiscard]] std::vector<GapMinimum> open_minima(std::vector<GapMinimum> all, const numerics::VectorView& y, const std::vector<Held>& held) const;
+  [[nodiscard]] std::vector<GapMinimum> open_minima(std::vector<GapMinimum> all, const numerics::VectorView& y,
+                                                    const std::vector<Held>& held) const;
   [[nodiscard]] std::vector<int> met_within(double way, const numerics::VectorView& y);
   [[nodiscard]] double speed_bound(const Step& step) const;
   [[nodiscard]] double speed_bound(const Step& step, const std::vector<int>& elements) const;
 
   std::shared_ptr<const ContactShape> shape_;
-  Eigen::Vector3d shape_position_;
-  Eigen::Matrix3d shape_rotation_;
+  multibody::Pose X_BS_;
   double wire_radius_;
   const wire::RodPart& rod_;
   const BodyPart& body_;
-  WireCurve curve_;
+  BezierWire curve_;
   double resolution_ = 0.0;
   double skip_depth_ = 0.0;
   double longest_element_ = 0.0;

@@ -28,7 +28,7 @@ std::vector<ContactHandle> MotionRun::constraints() {
   return list;
 }
 
-// Normal speeds of all closed points by a unit impulse at each, with the links held.
+// Normal speeds of all closed points by a unit impulse at each, with the constraints held.
 Eigen::MatrixXd MotionRun::flexibility(const std::vector<ContactHandle>& constraints, bool with_friction) const {
   const auto n = static_cast<Eigen::Index>(constraints.size());
   Eigen::MatrixXd a(n, n);
@@ -61,8 +61,7 @@ void MotionRun::open(const ContactHandle& point) {
 void MotionRun::make_rates() {
   rate_.setZero();
   for (const wire::RodPart& r : rods_) {
-    for (int i = 0; i < r.vertices(); ++i)
-      rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
+    for (int i = 0; i < r.vertices(); ++i) rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
   }
   for (const BodyPart& b : bodies_) {
     rate_.segment<3>(b.position()) = y_.segment<3>(b.velocity());
@@ -103,7 +102,9 @@ void MotionRun::make_rates() {
         all[i].part->gap_rate_of(y_, held_rate) + all[i].part->gap_acceleration_at_rest(y_);
   }
   const Eigen::MatrixXd a = flexibility(all, true);
-  const VectorXd force = all.empty() ? VectorXd() : complementary_impulses(a, apart, VectorXd::Constant(a.rows(), options_.force_tolerance));
+  const VectorXd force = all.empty()
+                             ? VectorXd()
+                             : complementary_impulses(a, apart, VectorXd::Constant(a.rows(), options_.force_tolerance));
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double f = force[static_cast<Eigen::Index>(i)];
     all[i].part->begin_force(f, y_);
@@ -141,7 +142,8 @@ VectorXd MotionRun::allowed_tension(const std::vector<ContactHandle>& constraint
   const double parting = std::max(1e-9, 0.1 * options_.velocity_tolerance);  // [m/s]
   VectorXd pulls = parting * flexibility.cwiseInverse();
   for (std::size_t i = 0; i < constraints.size(); ++i) {
-    const wire::RodInMotion& rod = rods_[static_cast<std::size_t>(motion_.contacts[constraints[i].contact].wire)].constants();
+    const wire::RodInMotion& rod =
+        rods_[static_cast<std::size_t>(motion_.contacts[constraints[i].contact].wire)].constants();
     const double crossing = rod.length / rod.elements * std::sqrt(rod.mass_per_length / rod.properties.axial_stiffness);
     double& pull = pulls[static_cast<Eigen::Index>(i)];
     pull = std::max(pull, 0.5 * crossing * y_[constraints[i].part->force_unknown()]);
@@ -163,8 +165,9 @@ std::optional<std::string> MotionRun::close_touching() {
     for (const GapMinimum& m : contacts_[k].touching(y_)) {
       const std::optional<std::size_t> free = contacts_[k].free_point();
       if (!free) {
-        return fmt::format("{}: the wire touches at more than {} points (at {:.6g} m along it too) at {:.9g} s; allow more",
-                           motion_.contacts[k].name, contacts_[k].points().size(), m.coordinate, time_);
+        return fmt::format(
+            "{}: the wire touches at more than {} points (at {:.6g} m along it too) at {:.9g} s; allow more",
+            motion_.contacts[k].name, contacts_[k].points().size(), m.coordinate, time_);
       }
       ContactPart& part = contacts_[k].points()[*free];
       if (part.close(m.coordinate, y_)) system_->invalidate_pattern();
@@ -202,7 +205,8 @@ std::optional<std::string> MotionRun::close_touching() {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       if (impulse[k] != 0.0 || left[k] <= round_off) continue;
-      const auto own = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.point.part == all[i].part; });
+      const auto own =
+          std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.point.part == all[i].part; });
       if (own == touches.end()) {
         open(all[i]);
       } else {

@@ -13,7 +13,8 @@ using numerics::DaePoint;
 
 namespace {
 
-constexpr int columns = 13;  // position, quaternion, velocity, spin
+constexpr int body_rows = BodyPart::velocities;
+constexpr int body_columns = BodyPart::coordinates + BodyPart::velocities;
 
 }  // namespace
 
@@ -41,22 +42,21 @@ LawPart::Geometry LawPart::geometry(double time, const numerics::VectorView& y) 
 void LawPart::declare(numerics::DaeLayout& /*layout*/) {}
 
 void LawPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < columns; ++j) entries.emplace_back(body_.velocity() + i, body_.position() + j);
+  for (int i = 0; i < body_rows; ++i) {
+    for (int j = 0; j < body_columns; ++j) entries.emplace_back(body_.velocity() + i, body_.position() + j);
   }
 }
 
 void LawPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   slots_.clear();
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < columns; ++j)
-      slots_.push_back(pattern.slot(body_.velocity() + i, body_.position() + j));
+  for (int i = 0; i < body_rows; ++i) {
+    for (int j = 0; j < body_columns; ++j) slots_.push_back(pattern.slot(body_.velocity() + i, body_.position() + j));
   }
 }
 
 void LawPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   const Geometry g = geometry(at.time, at.y);
-  // Rows are inertia less forces; the moment is about the centre of mass, in B.
+  // Rows are inertia less forces, here -F n; the moment r x R^T (-F n) is about the centre of mass, in B.
   rows.segment<3>(body_.velocity()) += g.law.x() * spring_.direction;
   rows.segment<3>(body_.spin()) += g.law.x() * g.arm.cross(g.r.transpose() * spring_.direction);
 }
@@ -65,21 +65,23 @@ void LawPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& va
   const Geometry g = geometry(at.time, at.y);
   const Vector4d q = at.y.segment<4>(body_.quaternion());
   const Vector3d& n = spring_.direction;
-  Eigen::Matrix<double, 1, columns> force_by;
+  // dF = F_d dd + F_d' dd', with d by p and q, d' by q, v and w.
+  Eigen::Matrix<double, 1, body_columns> force_by;
   const Eigen::RowVector4d penetration_by_q = n.transpose() * multibody::rotated_by_quaternion(q, g.arm);
   const Eigen::RowVector4d rate_by_q = n.transpose() * multibody::rotated_by_quaternion(q, g.swing);
   force_by << g.law.y() * n.transpose(), g.law.y() * penetration_by_q + g.law.z() * rate_by_q,
-      g.law.z() * n.transpose(), -g.law.z() * (n.transpose() * g.r * multibody::skew(g.arm));
+      g.law.z() * n.transpose(), -g.law.z() * (n.transpose() * g.r * numerics::cross_matrix(g.arm));
   const Vector3d n_in_body = g.r.transpose() * n;
-  Eigen::Matrix<double, 6, columns> by;
+  Eigen::Matrix<double, body_rows, body_columns> by;
   by.topRows<3>() = n * force_by;
   by.bottomRows<3>() = g.arm.cross(n_in_body) * force_by;
   // The direction turns in B: R^T n changes by -phi x (R^T n), phi = 4 Q^T dq.
-  by.block<3, 4>(3, 3) += g.law.x() * multibody::skew(g.arm) * multibody::skew(n_in_body) * 4.0 *
-                          multibody::quaternion_rates(q).transpose();
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < columns; ++j)
-      values[static_cast<std::size_t>(slots_[static_cast<std::size_t>(columns * i + j)])] += by(i, j);
+  by.bottomRows<3>().middleCols<4>(body_.quaternion() - body_.position()) += g.law.x() * numerics::cross_matrix(g.arm) *
+                                                                             numerics::cross_matrix(n_in_body) * 4.0 *
+                                                                             multibody::quaternion_rates(q).transpose();
+  for (int i = 0; i < body_rows; ++i) {
+    for (int j = 0; j < body_columns; ++j)
+      values[static_cast<std::size_t>(slots_[static_cast<std::size_t>(body_columns * i + j)])] += by(i, j);
   }
 }
 

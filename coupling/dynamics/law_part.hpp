@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/dynamics/body_part.hpp"
+#include "coupling/dynamics/result.hpp"
 
 #include <vector>
 
@@ -33,7 +33,7 @@ class LawPart final : public numerics::DaePart {
 
   PointContactLaw spring_;
   const BodyPart& body_;
-  std::vector<int> slots_;  // rows v, w (6) by columns p, q, v, w (13)
+  std::vector<int> slots_;  // of the body's rows v, w by its columns p, q, v, w, row by row
 };
 
 }  // namespace snare::coupling

@@ -12,10 +12,12 @@ using numerics::VectorView;
 
 namespace {
 
-// Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
-constexpr double no_tolerance = 1e6;
+// Unknowns of the half cell: two vertices, whose rates are unknowns themselves, and an angle.
+constexpr std::size_t cell_vertices = 6;
+constexpr std::size_t cell_size = 7;
+using CellVector = Eigen::Matrix<double, cell_size, 1>;
 
-/// Sum of columns of J times changes.
+/// Linear part of J times changes of the unknowns.
 Vector3d linear_change(const Matrix6X& J, const std::vector<int>& unknowns, const VectorXd& values) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < unknowns.size(); ++k)
@@ -25,158 +27,167 @@ Vector3d linear_change(const Matrix6X& J, const std::vector<int>& unknowns, cons
 
 }  // namespace
 
-MountPart::MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, bool right,
+MountPart::MountPart(std::string name, MovingFrame mount, wire::RodPart& rod, wire::End end,
                      const MotionOptions& options)
-    : name_(std::move(name)), mount_(std::move(mount)), rod_(rod), right_(right), options_(options) {
-  rod_.carry(right, [this](const VectorView& y) {
-    const MovingFrame::State s = mount_.state(y);
+    : Constraint(std::move(name), std::move(mount), options), rod_(rod), end_(end) {
+  rod_.carry(end, [this](const VectorView& y) {
+    const MovingFrame::State s = carrier().state(y);
     return wire::MountMotion{{s.X_WF.R.col(0), s.X_WF.R.col(1)}, s.angular};
   });
 }
 
 void MountPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
-  first_ = layout.add({name_ + " force", axes, 3, DaeKind::algebraic, options_.force_tolerance, 0});
-  layout.add({name_ + " stabiliser", axes, 3, DaeKind::algebraic, no_tolerance, 0});
+  set_multipliers(layout.add({name() + " force", axes, 3, DaeKind::algebraic, options().force_tolerance, 0}));
+  stabiliser_ = layout.add({name() + " stabiliser", axes, 3, DaeKind::algebraic, numerics::no_tolerance, 0});
 }
 
 std::vector<int> MountPart::places() const {
-  const int i = vertex(), j = right_ ? i - 1 : 1;
+  const int i = vertex(), j = end_ == wire::End::left ? 1 : i - 1;
   std::vector<int> list;
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(j) + k);
-  list.push_back(rod_.end_angle(right_));
+  list.push_back(rod_.end_angle(end_));
   return list;
 }
 
 std::vector<int> MountPart::balances() const {
-  const int i = vertex(), j = right_ ? i - 1 : 1;
+  const int i = vertex(), j = end_ == wire::End::left ? 1 : i - 1;
   std::vector<int> list;
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(j) + k);
-  list.push_back(rod_.end_angle(right_));
+  list.push_back(rod_.end_angle(end_));
   return list;
 }
 
 void MountPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  const std::vector<int> q = mount_.coordinates(), v = mount_.velocities(), x = places(), rows = balances();
+  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(), rows = balances();
   const int end = rod_.position_of(vertex()), speed = rod_.velocity_of(vertex());
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 2; ++k) entries.emplace_back(first_ + 3 * k + i, first_ + 3 * k + i);
-    entries.emplace_back(end + i, first_ + 3 + i);
-    entries.emplace_back(speed + i, first_ + i);
-    entries.emplace_back(first_ + i, end + i);
-    entries.emplace_back(first_ + 3 + i, speed + i);
+    // Force and stabiliser on the end, and the rows of the constraint.
+    entries.emplace_back(force() + i, force() + i);
+    entries.emplace_back(stabiliser() + i, stabiliser() + i);
+    entries.emplace_back(end + i, stabiliser() + i);
+    entries.emplace_back(speed + i, force() + i);
+    entries.emplace_back(force() + i, end + i);
+    entries.emplace_back(stabiliser() + i, speed + i);
     for (const int column : q) {
-      entries.emplace_back(first_ + i, column);
-      entries.emplace_back(first_ + 3 + i, column);
+      entries.emplace_back(force() + i, column);
+      entries.emplace_back(stabiliser() + i, column);
     }
-    for (const int column : v) entries.emplace_back(first_ + 3 + i, column);
+    for (const int column : v) entries.emplace_back(stabiliser() + i, column);
   }
+  // The half cell feels the mount turn and spin.
   for (const int row : rows) {
     for (const int column : q) entries.emplace_back(row, column);
     for (const int column : v) entries.emplace_back(row, column);
   }
-  if (!mount_.moves_freely()) return;
+  // The carrier feels the wire's force and the cell's moment.
+  if (!carrier().moves_freely()) return;
   for (const int row : v) {
     for (const int column : q) entries.emplace_back(row, column);
     for (const int column : v) entries.emplace_back(row, column);
     for (const int column : x) entries.emplace_back(row, column);
-    for (std::size_t k = 0; k < 6; ++k) entries.emplace_back(row, rows[k]);
-    for (int i = 0; i < 3; ++i) entries.emplace_back(row, first_ + i);
+    for (std::size_t k = 0; k < cell_vertices; ++k) entries.emplace_back(row, rows[k]);
+    for (int i = 0; i < 3; ++i) entries.emplace_back(row, force() + i);
   }
 }
 
 void MountPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
   const int i = vertex();
-  const Vector3d force = at.y.segment<3>(first_);
-  const MovingFrame::State s = mount_.state(at.y);
-  rows.segment<3>(rod_.velocity_of(i)) -= force;
-  rows.segment<3>(rod_.position_of(i)) -= at.y.segment<3>(first_ + 3);
-  rows.segment<3>(first_) += at.y.segment<3>(rod_.position_of(i)) - s.X_WF.p;
-  rows.segment<3>(first_ + 3) += at.y.segment<3>(rod_.velocity_of(i)) - s.linear;
-  if (mount_.moves_freely())
-    mount_.push(mount_.jacobian(at.y), {rod_.mount_moment(at, right_), -force}, rows);
+  const Vector3d f = at.y.segment<3>(force());
+  const MovingFrame::State s = carrier().state(at.y);
+  // The end: m v' + ... - f = 0, x' - v - mu = 0.
+  rows.segment<3>(rod_.velocity_of(i)) -= f;
+  rows.segment<3>(rod_.position_of(i)) -= at.y.segment<3>(stabiliser());
+  // The constraint: x - p_WM = 0, v - v_M = 0.
+  rows.segment<3>(force()) += at.y.segment<3>(rod_.position_of(i)) - s.X_WF.p;
+  rows.segment<3>(stabiliser()) += at.y.segment<3>(rod_.velocity_of(i)) - s.linear;
+  // The carrier: -J^T (M, -f), M the moment of the half cell on the mount.
+  if (carrier().moves_freely()) carrier().push(carrier().jacobian(at.y), {rod_.mount_moment(at, end_), -f}, rows);
 }
 
 void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
-  const auto add = [&](int row, int column, double value) {
-    const int slot = pattern_->slot(row, column);
-    if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
-  };
-  const std::vector<int> q = mount_.coordinates(), v = mount_.velocities(), x = places(), rows = balances();
-  const MovingFrame::Derivatives d = mount_.differentiate(at.y);
-  const wire::RodPart::MountCell cell = rod_.mount_cell(at, right_);
+  const numerics::PatternValues into(pattern(), values);
+  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(), rows = balances();
+  const MovingFrame::Derivatives d = carrier().differentiate(at.y);
+  const wire::MountCell cell = rod_.mount_cell(at, end_);
   const int end = rod_.position_of(vertex()), speed = rod_.velocity_of(vertex());
+  const auto add_to_cell = [&](int column, const CellVector& by) {
+    for (std::size_t r = 0; r < cell_size; ++r) into.add(rows[r], column, by[static_cast<Eigen::Index>(r)]);
+  };
+  // The end and the constraint, by their own unknowns.
   for (int i = 0; i < 3; ++i) {
-    add(speed + i, first_ + i, -1.0);
-    add(end + i, first_ + 3 + i, -1.0);
-    add(first_ + i, end + i, 1.0);
-    add(first_ + 3 + i, speed + i, 1.0);
+    into.add(speed + i, force() + i, -1.0);
+    into.add(end + i, stabiliser() + i, -1.0);
+    into.add(force() + i, end + i, 1.0);
+    into.add(stabiliser() + i, speed + i, 1.0);
   }
-  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()),
-           wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
+  // Constraint, half cell and the wrench (M, -f) by coordinates and velocities of the carrier, through the turn, the
+  // shift and the spin of the mount.
+  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()), wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
   for (std::size_t k = 0; k < q.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     const Vector3d turn = d.place.col(column).head<3>(), spin = d.motion.col(column).head<3>();
+    const Vector3d shift = d.place.col(column).tail<3>(), velocity = d.motion.col(column).tail<3>();
     for (int i = 0; i < 3; ++i) {
-      add(first_ + i, q[k], -d.place(3 + i, column));
-      add(first_ + 3 + i, q[k], -d.motion(3 + i, column));
+      into.add(force() + i, q[k], -shift[i]);
+      into.add(stabiliser() + i, q[k], -velocity[i]);
     }
-    const Eigen::Matrix<double, 7, 1> on_rod = cell.rows_by_turn * turn + cell.rows_by_spin * spin;
-    for (std::size_t r = 0; r < rows.size(); ++r) add(rows[r], q[k], on_rod[static_cast<Eigen::Index>(r)]);
+    add_to_cell(q[k], cell.rows_by_turn * turn + cell.rows_by_spin * spin);
     wrench_by_q.col(column).head<3>() = cell.moment_by_turn * turn + cell.moment_by_spin * spin;
   }
   for (std::size_t k = 0; k < v.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
-    const Vector3d spin = d.jacobian.col(column).head<3>();
-    for (int i = 0; i < 3; ++i) add(first_ + 3 + i, v[k], -d.jacobian(3 + i, column));
-    const Eigen::Matrix<double, 7, 1> on_rod = cell.rows_by_spin * spin;
-    for (std::size_t r = 0; r < rows.size(); ++r) add(rows[r], v[k], on_rod[static_cast<Eigen::Index>(r)]);
+    const Vector3d spin = d.jacobian.col(column).head<3>(), velocity = d.jacobian.col(column).tail<3>();
+    for (int i = 0; i < 3; ++i) into.add(stabiliser() + i, v[k], -velocity[i]);
+    add_to_cell(v[k], cell.rows_by_spin * spin);
     wrench_by_v.col(column).head<3>() = cell.moment_by_spin * spin;
   }
-  if (!mount_.moves_freely()) return;
-  // Rows of the carrier: -J^T (M, -f).
-  const Wrench wrench{cell.moment, -at.y.segment<3>(first_)};
+  if (!carrier().moves_freely()) return;
+  // Rows of the carrier, -J^T (M, -f): J turns with q, M changes with the mount and with the half cell.
+  const Wrench wrench{cell.moment, -at.y.segment<3>(force())};
   const Eigen::MatrixXd by_q = d.force(wrench) + d.jacobian.transpose() * wrench_by_q;
   const Eigen::MatrixXd by_v = d.jacobian.transpose() * wrench_by_v;
   const Eigen::MatrixXd by_place = d.jacobian.topRows<3>().transpose() * cell.moment_by;
   const Eigen::MatrixXd by_rate = d.jacobian.topRows<3>().transpose() * cell.moment_by_rate;
   for (std::size_t r = 0; r < v.size(); ++r) {
     const auto row = static_cast<Eigen::Index>(r);
-    for (std::size_t k = 0; k < q.size(); ++k) add(v[r], q[k], -by_q(row, static_cast<Eigen::Index>(k)));
-    for (std::size_t k = 0; k < v.size(); ++k) add(v[r], v[k], -by_v(row, static_cast<Eigen::Index>(k)));
-    for (std::size_t k = 0; k < 7; ++k) {
+    for (std::size_t k = 0; k < q.size(); ++k) into.add(v[r], q[k], -by_q(row, static_cast<Eigen::Index>(k)));
+    for (std::size_t k = 0; k < v.size(); ++k) into.add(v[r], v[k], -by_v(row, static_cast<Eigen::Index>(k)));
+    for (std::size_t k = 0; k < cell_size; ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       // The rates of the vertices are the unknowns v, that of the angle is its y'.
-      add(v[r], x[k], -by_place(row, column) - (k == 6 ? c * by_rate(row, column) : 0.0));
-      if (k < 6) add(v[r], rows[k], -by_rate(row, column));
+      const bool angle = k >= cell_vertices;
+      into.add(v[r], x[k], -by_place(row, column) - (angle ? c * by_rate(row, column) : 0.0));
+      if (!angle) into.add(v[r], rows[k], -by_rate(row, column));
     }
-    for (int i = 0; i < 3; ++i) add(v[r], first_ + i, d.jacobian(3 + i, row));
+    const Vector3d linear = d.jacobian.col(row).tail<3>();
+    for (int i = 0; i < 3; ++i) into.add(v[r], force() + i, linear[i]);
   }
 }
 
 VectorXd MountPart::velocity_error(const VectorView& y, const VectorXd& dv) const {
   Vector3d result = dv.segment<3>(rod_.velocity_of(vertex()));
-  if (mount_.moves_freely()) result -= linear_change(mount_.jacobian(y), mount_.velocities(), dv);
+  if (carrier().moves_freely()) result -= linear_change(carrier().jacobian(y), carrier().velocities(), dv);
   return result;
 }
 
 VectorXd MountPart::acceleration_bias(const VectorView& y, const VectorXd& rate) const {
-  return -linear_change(mount_.differentiate(y).motion, mount_.coordinates(), rate);
+  return -linear_change(carrier().differentiate(y).motion, carrier().coordinates(), rate);
 }
 
 void MountPart::apply_impulse(const VectorView& y, const VectorXd& multipliers, VectorXd& dv) const {
   dv.segment<3>(rod_.velocity_of(vertex())) += multipliers / rod_.mass_of(vertex());
-  if (mount_.moves_freely()) mount_.apply_impulse(y, mount_.jacobian(y), {Vector3d::Zero(), -multipliers}, dv);
+  if (carrier().moves_freely()) carrier().apply_impulse(y, carrier().jacobian(y), {Vector3d::Zero(), -multipliers}, dv);
 }
 
 Wrench MountPart::wrench(const VectorView& y) const {
-  return {Vector3d::Zero(), y.segment<3>(first_)};
+  return {Vector3d::Zero(), y.segment<3>(force())};
 }
 
 double MountPart::gap(const VectorView& y) const {
-  return (y.segment<3>(rod_.position_of(vertex())) - mount_.state(y).X_WF.p).norm();
+  return (y.segment<3>(rod_.position_of(vertex())) - carrier().state(y).X_WF.p).norm();
 }
 
 }  // namespace snare::coupling

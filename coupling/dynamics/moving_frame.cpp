@@ -12,16 +12,16 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 using multibody::Matrix6X;
 using multibody::Pose;
-using multibody::skew;
 using multibody::Wrench;
+using numerics::cross_matrix;
 using numerics::VectorView;
 
 namespace {
 
-/// Axes of the joints that bear a body of a tree, at a point: velocity's index, depth in the chain, s and v in J.
+/// An axis of the joints that bear a body of a tree.
 struct ChainAxis {
-  int velocity;
-  int depth;
+  int velocity;  ///< its index, and that of its column (s, v) in J
+  int depth;     ///< of its joint in the chain: 0 at the body, less towards the root
 };
 
 std::vector<ChainAxis> chain_of(const multibody::Tree& tree, int body) {
@@ -46,7 +46,7 @@ bool MovingFrame::moves_freely() const {
 std::vector<int> MovingFrame::coordinates() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->position() : (arm_ != nullptr ? arm_->coordinates() : 0);
-  const int count = body_ != nullptr ? 7 : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
+  const int count = body_ != nullptr ? BodyPart::coordinates : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
 }
@@ -54,7 +54,7 @@ std::vector<int> MovingFrame::coordinates() const {
 std::vector<int> MovingFrame::velocities() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->velocity() : (arm_ != nullptr ? arm_->velocities() : 0);
-  const int count = body_ != nullptr ? 6 : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
+  const int count = body_ != nullptr ? BodyPart::velocities : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
 }
@@ -85,10 +85,11 @@ MovingFrame::State MovingFrame::state(const VectorView& y) const {
 Matrix6X MovingFrame::jacobian(const VectorView& y) const {
   if (body_ != nullptr) {
     const Matrix3d R = multibody::rotation(y.segment<4>(body_->quaternion()));
-    Matrix6X J = Matrix6X::Zero(6, 6);
+    // (v, w in B) -> (w, v_F) in the world: w = R w_B, v_F = v - R [p_BF] w_B.
+    Matrix6X J = Matrix6X::Zero(6, BodyPart::velocities);
     J.topRightCorner<3, 3>() = R;
     J.bottomLeftCorner<3, 3>().setIdentity();
-    J.bottomRightCorner<3, 3>() = -R * skew(X_CF_.p);
+    J.bottomRightCorner<3, 3>() = -R * cross_matrix(X_CF_.p);
     return J;
   }
   if (arm_ == nullptr) return Matrix6X::Zero(6, 0);
@@ -103,22 +104,24 @@ MovingFrame::Derivatives MovingFrame::differentiate(const VectorView& y) const {
   Derivatives d;
   d.jacobian = jacobian(y);
   if (body_ != nullptr) {
-    // Coordinates: the centre of mass and the quaternion, whose change dq turns the body by 4 R Q^T dq.
+    // Coordinates: the centre of mass and the quaternion, whose change dq turns the body by phi = 4 R Q^T dq. Then
+    // dp_WF = dp + phi x R p_BF, and J = [0 R; 1 -R [p_BF]] turns with R: dR = [phi] R.
     const Vector4d q = y.segment<4>(body_->quaternion());
     const Matrix3d R = multibody::rotation(q);
     const Eigen::Matrix<double, 3, 4> turn = 4.0 * R * multibody::quaternion_rates(q).transpose();
     const Vector3d arm = R * X_CF_.p;
-    d.place = d.motion = Matrix6X::Zero(6, 7);
+    d.place = d.motion = Matrix6X::Zero(6, BodyPart::coordinates);
     d.place.bottomLeftCorner<3, 3>().setIdentity();
     d.place.topRightCorner<3, 4>() = turn;
-    d.place.bottomRightCorner<3, 4>() = -skew(arm) * turn;
-    d.jacobian_by.assign(7, Matrix6X::Zero(6, 6));
+    d.place.bottomRightCorner<3, 4>() = -cross_matrix(arm) * turn;
+    d.jacobian_by.assign(BodyPart::coordinates, Matrix6X::Zero(6, BodyPart::velocities));
     for (int k = 0; k < 4; ++k) {
-      const Matrix3d turned = skew(turn.col(k)) * R;
-      Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(3 + k)];
+      const Matrix3d turned = cross_matrix(turn.col(k)) * R;
+      const int coordinate = body_->quaternion() - body_->position() + k;
+      Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(coordinate)];
       by.topRightCorner<3, 3>() = turned;
-      by.bottomRightCorner<3, 3>() = -turned * skew(X_CF_.p);
-      d.motion.col(3 + k) << turned * y.segment<3>(body_->spin()),
+      by.bottomRightCorner<3, 3>() = -turned * cross_matrix(X_CF_.p);
+      d.motion.col(coordinate) << turned * y.segment<3>(body_->spin()),
           by.bottomRightCorner<3, 3>() * y.segment<3>(body_->spin());
     }
     return d;
@@ -166,15 +169,14 @@ MatrixXd MovingFrame::Derivatives::force(const Wrench& wrench) const {
   return result;
 }
 
-void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench,
-                       Eigen::Ref<Eigen::VectorXd> rows) const {
+void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const {
   if (!moves_freely()) return;
   const int first = body_ != nullptr ? body_->velocity() : arm_->velocities();
   rows.segment(first, jacobian.cols()) -= jacobian.transpose() * wrench.vector();
 }
 
 void MovingFrame::apply_impulse(const VectorView& y, const Matrix6X& jacobian, const Wrench& wrench,
-                          Eigen::VectorXd& dv) const {
+                                Eigen::VectorXd& dv) const {
   if (!moves_freely()) return;
   const Eigen::VectorXd force = jacobian.transpose() * wrench.vector();
   if (body_ != nullptr) {
@@ -184,8 +186,7 @@ void MovingFrame::apply_impulse(const VectorView& y, const Matrix6X& jacobian, c
   }
   const multibody::Tree& tree = arm_->arm().tree;
   multibody::DynamicsWorkspace workspace(tree);
-  const MatrixXd& H =
-      multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
+  const MatrixXd& H = multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
   dv.segment(arm_->velocities(), tree.velocities()) += H.ldlt().solve(force);
 }
 

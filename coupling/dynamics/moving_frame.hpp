@@ -52,7 +52,7 @@ class MovingFrame {
             Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier.
   void apply_impulse(const numerics::VectorView& y, const multibody::Matrix6X& jacobian,
-               const multibody::Wrench& wrench, Eigen::VectorXd& dv) const;
+                     const multibody::Wrench& wrench, Eigen::VectorXd& dv) const;
   [[nodiscard]] const BodyPart* body() const { return body_; }
   [[nodiscard]] const multibody::ElasticArmPart* arm() const { return arm_; }
 

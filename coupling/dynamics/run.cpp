@@ -25,8 +25,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   }
   for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
   for (const MotionContact& c : motion.contacts) {
-    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)],
-                           bodies_[static_cast<std::size_t>(c.body)], options);
+    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)],
+                           options);
   }
   for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
   for (const ContactHandle& p : points()) friction_events_.emplace_back(*p.part);
@@ -75,7 +75,8 @@ void MotionRun::require_apart() {
     for (ContactPart& p : contacts_[k].points()) p.wait_at(n.coordinate, y_);
     // The start may touch, up to a small part of the wire's radius.
     if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
-      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate), "must be >= 0 m at the start"});
+      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate),
+                          "must be >= 0 m at the start"});
   }
   if (!problems.empty()) throw base::InputError(problems);
 }
@@ -110,7 +111,7 @@ void MotionRun::resume(const MotionState& from) {
   if (from.unknowns.size() != y_.size() || from.rates.size() != y_.size() ||
       from.integrals.size() != integrals_.size() || from.sums.peak_force.size() != sums_.peak_force.size()) {
     throw base::InputError({"", 0, "state", fmt::format("{} unknowns", from.unknowns.size()),
-                                fmt::format("must be that of the same motion, of {} unknowns", y_.size())});
+                            fmt::format("must be that of the same motion, of {} unknowns", y_.size())});
   }
   time_ = from.time;
   y_ = from.unknowns;

@@ -1,11 +1,13 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/dynamics/body_part.hpp"
-#include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
+#include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/contact_points.hpp"
 #include "coupling/dynamics/law_part.hpp"
+#include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/result.hpp"
 #include "numerics/ida.hpp"
 
 #include <Eigen/Core>
@@ -57,7 +59,7 @@ class MotionRun {
   [[nodiscard]] bool write_until(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
-  // Events (motion_events.cpp).
+  // Events (events.cpp).
   [[nodiscard]] std::vector<ContactHandle> points();
   [[nodiscard]] std::vector<ContactHandle> constraints();
   [[nodiscard]] Eigen::MatrixXd flexibility(const std::vector<ContactHandle>& constraints, bool with_friction) const;
@@ -65,14 +67,15 @@ class MotionRun {
   void open(const ContactHandle& point);
   void make_rates();
   [[nodiscard]] std::optional<double> first_touch(double from, const numerics::Ida& ida);
-  [[nodiscard]] Eigen::VectorXd allowed_tension(const std::vector<ContactHandle>& constraints, const Eigen::VectorXd& flexibility) const;
+  [[nodiscard]] Eigen::VectorXd allowed_tension(const std::vector<ContactHandle>& constraints,
+                                                const Eigen::VectorXd& flexibility) const;
   [[nodiscard]] std::optional<std::string> close_touching();
   void switch_friction(const ContactHandle& point);
   [[nodiscard]] bool leave_broken_modes(bool at_event);
   [[nodiscard]] bool rest_lost_minima();
   void settle();
 
-  // Balances (motion_balance.cpp).
+  // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
   void add_reactions(const ContactHandle& point, const Eigen::Vector3d& force, const numerics::DaePoint& at,
                      Eigen::Ref<Eigen::VectorXd> rates) const;

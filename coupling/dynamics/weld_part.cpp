@@ -1,6 +1,6 @@
 #include "coupling/dynamics/weld_part.hpp"
 
-#include <Eigen/LU>
+#include <algorithm>
 
 namespace snare::coupling {
 
@@ -8,8 +8,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
-using multibody::Matrix6;
-using multibody::Matrix6X;
 using multibody::Vector6;
 using multibody::Wrench;
 using numerics::DaeKind;
@@ -18,17 +16,10 @@ using numerics::VectorView;
 
 namespace {
 
-// Of a stabilising multiplier: its round-off grows as one over the step, and what it does to others is tested there.
-constexpr double no_tolerance = 1e6;
-
-Wrench wrench_of(const VectorView& y, int first) {
-  return {y.segment<3>(first), y.segment<3>(first + 3)};
-}
-
-/// Half the sum of the cross products of the axes: the turn of B from A where it is small.
-Vector3d misalignment(const Matrix3d& R_WA, const Matrix3d& R_WB) {
+/// Half the sum of the cross products of the axes: the turn of H from A where it is small.
+Vector3d misalignment(const Matrix3d& R_WA, const Matrix3d& R_WH) {
   Vector3d e = Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) e += 0.5 * R_WA.col(k).cross(R_WB.col(k));
+  for (int k = 0; k < 3; ++k) e += 0.5 * R_WA.col(k).cross(R_WH.col(k));
   return e;
 }
 
@@ -40,171 +31,137 @@ VectorXd gathered(const VectorXd& values, const std::vector<int>& indices) {
 
 }  // namespace
 
-VectorXd project(const std::vector<const Constraint*>& links, const VectorView& y, const VectorXd& extra,
-                    VectorXd& dv) {
-  Eigen::Index n = 0;
-  for (const Constraint* link : links) n += link->constraints();
-  if (n == 0) return {};
-  Eigen::MatrixXd flexibility(n, n);
-  VectorXd missing(n);
-  const auto velocity_error = [&](const VectorXd& change, auto&& out) {
-    Eigen::Index first = 0;
-    for (const Constraint* link : links) {
-      out.segment(first, link->constraints()) = link->velocity_error(y, change);
-      first += link->constraints();
-    }
-  };
-  velocity_error(dv, missing);
-  if (extra.size() > 0) missing += extra;
-  Eigen::Index column = 0;
-  for (const Constraint* link : links) {
-    for (int k = 0; k < link->constraints(); ++k) {
-      VectorXd unit = VectorXd::Zero(y.size());
-      link->apply_impulse(y, VectorXd::Unit(link->constraints(), k), unit);
-      velocity_error(unit, flexibility.col(column++));
-    }
-  }
-  const VectorXd multipliers = -flexibility.partialPivLu().solve(missing);
-  Eigen::Index first = 0;
-  for (const Constraint* link : links) {
-    link->apply_impulse(y, multipliers.segment(first, link->constraints()), dv);
-    first += link->constraints();
-  }
-  return multipliers;
-}
-
 WeldPart::WeldPart(std::string name, MovingFrame carrier, const BodyPart& held, const multibody::Pose& X_BH,
                    const MotionOptions& options)
-    : name_(std::move(name)),
-      carrier_(std::move(carrier)),
-      held_(held, X_BH),
-      body_(held),
-      options_(options) {}
+    : Constraint(std::move(name), std::move(carrier), options), held_(held, X_BH), body_(held) {}
 
 void WeldPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
-  first_ = layout.add({name_ + " moment", axes, 3, DaeKind::algebraic, options_.force_tolerance, 0});
-  layout.add({name_ + " force", axes, 3, DaeKind::algebraic, options_.force_tolerance, 0});
-  layout.add({name_ + " stabiliser", {}, 6, DaeKind::algebraic, no_tolerance, 0});
+  const double tolerance = options().force_tolerance;
+  set_multipliers(layout.add({name() + " moment", axes, 3, DaeKind::algebraic, tolerance, 0}));
+  layout.add({name() + " force", axes, 3, DaeKind::algebraic, tolerance, 0});
+  stabiliser_ = layout.add({name() + " stabiliser", {}, 6, DaeKind::algebraic, numerics::no_tolerance, 0});
 }
 
 void WeldPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  for (const MovingFrame* frame : {&carrier_, static_cast<const MovingFrame*>(&held_)}) {
+  for (const MovingFrame* frame : {&carrier(), static_cast<const MovingFrame*>(&held_)}) {
     const std::vector<int> q = frame->coordinates(), v = frame->velocities();
-    for (int i = 0; i < 6; ++i) {
+    // The constraints' rows: turn and place by coordinates, motion by coordinates and velocities.
+    for (int i = 0; i < constraints(); ++i) {
       for (const int column : q) {
-        entries.emplace_back(first_ + i, column);
-        entries.emplace_back(first_ + 6 + i, column);
+        entries.emplace_back(moment() + i, column);
+        entries.emplace_back(turn_stabiliser() + i, column);
       }
-      for (const int column : v) entries.emplace_back(first_ + 6 + i, column);
+      for (const int column : v) entries.emplace_back(turn_stabiliser() + i, column);
     }
+    // The balances of forces.
     if (!frame->moves_freely()) continue;
     for (const int row : v) {
       for (const int column : q) entries.emplace_back(row, column);
-      for (int i = 0; i < 6; ++i) entries.emplace_back(row, first_ + i);
+      for (int i = 0; i < constraints(); ++i) entries.emplace_back(row, moment() + i);
     }
   }
-  for (int i = 0; i < 6; ++i) {
-    entries.emplace_back(first_ + i, first_ + i);
-    entries.emplace_back(first_ + 6 + i, first_ + 6 + i);
+  for (int i = 0; i < constraints(); ++i) {
+    entries.emplace_back(moment() + i, moment() + i);
+    entries.emplace_back(turn_stabiliser() + i, turn_stabiliser() + i);
   }
-  for (int i = 0; i < 3; ++i) {
-    entries.emplace_back(body_.position() + i, first_ + 9 + i);
-    for (int j = 0; j < 4; ++j) {
-      entries.emplace_back(body_.quaternion() + j, first_ + 6 + i);
-      entries.emplace_back(body_.quaternion() + j, body_.quaternion() + i);
-      entries.emplace_back(body_.quaternion() + j, body_.quaternion() + 3);
-    }
+  // The kinematics of the held body.
+  for (int i = 0; i < 3; ++i) entries.emplace_back(body_.position() + i, shift_stabiliser() + i);
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 3; ++i) entries.emplace_back(body_.quaternion() + j, turn_stabiliser() + i);
+    for (int i = 0; i < 4; ++i) entries.emplace_back(body_.quaternion() + j, body_.quaternion() + i);
   }
 }
 
 void WeldPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
-  const MovingFrame::State a = carrier_.state(at.y), b = held_.state(at.y);
-  const Wrench on_b = wrench_of(at.y, first_);
-  held_.push(held_.jacobian(at.y), on_b, rows);
-  if (carrier_.moves_freely()) carrier_.push(carrier_.jacobian(at.y), Wrench{} - on_b, rows);
+  const MovingFrame::State a = carrier().state(at.y), h = held_.state(at.y);
+  // Balances of forces, inertia less forces: -J_H^T (M, F) for the held body, +J_A^T (M, F) for the carrier.
+  const Wrench on_held = wrench(at.y);
+  held_.push(held_.jacobian(at.y), on_held, rows);
+  if (carrier().moves_freely()) carrier().push(carrier().jacobian(at.y), Wrench{} - on_held, rows);
+  // Kinematics of the held body: q' - Q(q) (w + mu_w) = 0, p' - v - mu_p = 0.
   rows.segment<4>(body_.quaternion()) -=
-      multibody::quaternion_rates(at.y.segment<4>(body_.quaternion())) * at.y.segment<3>(first_ + 6);
-  rows.segment<3>(body_.position()) -= at.y.segment<3>(first_ + 9);
-  rows.segment<3>(first_) += misalignment(a.X_WF.R, b.X_WF.R);
-  rows.segment<3>(first_ + 3) += b.X_WF.p - a.X_WF.p;
-  rows.segment<3>(first_ + 6) += b.angular - a.angular;
-  rows.segment<3>(first_ + 9) += b.linear - a.linear;
+      multibody::quaternion_rates(at.y.segment<4>(body_.quaternion())) * at.y.segment<3>(turn_stabiliser());
+  rows.segment<3>(body_.position()) -= at.y.segment<3>(shift_stabiliser());
+  // The constraints, H less A, in the axes of the world.
+  rows.segment<3>(moment()) += misalignment(a.X_WF.R, h.X_WF.R);
+  rows.segment<3>(force()) += h.X_WF.p - a.X_WF.p;
+  rows.segment<3>(turn_stabiliser()) += h.angular - a.angular;
+  rows.segment<3>(shift_stabiliser()) += h.linear - a.linear;
 }
 
 void WeldPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
-  const auto add = [&](int row, int column, double value) {
-    const int slot = pattern_->slot(row, column);
-    if (slot >= 0) values[static_cast<std::size_t>(slot)] += value;
-  };
-  const MovingFrame::State a = carrier_.state(at.y), b = held_.state(at.y);
-  const Matrix3d ba = b.X_WF.R * a.X_WF.R.transpose();
-  const Matrix3d trace = ba.trace() * Matrix3d::Identity();
-  const Wrench on_b = wrench_of(at.y, first_);
-  for (const bool held : {false, true}) {
-    const MovingFrame& frame = held ? held_ : carrier_;
-    const MovingFrame::Derivatives d = frame.differentiate(at.y);
-    const std::vector<int> q = frame.coordinates(), v = frame.velocities();
+  const numerics::PatternValues into(pattern(), values);
+  const MovingFrame::State a = carrier().state(at.y), h = held_.state(at.y);
+  const Matrix3d R_AH_in_world = h.X_WF.R * a.X_WF.R.transpose();  // sum_k h_k a_k^T
+  const Matrix3d trace = R_AH_in_world.trace() * Matrix3d::Identity();
+  const Wrench on_held = wrench(at.y);
+  for (const MovingFrame* frame : {&carrier(), static_cast<const MovingFrame*>(&held_)}) {
+    const bool held = frame == &held_;
+    const MovingFrame::Derivatives d = frame->differentiate(at.y);
+    const std::vector<int> q = frame->coordinates(), v = frame->velocities();
     const double sign = held ? 1.0 : -1.0;
-    // d(a x b)/2: (a.b) 1 - b a^T on the turn of B, less (a.b) 1 - a b^T on that of A.
-    const Matrix3d by_turn = 0.5 * sign * (trace - (held ? ba : Matrix3d(ba.transpose())));
+    // d(a x h)/2 = ((a.h) 1 - h a^T) phi/2 by the turn phi of H, -((a.h) 1 - a h^T) phi/2 by that of A.
+    const Matrix3d by_turn = 0.5 * sign * (trace - (held ? R_AH_in_world : Matrix3d(R_AH_in_world.transpose())));
     for (std::size_t k = 0; k < q.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
+      const Vector3d turn = d.place.col(column).head<3>(), shift = d.place.col(column).tail<3>();
       for (int i = 0; i < 3; ++i) {
-        add(first_ + i, q[k], by_turn.row(i).dot(d.place.col(column).head<3>()));
-        add(first_ + 3 + i, q[k], sign * d.place(3 + i, column));
+        into.add(moment() + i, q[k], by_turn.row(i).dot(turn));
+        into.add(force() + i, q[k], sign * shift[i]);
       }
-      for (int i = 0; i < 6; ++i) add(first_ + 6 + i, q[k], sign * d.motion(i, column));
+      for (int i = 0; i < constraints(); ++i) into.add(turn_stabiliser() + i, q[k], sign * d.motion(i, column));
     }
     for (std::size_t k = 0; k < v.size(); ++k) {
-      for (int i = 0; i < 6; ++i)
-        add(first_ + 6 + i, v[k], sign * d.jacobian(i, static_cast<Eigen::Index>(k)));
+      for (int i = 0; i < constraints(); ++i)
+        into.add(turn_stabiliser() + i, v[k], sign * d.jacobian(i, static_cast<Eigen::Index>(k)));
     }
-    if (!frame.moves_freely()) continue;
-    const Eigen::MatrixXd force = d.force(on_b);
+    // The balances -+J^T (M, F): by the coordinates, which turn J, and by the multipliers.
+    if (!frame->moves_freely()) continue;
+    const Eigen::MatrixXd force_by_q = d.force(on_held);
     for (std::size_t r = 0; r < v.size(); ++r) {
       const auto row = static_cast<Eigen::Index>(r);
       for (std::size_t k = 0; k < q.size(); ++k)
-        add(v[r], q[k], -sign * force(row, static_cast<Eigen::Index>(k)));
-      for (int i = 0; i < 6; ++i) add(v[r], first_ + i, -sign * d.jacobian(i, row));
+        into.add(v[r], q[k], -sign * force_by_q(row, static_cast<Eigen::Index>(k)));
+      for (int i = 0; i < constraints(); ++i) into.add(v[r], moment() + i, -sign * d.jacobian(i, row));
     }
   }
+  // -Q(q) mu_w of the quaternion's rates, linear in q and in mu_w; -mu_p of the position's.
   const Vector4d quaternion = at.y.segment<4>(body_.quaternion());
-  const Eigen::Matrix<double, 4, 3> rates = multibody::quaternion_rates(quaternion);
-  const Vector3d mu = at.y.segment<3>(first_ + 6);
+  const Eigen::Matrix<double, 4, 3> by_mu = multibody::quaternion_rates(quaternion);
+  const Vector3d mu = at.y.segment<3>(turn_stabiliser());
   for (int j = 0; j < 4; ++j) {
-    // Q(q) mu is linear in q.
     const Vector4d by_q = multibody::quaternion_rates(Vector4d::Unit(j)) * mu;
-    for (int i = 0; i < 4; ++i) add(body_.quaternion() + i, body_.quaternion() + j, -by_q[i]);
-    for (int i = 0; i < 3; ++i) add(body_.quaternion() + j, first_ + 6 + i, -rates(j, i));
+    for (int i = 0; i < 4; ++i) into.add(body_.quaternion() + i, body_.quaternion() + j, -by_q[i]);
+    for (int i = 0; i < 3; ++i) into.add(body_.quaternion() + j, turn_stabiliser() + i, -by_mu(j, i));
   }
-  for (int i = 0; i < 3; ++i) add(body_.position() + i, first_ + 9 + i, -1.0);
+  for (int i = 0; i < 3; ++i) into.add(body_.position() + i, shift_stabiliser() + i, -1.0);
 }
 
 VectorXd WeldPart::velocity_error(const VectorView& y, const VectorXd& dv) const {
   Vector6 result = held_.jacobian(y) * gathered(dv, held_.velocities());
-  if (carrier_.moves_freely()) result -= carrier_.jacobian(y) * gathered(dv, carrier_.velocities());
+  if (carrier().moves_freely()) result -= carrier().jacobian(y) * gathered(dv, carrier().velocities());
   return result;
 }
 
 VectorXd WeldPart::acceleration_bias(const VectorView& y, const VectorXd& rate) const {
   return held_.differentiate(y).motion * gathered(rate, held_.coordinates()) -
-         carrier_.differentiate(y).motion * gathered(rate, carrier_.coordinates());
+         carrier().differentiate(y).motion * gathered(rate, carrier().coordinates());
 }
 
 void WeldPart::apply_impulse(const VectorView& y, const VectorXd& multipliers, VectorXd& dv) const {
-  const Wrench on_b{multipliers.head<3>(), multipliers.tail<3>()};
-  held_.apply_impulse(y, held_.jacobian(y), on_b, dv);
-  if (carrier_.moves_freely()) carrier_.apply_impulse(y, carrier_.jacobian(y), Wrench{} - on_b, dv);
+  const Wrench on_held{multipliers.head<3>(), multipliers.tail<3>()};
+  held_.apply_impulse(y, held_.jacobian(y), on_held, dv);
+  if (carrier().moves_freely()) carrier().apply_impulse(y, carrier().jacobian(y), Wrench{} - on_held, dv);
 }
 
 Wrench WeldPart::wrench(const VectorView& y) const {
-  return wrench_of(y, first_);
+  return {y.segment<3>(moment()), y.segment<3>(force())};
 }
 
 double WeldPart::gap(const VectorView& y) const {
-  const MovingFrame::State a = carrier_.state(y), b = held_.state(y);
-  return std::max((b.X_WF.p - a.X_WF.p).norm(), misalignment(a.X_WF.R, b.X_WF.R).norm());
+  const MovingFrame::State a = carrier().state(y), h = held_.state(y);
+  return std::max((h.X_WF.p - a.X_WF.p).norm(), misalignment(a.X_WF.R, h.X_WF.R).norm());
 }
 
 }  // namespace snare::coupling

@@ -14,8 +14,8 @@ enum class PushDirection {
 
 /// The rigid pusher: a cylinder whose axis is normal to the plane of the wire.
 struct PusherSpecification {
-  double radius = 0.0;    ///< [m], >= 0; 0 is a knife edge, a line that meets the wire's centreline
-  double friction = 0.0;  ///< Coulomb coefficient [-], >= 0
+  double radius = 0.0;      ///< [m], >= 0; 0 is a knife edge, a line that meets the wire's centreline
+  double friction = 0.0;    ///< Coulomb coefficient [-], >= 0
   double compliance = 0.0;  ///< by which the machine gives way along the push [m/N], >= 0
   PushDirection direction = PushDirection::outward;
   double tilt = 0.0;          ///< the axis leans in the plane of chord and axis, about the push direction [rad]
@@ -24,7 +24,7 @@ struct PusherSpecification {
 
 /// Shape of the loose wire before the push.
 struct BulgeSpecification {
-  int mode = 1;        ///< buckling mode between the mounts, 1 to 4
+  int mode = 1;  ///< buckling mode between the mounts, 1 to 4
   /// Plane of the bulge before the push, turned about the chord from the plane of the push [rad], |plane| <= pi/2. An
   /// unloaded wire swings about its chord without force, so the push starts where it has swung into its plane.
   double plane = 0.0;
@@ -43,8 +43,8 @@ struct PushProblem {
   PusherSpecification pusher;
   BulgeSpecification bulge;
   std::array<double, 3> gravity{0.0, 0.0, 0.0};  ///< [m/s^2] in chord axes
-  double contact_position = 0.0;  ///< of the pusher's axis along the chord, from the left mount [m]
-  std::vector<double> travel;     ///< of the pusher from first touch, in the order it is visited [m]
+  double contact_position = 0.0;                 ///< of the pusher's axis along the chord, from the left mount [m]
+  std::vector<double> travel;                    ///< of the pusher from first touch, in the order it is visited [m]
 };
 
 }  // namespace snare::coupling

@@ -14,12 +14,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-Vector2d turned(const Vector2d& v, double angle) { return Eigen::Rotation2Dd(angle) * v; }
+Vector2d turned(const Vector2d& v, double angle) {
+  return Eigen::Rotation2Dd(angle) * v;
+}
 
 /// The point moved by a multiple of a change.
 numerics::PathPoint moved(const numerics::PathPoint& at, const numerics::PathPoint& change, double amount) {
-  return {at.band + amount * change.band, at.border + amount * change.border,
-          at.parameter + amount * change.parameter};
+  return {at.band + amount * change.band, at.border + amount * change.border, at.parameter + amount * change.parameter};
 }
 
 /// Positions that the mounts of this rod hold, in the order of the band unknowns; zero elsewhere.
@@ -62,8 +63,8 @@ PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMe
     varied.held = (held_positions(*plus.rod) - held_positions(*minus.rod)) / twice;
     for (std::size_t k = 0; k < plus.contacts.size(); ++k) {
       varied.centre.emplace_back((plus.contacts[k].centre - minus.contacts[k].centre) / twice);
-      varied.memory.coordinate.push_back(
-          (plus.contacts[k].last_coordinate - minus.contacts[k].last_coordinate) / twice);
+      varied.memory.coordinate.push_back((plus.contacts[k].last_coordinate - minus.contacts[k].last_coordinate) /
+                                         twice);
     }
     varied.memory.angle.assign(plus.contacts.size(), 0.0);
     varied_.push_back(std::move(varied));
@@ -76,8 +77,8 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
   side.system->restore(system.contact_states());
   ContactStates& states = *side.system;
   const Memory& memory = varied.memory;
-  for (std::size_t k = 0; k < states.guided.size(); ++k) {
-    SlidingContact& contact = states.guided[k];
+  for (std::size_t k = 0; k < states.sliding.size(); ++k) {
+    SlidingContact& contact = states.sliding[k];
     const SlidingContact& constants = side.contacts[k];
     contact.radius = constants.radius;
     contact.friction = constants.friction;
@@ -86,7 +87,7 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
     contact.last_coordinate += side.amount * memory.coordinate[k];
     contact.last_tangent = turned(contact.last_tangent, side.amount * memory.angle[k]);
   }
-  for (WrappedContact& contact : states.riding) {
+  for (WrappedContact& contact : states.wrapped) {
     contact.friction = side.contacts.front().friction;
     const auto known = memory.radial.find(contact.node);
     if (known != memory.radial.end()) contact.last_radial = turned(contact.last_radial, side.amount * known->second);
@@ -99,9 +100,10 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
   // The material that the sliders were remembered of.
   wire::Controls& controls = states.sections.controls;
   controls[2] += 0.5 * (side.amount > 0.0 ? 1.0 : -1.0) * (varied.sides[1].controls[2] - varied.sides[0].controls[2]);
-  if (states.guided.size() > 1) controls[2] = system.sections.controls[2];  // supports: a contact's coordinate, below
-  for (std::size_t k = 0; k < states.guided.size(); ++k) {
-    controls[static_cast<std::size_t>(states.guided[k].control)] += side.amount * memory.coordinate[k];
+  // Supports: a contact's coordinate, below
+  if (states.sliding.size() > 1) controls[2] = system.sections.controls[2];
+  for (std::size_t k = 0; k < states.sliding.size(); ++k) {
+    controls[static_cast<std::size_t>(states.sliding[k].control)] += side.amount * memory.coordinate[k];
   }
   controls[0] += side.amount * memory.mount;
   if (states.mount) {
@@ -134,7 +136,7 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
 }
 
 void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
-  if (system.guided.front().status != ContactStatus::touching) {
+  if (system.sliding.front().status != ContactStatus::touching) {
     force_by_.assign(varied_.size(), 0.0);  // on supports the wire is straight and the centres known
     return;
   }
@@ -146,14 +148,14 @@ void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at, n
     const double travel = std::exchange(varied.travel, 0.0);
     const numerics::PathPoint change = solve(system, at, workspace, varied);
     varied.travel = travel;
-    varied.centre.front() += change.border[3] * system.guided.front().approach();
+    varied.centre.front() += change.border[system.pusher_rows().gap] * system.sliding.front().approach();
     remember(system, at, change, varied);
   }
 }
 
 void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
   force_by_.assign(varied_.size(), 0.0);
-  if (system.guided.front().status == ContactStatus::open) return;
+  if (system.sliding.front().status == ContactStatus::open) return;
   system.assemble(at, workspace.system, workspace.by_parameter);
   workspace.factored = workspace.solver.factorize(workspace.system);
   if (!workspace.factored) return;
@@ -161,9 +163,9 @@ void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at,
   for (std::size_t k = 0; k < varied_.size(); ++k) {
     Varied& varied = varied_[k];
     const numerics::PathPoint change = solve(system, at, workspace, varied);
-    const Vector2d by_motion = (varied.sides[1].contacts.front().motion - varied.sides[0].contacts.front().motion) /
-                               (2.0 * varied.step);
-    force_by_[k] = system.pusher_force(change).dot(system.guided.front().motion) + force.dot(by_motion);
+    const Vector2d by_motion =
+        (varied.sides[1].contacts.front().motion - varied.sides[0].contacts.front().motion) / (2.0 * varied.step);
+    force_by_[k] = system.pusher_force(change).dot(system.sliding.front().motion) + force.dot(by_motion);
     remember(system, at, change, varied);
   }
 }
@@ -177,14 +179,14 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
   const numerics::PathPoint high = moved(at, change, varied.step);
   const wire::PlanarState low_state = minus.state(low);
   const wire::PlanarState high_state = plus.state(high);
-  for (std::size_t k = 0; k < system.guided.size(); ++k) {
-    varied.memory.coordinate[k] = change.border[system.guided_row(static_cast<int>(k)) + 2];
-    varied.memory.angle[k] = angle_between(minus.tangent_at(minus.guided[k], low_state).t,
-                                           plus.tangent_at(plus.guided[k], high_state).t) /
-                             (2.0 * varied.step);
+  for (std::size_t k = 0; k < system.sliding.size(); ++k) {
+    varied.memory.coordinate[k] = change.border[system.sliding_rows(k).coordinate];
+    varied.memory.angle[k] =
+        angle_between(minus.tangent_at(minus.sliding[k], low_state).t, plus.tangent_at(plus.sliding[k], high_state).t) /
+        (2.0 * varied.step);
   }
   varied.memory.radial.clear();
-  for (const WrappedContact& contact : system.riding) {
+  for (const WrappedContact& contact : system.wrapped) {
     const Vector2d from = wire::vertex(low_state, contact.node) - minus.pusher_centre(low);
     const Vector2d to = wire::vertex(high_state, contact.node) - plus.pusher_centre(high);
     varied.memory.radial[contact.node] = angle_between(from, to) / (2.0 * varied.step);

@@ -1,37 +1,31 @@
 #pragma once
 
-#include "coupling/statics/push_system.hpp"
+#include "coupling/statics/push_options.hpp"
 #include "coupling/statics/push_problem.hpp"
+#include "coupling/statics/push_system.hpp"
 #include "numerics/path.hpp"
 
 #include <array>
-#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
 
 namespace snare::coupling {
 
-/// One number that a push test depends on, for the derivatives of its curve.
-struct PushVariation {
-  std::function<void(PushProblem& test, double amount)> apply;  ///< changes the number by this amount
-  double step = 0.0;    ///< amount for the central differences of the residual, > 0; admissible both ways
-  double travel = 0.0;  ///< d travel / d amount at every point: -1 for a zero of the travel that is displaced
-  /// d compliance / d amount of both mounts along the chord [m/N], where they are rigid: each then moves by its reaction.
-  double mount_compliance = 0.0;
-};
-
-/// Derivatives of a path of equilibria by numbers p of its test, by implicit differentiation.   theory.md (C.13)
+/// Derivatives of a path of equilibria by numbers p of its test, by implicit differentiation.
+/// theory.md (C.13)
 ///
 ///   F(z, h, t; p) = 0:  J dz/dp = -(dF/dp + dF/dh dh/dp + dF/dt dt/dp)
 ///
-/// z: the unknowns, J the factorised Jacobian of Newton's method, h: what friction remembers (material coordinates,
-/// directions) and what the sliders of the sections do, t: the travel. The right-hand side is the central difference of the residual at fixed z, in which the
-/// numbers enter by elementary functions; dh/dp is carried along from accepted point to accepted point.
+/// z: the unknowns, J the factorised Jacobian of Newton's method, h: what friction remembers (material
+/// coordinates, directions) and what the sliders of the sections do, t: the travel. The right-hand side is
+/// the central difference of the residual at fixed z, in which the numbers enter by elementary functions;
+/// dh/dp is carried along from accepted point to accepted point.
 class PushSensitivity {
  public:
   /// mesh: that of the system whose path is differentiated.
-  PushSensitivity(const PushProblem& test, const wire::MaterialMesh& mesh, const std::vector<PushVariation>& variations);
+  PushSensitivity(const PushProblem& test, const wire::MaterialMesh& mesh,
+                  const std::vector<PushVariation>& variations);
 
   /// At the first touch, the system in the state in which that was found (see prepare_push).
   void begin(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace);
@@ -50,14 +44,14 @@ class PushSensitivity {
     std::unique_ptr<wire::PlanarRod> rod;
     std::unique_ptr<PushSystem> system;
     std::vector<SlidingContact> contacts;  // constants
-    wire::Controls controls{};            // to begin with
+    wire::Controls controls{};             // to begin with
     double slip_limit = 0.0;
   };
   /// Derivatives of what friction remembers.
   struct Memory {
-    std::vector<double> coordinate;  // of the guided contacts [m]
+    std::vector<double> coordinate;  // of the sliding contacts [m]
     std::vector<double> angle;       // of their last tangents [rad]
-    std::map<int, double> radial;    // angle of the last radial of a riding vertex [rad]
+    std::map<int, double> radial;    // angle of the last radial of a wrapped vertex [rad]
     double mount = 0.0;              // S_0 [m]
     std::vector<double> bending;     // slipped curvatures of the sliders [1/m]
     std::vector<double> axial;       // slipped strains [-]
@@ -67,8 +61,8 @@ class PushSensitivity {
     double step = 0.0;
     double travel = 0.0;
     double mount_compliance = 0.0;
-    Eigen::VectorXd held;  // d(positions that the mounts hold)/dp
-    std::vector<Eigen::Vector2d> centre;  // d(centre of the guided contacts)/dp
+    Eigen::VectorXd held;                 // d(positions that the mounts hold)/dp
+    std::vector<Eigen::Vector2d> centre;  // d(centre of the sliding contacts)/dp
     Memory memory;
   };
 

@@ -1,29 +1,16 @@
 #include "coupling/statics/push_setup.hpp"
 
 #include "wire/loose_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace snare::coupling {
 
 namespace {
 
 using Eigen::Vector2d;
-
-wire::PlanarEnd make_end(const PushProblem& test, double x) {
-  wire::PlanarEnd end;
-  switch (test.mount.kind) {
-    case wire::MountKind::clamped: end.kind = wire::PlanarEnd::Kind::clamp; break;
-    case wire::MountKind::pinned: end.kind = wire::PlanarEnd::Kind::pin; break;
-    case wire::MountKind::supports: end.kind = wire::PlanarEnd::Kind::free; break;
-  }
-  end.position = {x, 0.0};
-  if (test.mount.rotational_stiffness) end.rotational_stiffness = *test.mount.rotational_stiffness;
-  if (test.mount.translational_stiffness) end.translational_stiffness = *test.mount.translational_stiffness;
-  return end;
-}
 
 double effective_radius(double radius, double diameter) {
   return radius > 0.0 ? radius + 0.5 * diameter : 0.0;  // a knife edge meets the centreline
@@ -51,41 +38,16 @@ void rest_on_supports(PushSetup& setup, const wire::Controls& controls) {
     setup.start.band.segment<2>(2 * i) = Vector2d(mesh.coordinate(i, controls) - controls[0], 0.0);
   }
   setup.start.border.setZero(system.border_unknowns());
-  for (int k = 0; k < 3; ++k) {
-    const auto control = static_cast<std::size_t>(system.guided[static_cast<std::size_t>(k)].control);
-    setup.start.border[system.guided_row(k) + 2] = controls[control];
+  for (std::size_t k = 0; k < system.sliding.size(); ++k) {
+    const auto control = static_cast<std::size_t>(system.sliding[k].control);
+    setup.start.border[system.sliding_rows(k).coordinate] = controls[control];
   }
 }
 
 }  // namespace
 
 wire::PlanarRodProperties rod_properties(const PushProblem& test) {
-  wire::PlanarRodProperties properties;
-  properties.bending_stiffness = test.wire.bending_stiffness();
-  properties.axial_stiffness = test.wire.axial_stiffness();
-  // The bulge goes to +y, where a wire running along +x turns right at its top.
-  properties.natural_curvature = -test.wire.natural_curvature;
-  properties.weight = test.wire.mass_per_length() * Vector2d(test.gravity[0], test.gravity[1]);
-  properties.left = make_end(test, 0.0);
-  properties.right = make_end(test, test.mount.span);
-  properties.bending_profile = test.wire.bending_profile;
-  if (test.wire.yielding) {
-    const double hardening = test.wire.yielding->hardening_ratio;
-    // The moduli that give the stiffnesses: E of a solid wire, less for a strand.
-    const double area = 0.25 * std::numbers::pi * test.wire.diameter * test.wire.diameter;
-    const double second_moment = area * test.wire.diameter * test.wire.diameter / 16.0;
-    const double stress = test.wire.yielding->yield_stress;
-    properties.bending_sliders = wire::yielding_section(properties.bending_stiffness, test.wire.diameter,
-                                                        stress * second_moment / properties.bending_stiffness, hardening);
-    properties.axial_sliders = {{(1.0 - hardening) * properties.axial_stiffness, stress * area / properties.axial_stiffness}};
-    properties.bending_stiffness *= hardening;
-    properties.axial_stiffness *= hardening;
-  }
-  if (test.wire.strand_friction) {
-    properties.bending_sliders.push_back(
-        {test.wire.strand_friction->extra_stiffness, test.wire.strand_friction->slip_curvature});
-  }
-  return properties;
+  return wire::planar_rod_properties(test.wire, test.mount, {test.gravity[0], test.gravity[1]});
 }
 
 wire::Controls initial_controls(const PushProblem& test) {
@@ -98,7 +60,7 @@ wire::Controls initial_controls(const PushProblem& test) {
 }
 
 std::vector<SlidingContact> make_contacts(const PushProblem& test, const wire::MaterialMesh& mesh,
-                                         const wire::Controls& controls) {
+                                          const wire::Controls& controls) {
   SlidingContact pusher = make_pusher(test, mesh.contact_vertex());
   if (test.mount.kind != wire::MountKind::supports) return {pusher};
   pusher.centre -= pusher.side * pusher.radius * Vector2d::UnitY();
@@ -130,8 +92,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     constexpr double strain = 5e-3;  // about where steel wire yields: the highest tension of interest
     const double layer = std::sqrt(ei / (strain * ea));
     const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
-    const double right =
-        wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
+    const double right = wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
     grading = std::max(left, right);
   }
   mesh = wire::make_mesh(edges, fraction, grading);
@@ -148,7 +109,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     }
     const wire::Controls controls = initial_controls(test);
     setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
-    setup.system->guided = make_contacts(test, mesh, controls);
+    setup.system->sliding = make_contacts(test, mesh, controls);
     setup.system->compliance = test.pusher.compliance;
     rest_on_supports(setup, controls);
     return setup;
@@ -158,15 +119,15 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
   wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
   setup.iterations = loose.report.iterations;
   if (test.bulge.mode > 1 && loose.report.usable()) {
-    // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method does not
-    // wander off to another shape.
+    // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method
+    // does not wander off to another shape.
     for (int i = 0; i < mesh.edges(); ++i) {
       const double x0 = wire::vertex(loose.state, i).x();
       const double x1 = wire::vertex(loose.state, i + 1).x();
       if (x0 > test.contact_position || x1 < test.contact_position) continue;
       const double part = (test.contact_position - x0) / (x1 - x0);
-      controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
-                    part * mesh.coordinate(i + 1, loose.state.controls);
+      controls[1] =
+          (1.0 - part) * mesh.coordinate(i, loose.state.controls) + part * mesh.coordinate(i + 1, loose.state.controls);
     }
     loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
     setup.iterations += loose.report.iterations;
@@ -176,8 +137,8 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
 
   setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
   PushSystem& system = *setup.system;
-  system.guided = make_contacts(test, mesh, controls);
-  SlidingContact& pusher = system.guided.front();
+  system.sliding = make_contacts(test, mesh, controls);
+  SlidingContact& pusher = system.sliding.front();
   pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
   pusher.status = ContactStatus::touching;
   system.compliance = test.pusher.compliance;
@@ -185,7 +146,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
 
   setup.start.band = loose.state.q;
   setup.start.border.setZero(system.border_unknowns());
-  setup.start.border[2] = controls[1];
+  setup.start.border[system.pusher_rows().coordinate] = controls[1];
   numerics::PathWorkspace workspace;
   const numerics::SolveReport touch = numerics::correct(system, setup.start, workspace, 50);
   setup.iterations += touch.iterations;
@@ -194,8 +155,9 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     setup.report.message = "the pusher does not touch the wire in its initial shape";
     return setup;
   }
-  pusher.centre += setup.start.border[3] * pusher.approach();
-  setup.start.border[3] = 0.0;
+  double& gap = setup.start.border[system.pusher_rows().gap];
+  pusher.centre += gap * pusher.approach();
+  gap = 0.0;
   setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
   return setup;
 }

@@ -4,6 +4,8 @@
 #include "numerics/path.hpp"
 #include "wire/planar_rod.hpp"
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,29 +13,52 @@ namespace snare::coupling {
 
 /// The left mount lets the wire through when the force on it passes Coulomb's limit.   theory.md (C.8)
 struct SlippingMount {
-  double limit = 0.0;             ///< force at which the wire slips [N], > 0
+  double limit = 0.0;  ///< force at which the wire slips [N], > 0
   bool slips = false;
-  double slip_sign = 0.0;         ///< of the driving force dE/dS_0 while it slips
-  double last_coordinate = 0.0;   ///< S_0 at the last accepted state [m]
+  double slip_sign = 0.0;        ///< of the driving force dE/dS_0 while it slips
+  double last_coordinate = 0.0;  ///< S_0 at the last accepted state [m]
 };
 
 /// Contacts and mount of a push, with what they remember of the last accepted state.
 struct ContactStates {
-  std::vector<SlidingContact> guided;  ///< the pusher first, then the supports
-  std::vector<WrappedContact> riding;
+  std::vector<SlidingContact> sliding;  ///< the pusher first, then the supports
+  std::vector<WrappedContact> wrapped;
   std::optional<SlippingMount> mount;
   wire::SectionMemory sections;  ///< of a wire with sliders
 };
 
+/// Places of a sliding contact in the border: of its unknowns (columns), and of its equations (rows).
+struct SlidingRows {
+  static constexpr int count = 4;
+  explicit SlidingRows(int first)
+      : force(first), coordinate(first + 2), gap(first + 3), position(first), slip(first + 2), closure(first + 3) {}
+
+  int force;       ///< f_x, f_y: force on the wire [N]
+  int coordinate;  ///< S: material coordinate of the vertex [m]
+  int gap;         ///< g [m]
+
+  int position;  ///< x - p - (R + g) n = 0, two rows                     theory.md (C.2)
+  int slip;      ///< sticks, slides, or keeps its material point         theory.md (C.4), (C.5)
+  int closure;   ///< g = 0. A contact apart has f = 0 in `slip` and here.  theory.md (C.3)
+};
+
+/// The same of a vertex that lies on the pusher.                            theory.md (C.7)
+struct WrappedRows {
+  static constexpr int count = 2;
+  explicit WrappedRows(int first) : force(first), distance(first), slip(first + 1) {}
+
+  int force;  ///< f_x, f_y [N]
+
+  int distance;  ///< |x - p| - R = 0
+  int slip;      ///< sticks or slides along the pusher
+};
+
 /// Equilibrium of a planar rod with the pins that guide it, as a path problem in the pusher's travel.
 ///
-/// Band unknowns: q of the rod. Border unknowns: of every guided contact (f_x, f_y, S, g): the force on the wire, the
-/// material coordinate, the gap; of every riding contact (f_x, f_y); S_0 of a slipping mount.
+/// Band unknowns: q of the rod. Border unknowns: of every sliding contact (f_x, f_y, S, g), see SlidingRows;
+/// of every wrapped one (f_x, f_y); S_0 of a slipping mount.
 class PushSystem final : public numerics::PathProblem, public ContactStates {
  public:
-  static constexpr int guided_unknowns = 4;
-  static constexpr int riding_unknowns = 2;
-
   PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls);
 
   double compliance = 0.0;  ///< of the pusher along its motion [m/N], >= 0
@@ -42,9 +67,13 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
 
   [[nodiscard]] int border_unknowns() const;
-  [[nodiscard]] int guided_row(int contact) const { return guided_unknowns * contact; }
-  [[nodiscard]] int riding_row(int contact) const;
-  [[nodiscard]] int mount_row() const { return riding_row(static_cast<int>(riding.size())); }
+  [[nodiscard]] SlidingRows sliding_rows(std::size_t contact) const {
+    return SlidingRows(SlidingRows::count * static_cast<int>(contact));
+  }
+  [[nodiscard]] SlidingRows pusher_rows() const { return sliding_rows(0); }
+  [[nodiscard]] WrappedRows wrapped_rows(std::size_t contact) const;
+  /// Of S_0, and of the mount's equation.
+  [[nodiscard]] int mount_row() const { return wrapped_rows(wrapped.size()).force; }
 
   [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
   /// Place of the pusher's axis: centre + (parameter - compliance F) motion, F its force along the motion.
@@ -66,10 +95,10 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] const wire::RodAssembly& rod_assembly() const { return assembly_; }
 
  private:
-  void assemble_guided(int index, const wire::PlanarState& state, const numerics::PathPoint& at,
-                       numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
-  void assemble_riding(int index, const wire::PlanarState& state, const numerics::PathPoint& at,
-                       numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
+  void assemble_sliding(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
+                        numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
+  void assemble_wrapped(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
+                        numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void add_compliance(int row, const Eigen::Vector2d& by_centre, numerics::BorderedSystem& system) const;
   void assemble_mount(const wire::PlanarState& state, numerics::BorderedSystem& system) const;
 

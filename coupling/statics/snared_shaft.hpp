@@ -9,14 +9,16 @@
 
 namespace snare::coupling {
 
-/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its axis z.
+/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its
+/// axis z.
 ///
-/// Every wire is the wire of `wire`, pushed outward at mid-span by `seat` from first touch before the friction
-/// acts: the
-/// state in which closing rings leave it. The chords lie in one plane; wires do not touch each other.
+/// Every wire is the wire of `wire`, pushed outward at mid-span by `seat` from first touch before the
+/// friction acts: the state in which closing rings leave it. The chords lie in one plane; wires do not touch
+/// each other.
 struct SnareSpecification {
-  PushProblem wire;  ///< wire, mounts and pusher (the shaft: radius, friction); elastic, between clamps or pins
-  int wires = 3;  ///< >= 1
+  /// Wire, mounts and pusher (the shaft: radius, friction); elastic, between clamps or pins
+  PushProblem wire;
+  int wires = 3;      ///< >= 1
   double seat = 0.0;  ///< [m], > 0
   int elements = 64;  ///< edges a wire, a multiple of 4, >= 16
 };
@@ -24,11 +26,12 @@ struct SnareSpecification {
 /// One point of the shaft's way. SI units.
 struct ShaftPoint {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< of the shaft from the centre [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();         ///< with which the shaft must be pushed there [N]
-  double energy = 0.0;                                     ///< elastic energy of the wires [J]
-  double dissipated = 0.0;                                 ///< by friction so far [J], never decreasing
-  int slipping = 0;                                        ///< wires that slide over the shaft
-  int touching = 0;                                        ///< wires that press on it
+  /// With which the shaft must be pushed there [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double energy = 0.0;      ///< elastic energy of the wires [J]
+  double dissipated = 0.0;  ///< by friction so far [J], never decreasing
+  int slipping = 0;         ///< wires that slide over the shaft
+  int touching = 0;         ///< wires that press on it
 };
 
 struct ShaftPath {
@@ -36,7 +39,8 @@ struct ShaftPath {
   numerics::SolveReport report;
 };
 
-/// Quasi-static force of the snared shaft along a way of its axis, which stays parallel to z.      theory.md (R.10)
+/// Quasi-static force of the snared shaft along a way of its axis, which stays parallel to z.
+/// theory.md (R.10)
 /// way: displacements visited in order from the centre [m].
 [[nodiscard]] ShaftPath move_shaft(const SnareSpecification& snare, const std::vector<Eigen::Vector3d>& way);
 

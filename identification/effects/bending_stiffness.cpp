@@ -2,13 +2,29 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// EI, from that of a rope of free hairs to more than twice the solid section.
+Parameter bending_stiffness() {
+  return {.key = "wire.bending_stiffness_Nm2",
+          .unit = "N m^2",
+          .parametrisation = Parametrisation::ratio,
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.bending_stiffness(); },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.bending_stiffness_override = v; },
+          .lower = [](const PushProblem& p) { return 1e-4 * p.wire.bending_stiffness(); },
+          .upper = [](const PushProblem& p) { return 5.0 * p.wire.bending_stiffness(); },
+          .step = 1e-3};
+}
+
+}  // namespace
+
 /// The bending stiffness is not that of the declared section: a strand, another diameter or modulus.
 Effect bending_stiffness_effect() {
   Effect e;
   e.name = "bending_stiffness";
   e.channel = Channel::wire;
   e.meaning = "the wire's bending stiffness is not as declared";
-  e.numbers = {{"wire.bending_stiffness_Nm2", 1e-7, 10.0}};
+  e.numbers = {{bending_stiffness(), 1e-7, 10.0}};
   e.independent_check = "bend a straight piece of the wire between two supports and read its stiffness";
   return e;
 }

@@ -1,33 +1,85 @@
-#include "identification/effects/effect.hpp"
+#include "identification/effects/catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace snare::identification {
 
-std::string to_string(Channel channel) {
-  switch (channel) {
-    case Channel::wire: return "wire";
-    case Channel::mount: return "mount";
-    case Channel::contact: return "contact";
-    case Channel::pusher: return "pusher";
-    case Channel::sensor: return "sensor";
-    case Channel::geometry: return "geometry";
+// The list: one line an effect, NAME of NAME.cpp, in the order in which equals are listed.
+#define SNARE_EFFECTS(EFFECT)         \
+  EFFECT(bending_stiffness)           \
+  EFFECT(axial_stiffness)             \
+  EFFECT(wire_length)                 \
+  EFFECT(span)                        \
+  EFFECT(contact_position)            \
+  EFFECT(push_misalignment)           \
+  EFFECT(mount_slip)                  \
+  EFFECT(mount_axial_compliance)      \
+  EFFECT(mount_rotational_compliance) \
+  EFFECT(contact_friction)            \
+  EFFECT(pusher_compliance)           \
+  EFFECT(displacement_offset)         \
+  EFFECT(force_offset)                \
+  EFFECT(force_gain)                  \
+  EFFECT(natural_curvature)           \
+  EFFECT(strand_hysteresis)           \
+  EFFECT(plasticity)                  \
+  EFFECT(gravity)                     \
+  EFFECT(rate_viscosity)
+
+#define SNARE_DECLARE(name) Effect name##_effect();
+SNARE_EFFECTS(SNARE_DECLARE)
+#undef SNARE_DECLARE
+
+namespace {
+
+/// Messages list the numbers in this order, by what they belong to; others follow.
+constexpr std::string_view order_in_messages[] = {"wire.bending_stiffness_Nm2",
+                                                  "wire.axial_stiffness_N",
+                                                  "wire.length_mm",
+                                                  "wire.diameter_mm",
+                                                  "wire.youngs_modulus_GPa",
+                                                  "wire.density_kg_m3",
+                                                  "wire.natural_curvature_1_m",
+                                                  "mount.span_mm",
+                                                  "mount.support_radius_mm",
+                                                  "mount_axial_compliance.compliance_m_N",
+                                                  "mount_rotational_compliance.compliance_rad_Nm",
+                                                  "mount_slip.tension_N",
+                                                  "pusher.radius_mm",
+                                                  "contact_position.shift_mm",
+                                                  "pusher.misalignment_deg",
+                                                  "pusher.friction",
+                                                  "pusher.compliance_m_N",
+                                                  "strand_hysteresis.extra_stiffness_Nm2",
+                                                  "strand_hysteresis.slip_curvature_1_m",
+                                                  "plasticity.yield_stress_MPa",
+                                                  "plasticity.hardening_ratio",
+                                                  "gravity.along_bulge_m_s2",
+                                                  "reading.displacement_offset_mm",
+                                                  "reading.force_offset_N",
+                                                  "reading.force_gain",
+                                                  "rate_viscosity.relaxation_time_s"};
+
+std::vector<const Parameter*> numbers_of_all() {
+  std::vector<const Parameter*> all;
+  for (const Effect& e : catalogue()) {
+    for (const EffectNumber& n : e.numbers) all.push_back(&n.parameter);
   }
-  return "unknown";
+  for (const Parameter& p : construction_numbers()) all.push_back(&p);
+  const auto place = [](const Parameter* p) {
+    return std::find(std::begin(order_in_messages), std::end(order_in_messages), p->key);
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const Parameter* a, const Parameter* b) { return place(a) < place(b); });
+  return all;
 }
 
+}  // namespace
+
 const std::vector<Effect>& catalogue() {
-  static const std::vector<Effect> all{
-      bending_stiffness_effect(),     axial_stiffness_effect(),
-      wire_length_effect(),           span_effect(),
-      contact_position_effect(),      push_misalignment_effect(),
-      mount_slip_effect(),            mount_axial_compliance_effect(),
-      mount_rotational_compliance_effect(), contact_friction_effect(),
-      pusher_compliance_effect(),     displacement_offset_effect(),
-      force_offset_effect(),          force_gain_effect(),
-      natural_curvature_effect(),     strand_hysteresis_effect(),
-      plasticity_effect(),            gravity_effect(),
-      rate_viscosity_effect()};
+#define SNARE_CALL(name) name##_effect(),
+  static const std::vector<Effect> all{SNARE_EFFECTS(SNARE_CALL)};
+#undef SNARE_CALL
   return all;
 }
 
@@ -37,11 +89,9 @@ const Effect* find_effect(std::string_view name) {
   return at == all.end() ? nullptr : &*at;
 }
 
-std::string needs_mounts(const std::vector<Series>& series) {
-  for (const Series& s : series) {
-    if (s.test.mount.kind != wire::MountKind::supports) return "";
-  }
-  return "a wire that rests on supports is not held by mounts";
+const ParameterSet& parameters() {
+  static const ParameterSet all(numbers_of_all());
+  return all;
 }
 
 }  // namespace snare::identification

@@ -4,8 +4,20 @@ namespace snare::identification {
 
 namespace {
 
+/// Coulomb's coefficient between wire and pusher.
+Parameter coefficient() {
+  return {.key = "pusher.friction",
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.friction; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.friction = v; },
+          .lower = [](const PushProblem&) { return 0.0; },
+          .upper = [](const PushProblem&) { return 2.0; },
+          .step = 1e-5};
+}
+
 // Sticking has no derivative at zero friction: the contact sticks over a travel that grows with it.
-std::vector<std::vector<double>> trial_coefficients(const TrialContext&) { return {{0.03}, {0.1}, {0.25}}; }
+std::vector<std::vector<double>> trial_coefficients(const TrialContext&) {
+  return {{0.03}, {0.1}, {0.25}};
+}
 
 }  // namespace
 
@@ -15,7 +27,7 @@ Effect contact_friction_effect() {
   e.name = "contact_friction";
   e.channel = Channel::contact;
   e.meaning = "the wire rubs on the pusher";
-  e.numbers = {{"pusher.friction", 0.0, 1.0}};
+  e.numbers = {{coefficient(), 0.0, 1.0}};
   e.one_sided = true;
   e.trials = trial_coefficients;
   e.independent_check = "load and unload with a lubricated and with a dry pusher";

@@ -1,14 +1,34 @@
 #include "identification/effects/effect.hpp"
 
+#include "base/units.hpp"
+
 namespace snare::identification {
 
-/// The pusher touches elsewhere along the chord than declared, by the same distance in all series: a zero of the slide.
+namespace {
+
+/// Place of the touch along the chord, shown as the change of it.
+Parameter shift() {
+  return {.key = "contact_position.shift_mm",
+          .unit = "mm",
+          .unit_size = base::mm,
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.contact_position; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.contact_position = v; },
+          .lower = [](const PushProblem& p) { return 0.6 * p.contact_position; },
+          .upper = [](const PushProblem& p) { return p.contact_position + 0.4 * (p.mount.span - p.contact_position); },
+          .step = 1e-7,
+          .reports_change = true};
+}
+
+}  // namespace
+
+/// The pusher touches elsewhere along the chord than declared, by the same distance in all series: a zero of
+/// the slide.
 Effect contact_position_effect() {
   Effect e;
   e.name = "contact_position";
   e.channel = Channel::geometry;
   e.meaning = "the pusher stands elsewhere along the chord than declared";
-  e.numbers = {{"contact_position.shift_mm", -5.0, 5.0}};
+  e.numbers = {{shift(), -5.0, 5.0}};
   e.independent_check = "mark where the pusher touches the wire and measure its distance from the mount";
   return e;
 }

@@ -1,6 +1,25 @@
 #include "identification/effects/effect.hpp"
 
+#include "base/units.hpp"
+
 namespace snare::identification {
+
+namespace {
+
+/// Recorded displacement at the first touch: the travel falls as it grows.
+Parameter offset() {
+  return {.key = "reading.displacement_offset_mm",
+          .unit = "mm",
+          .unit_size = base::mm,
+          .get = [](const PushProblem&, const ReadingModel& r) { return r.displacement_offset; },
+          .set = [](PushProblem&, ReadingModel& r, double v) { r.displacement_offset = v; },
+          .lower = [](const PushProblem&) { return -5e-3; },
+          .upper = [](const PushProblem&) { return 5e-3; },
+          .step = 1e-7,
+          .travel = -1.0};
+}
+
+}  // namespace
 
 /// The recorded travel does not begin at the first touch.
 Effect displacement_offset_effect() {
@@ -8,7 +27,7 @@ Effect displacement_offset_effect() {
   e.name = "displacement_offset";
   e.channel = Channel::sensor;
   e.meaning = "the zero of the travel is not at the first touch";
-  e.numbers = {{"reading.displacement_offset_mm", -3.0, 3.0}};
+  e.numbers = {{offset(), -3.0, 3.0}};
   e.independent_check = "find the first touch electrically or by eye, and begin the record well before it";
   return e;
 }

@@ -2,13 +2,29 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// Recorded over true force.
+Parameter gain() {
+  return {.key = "reading.force_gain",
+          .parametrisation = Parametrisation::ratio,
+          .get = [](const PushProblem&, const ReadingModel& r) { return r.force_gain; },
+          .set = [](PushProblem&, ReadingModel& r, double v) { r.force_gain = v; },
+          .lower = [](const PushProblem&) { return 0.2; },
+          .upper = [](const PushProblem&) { return 5.0; },
+          .step = 1e-3,
+          .derivative = Derivative::force_gain};
+}
+
+}  // namespace
+
 /// The recorded force is a multiple of the true one.
 Effect force_gain_effect() {
   Effect e;
   e.name = "force_gain";
   e.channel = Channel::sensor;
   e.meaning = "the load cell's calibration factor is wrong";
-  e.numbers = {{"reading.force_gain", 0.5, 2.0}};
+  e.numbers = {{gain(), 0.5, 2.0}};
   e.independent_check = "hang a known weight on the load cell";
   return e;
 }

@@ -2,13 +2,29 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// Of each mount along the chord.
+Parameter axial_compliance() {
+  return {.key = "mount_axial_compliance.compliance_m_N",
+          .unit = "m/N",
+          .get = [](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.translational_stiffness); },
+          .set = [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); },
+          .lower = [](const PushProblem&) { return 0.0; },
+          .upper = [](const PushProblem&) { return 1e-3; },
+          .step = 1e-12,
+          .mount_gives = true};
+}
+
+}  // namespace
+
 /// Both mounts give along the chord like springs.
 Effect mount_axial_compliance_effect() {
   Effect e;
   e.name = "mount_axial_compliance";
   e.channel = Channel::mount;
   e.meaning = "the mounts give way along the wire";
-  e.numbers = {{"mount_axial_compliance.compliance_m_N", 0.0, 1e-4}};
+  e.numbers = {{axial_compliance(), 0.0, 1e-4}};
   e.one_sided = true;
   e.unobservable = needs_mounts;
   e.independent_check = "put a dial gauge between the mounts and read their approach under tension";

@@ -4,6 +4,17 @@ namespace snare::identification {
 
 namespace {
 
+/// Of each clamp.
+Parameter rotational_compliance() {
+  return {.key = "mount_rotational_compliance.compliance_rad_Nm",
+          .unit = "rad/(N m)",
+          .get = [](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
+          .set = [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); },
+          .lower = [](const PushProblem&) { return 0.0; },
+          .upper = [](const PushProblem&) { return 10.0; },
+          .step = 1e-6};
+}
+
 std::string needs_clamps(const std::vector<Series>& series) {
   for (const Series& s : series) {
     if (s.test.wire.yielding || s.test.wire.strand_friction) {
@@ -24,7 +35,7 @@ Effect mount_rotational_compliance_effect() {
   e.name = "mount_rotational_compliance";
   e.channel = Channel::mount;
   e.meaning = "the clamps turn with the wire";
-  e.numbers = {{"mount_rotational_compliance.compliance_rad_Nm", 0.0, 10.0}};
+  e.numbers = {{rotational_compliance(), 0.0, 10.0}};
   e.one_sided = true;
   e.unobservable = needs_clamps;
   e.independent_check = "glue a small mirror or pointer on a clamp and read its rotation";

@@ -1,13 +1,28 @@
 #include "identification/effects/effect.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace snare::identification {
 
 namespace {
 
-// The tension at which slip begins decides everything: from just above what the buckled wire pushes, which the mount
-// must have held, to the highest tension of the test.
+/// Tension at which the mount lets the wire through.
+Parameter tension() {
+  return {
+      .key = "mount_slip.tension_N",
+      .unit = "N",
+      .parametrisation = Parametrisation::magnitude,
+      .get = [](const PushProblem& p,
+                const ReadingModel&) { return p.mount.slip_tension.value_or(std::numeric_limits<double>::infinity()); },
+      .set = [](PushProblem& p, ReadingModel&, double v) { p.mount.slip_tension = v; },
+      .lower = [](const PushProblem& p) { return 1e-9 * p.wire.axial_stiffness(); },
+      .upper = [](const PushProblem& p) { return p.wire.axial_stiffness(); },
+      .step = 1e-4};
+}
+
+// The tension at which slip begins decides everything: from just above what the buckled wire pushes, which
+// the mount must have held, to the highest tension of the test.
 std::vector<std::vector<double>> trial_tensions(const TrialContext& context) {
   std::vector<std::vector<double>> result;
   for (const double share : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
@@ -25,7 +40,7 @@ Effect mount_slip_effect() {
   e.name = "mount_slip";
   e.channel = Channel::mount;
   e.meaning = "the wire slips through a mount beyond a certain tension";
-  e.numbers = {{"mount_slip.tension_N", 1e-3, 1e5}};
+  e.numbers = {{tension(), 1e-3, 1e5}};
   e.one_sided = true;
   e.trials = trial_tensions;
   e.unobservable = needs_mounts;

@@ -4,6 +4,17 @@ namespace snare::identification {
 
 namespace {
 
+/// Curvature of the free wire, positive with the bulge.
+Parameter natural_curvature() {
+  return {.key = "wire.natural_curvature_1_m",
+          .unit = "1/m",
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.natural_curvature; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.natural_curvature = v; },
+          .lower = [](const PushProblem&) { return -100.0; },
+          .upper = [](const PushProblem&) { return 100.0; },
+          .step = 1e-3};
+}
+
 std::string rigid_clamps(const std::vector<Series>& series) {
   for (const Series& s : series) {
     const bool rigid = s.test.mount.kind == wire::MountKind::clamped && !s.test.mount.rotational_stiffness;
@@ -21,7 +32,7 @@ Effect natural_curvature_effect() {
   e.name = "natural_curvature";
   e.channel = Channel::wire;
   e.meaning = "the free wire is curved";
-  e.numbers = {{"wire.natural_curvature_1_m", -50.0, 50.0}};
+  e.numbers = {{natural_curvature(), -50.0, 50.0}};
   e.unobservable = rigid_clamps;
   e.independent_check = "lay the free wire on a table and measure its curvature";
   return e;

@@ -2,11 +2,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace snare::identification {
 
 namespace {
+
+/// At which the outer fibres begin to yield.
+Parameter yield_stress() {
+  return {.key = "plasticity.yield_stress_MPa",
+          .unit = "MPa",
+          .unit_size = 1e6,
+          .parametrisation = Parametrisation::magnitude,
+          .get =
+              [](const PushProblem& p, const ReadingModel&) {
+                return p.wire.yielding ? p.wire.yielding->yield_stress : std::numeric_limits<double>::infinity();
+              },
+          .set =
+              [](PushProblem& p, ReadingModel&, double v) {
+                if (!p.wire.yielding) p.wire.yielding = wire::Yielding{};
+                p.wire.yielding->yield_stress = v;
+              },
+          .lower = [](const PushProblem&) { return 1e6; },
+          .upper = [](const PushProblem& p) { return 0.5 * p.wire.youngs_modulus; },
+          .step = 1e-3};
+}
+
+/// Tangent modulus over E once the metal yields.
+Parameter hardening_ratio() {
+  return {.key = "plasticity.hardening_ratio",
+          .get =
+              [](const PushProblem& p, const ReadingModel&) {
+                return p.wire.yielding ? p.wire.yielding->hardening_ratio : wire::Yielding::usual_hardening;
+              },
+          .set =
+              [](PushProblem& p, ReadingModel&, double v) {
+                if (p.wire.yielding) p.wire.yielding->hardening_ratio = v;
+              },
+          .lower = [](const PushProblem&) { return 0.002; },
+          .upper = [](const PushProblem&) { return 0.9; },
+          .step = 1e-5};
+}
 
 std::vector<std::vector<double>> trial_stresses(const TrialContext& context) {
   const wire::WireSpecification& wire = context.model->series().front().test.wire;
@@ -28,7 +65,7 @@ Effect plasticity_effect() {
   e.name = "plasticity";
   e.channel = Channel::wire;
   e.meaning = "the metal of the wire yields";
-  e.numbers = {{"plasticity.yield_stress_MPa", 1.0, 4000.0}, {"plasticity.hardening_ratio", 0.0, 0.5, true}};
+  e.numbers = {{yield_stress(), 1.0, 4000.0}, {hardening_ratio(), 0.0, 0.5, true}};
   e.one_sided = true;
   e.trials = trial_stresses;
   e.independent_check = "look for a lasting kink or elongation of the wire after the test";

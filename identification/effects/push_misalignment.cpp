@@ -1,6 +1,24 @@
 #include "identification/effects/effect.hpp"
 
+#include "base/units.hpp"
+
 namespace snare::identification {
+
+namespace {
+
+/// Angle of the pusher's motion from the normal of the chord.
+Parameter misalignment() {
+  return {.key = "pusher.misalignment_deg",
+          .unit = "deg",
+          .unit_size = base::degree,
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.misalignment; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.misalignment = v; },
+          .lower = [](const PushProblem&) { return -45.0 * base::degree; },
+          .upper = [](const PushProblem&) { return 45.0 * base::degree; },
+          .step = 1e-6};
+}
+
+}  // namespace
 
 /// The push is not square to the chord: the direction is turned in the plane of the wire.
 Effect push_misalignment_effect() {
@@ -8,7 +26,7 @@ Effect push_misalignment_effect() {
   e.name = "push_misalignment";
   e.channel = Channel::geometry;
   e.meaning = "the pusher does not move square to the chord";
-  e.numbers = {{"pusher.misalignment_deg", -10.0, 10.0}};
+  e.numbers = {{misalignment(), -10.0, 10.0}};
   e.independent_check = "measure the angle of the pusher's guide against the line through the mounts";
   return e;
 }

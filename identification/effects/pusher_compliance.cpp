@@ -2,13 +2,28 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// Of the machine along its motion.
+Parameter pusher_compliance() {
+  return {.key = "pusher.compliance_m_N",
+          .unit = "m/N",
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.compliance; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.compliance = v; },
+          .lower = [](const PushProblem&) { return 0.0; },
+          .upper = [](const PushProblem&) { return 1e-3; },
+          .step = 1e-10};
+}
+
+}  // namespace
+
 /// The machine behind the pusher gives way like a spring: the pusher travels less than recorded.
 Effect pusher_compliance_effect() {
   Effect e;
   e.name = "pusher_compliance";
   e.channel = Channel::pusher;
   e.meaning = "the machine behind the pusher gives way under load";
-  e.numbers = {{"pusher.compliance_m_N", 0.0, 1e-4}};
+  e.numbers = {{pusher_compliance(), 0.0, 1e-4}};
   e.one_sided = true;
   e.independent_check = "push against a stiff block and read the apparent travel";
   return e;

@@ -4,6 +4,18 @@ namespace snare::identification {
 
 namespace {
 
+/// tau of N = EA (e + tau de/dt), in bending alike.
+Parameter relaxation_time() {
+  return {.key = "rate_viscosity.relaxation_time_s",
+          .unit = "s",
+          .get = [](const PushProblem&, const ReadingModel& r) { return r.relaxation_time; },
+          .set = [](PushProblem&, ReadingModel& r, double v) { r.relaxation_time = v; },
+          .lower = [](const PushProblem&) { return 0.0; },
+          .upper = [](const PushProblem&) { return 1e6; },
+          .step = 1e-6,
+          .derivative = Derivative::rate};
+}
+
 std::string needs_times(const std::vector<Series>& series) {
   for (const Series& s : series) {
     if (s.readings && !s.readings->time.empty()) return "";
@@ -19,7 +31,7 @@ Effect rate_viscosity_effect() {
   e.name = "rate_viscosity";
   e.channel = Channel::wire;
   e.meaning = "the wire resists the rate at which it is deformed";
-  e.numbers = {{"rate_viscosity.relaxation_time_s", 0.0, 1e3}};
+  e.numbers = {{relaxation_time(), 0.0, 1e3}};
   e.one_sided = true;
   e.unobservable = needs_times;
   e.independent_check = "push at a tenth and at ten times the speed";

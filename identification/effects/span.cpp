@@ -1,6 +1,24 @@
 #include "identification/effects/effect.hpp"
 
+#include "base/units.hpp"
+
 namespace snare::identification {
+
+namespace {
+
+/// Distance of the mounts.
+Parameter span() {
+  return {.key = "mount.span_mm",
+          .unit = "mm",
+          .unit_size = base::mm,
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.mount.span; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.mount.span = v; },
+          .lower = [](const PushProblem& p) { return 0.8 * p.mount.span; },
+          .upper = [](const PushProblem& p) { return p.wire.length / 0.99; },
+          .step = 1e-7};
+}
+
+}  // namespace
 
 /// The mounts (or the supports) stand at another distance than declared.
 Effect span_effect() {
@@ -8,7 +26,7 @@ Effect span_effect() {
   e.name = "span";
   e.channel = Channel::geometry;
   e.meaning = "the distance of the mounts is not as declared";
-  e.numbers = {{"mount.span_mm", 0.0, 1e6}};
+  e.numbers = {{span(), 0.0, 1e6}};
   e.independent_check = "measure the distance of the mounts with a calliper under no load";
   return e;
 }

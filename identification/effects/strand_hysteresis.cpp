@@ -1,12 +1,51 @@
 #include "identification/effects/effect.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace snare::identification {
 
 namespace {
 
-// With a given slip curvature the force is linear in the extra stiffness, to first order: one amplitude, a grid of thresholds.
+/// EI that the strands add while they stick.
+Parameter extra_stiffness() {
+  return {
+      .key = "strand_hysteresis.extra_stiffness_Nm2",
+      .unit = "N m^2",
+      .get = [](const PushProblem& p,
+                const ReadingModel&) { return p.wire.strand_friction ? p.wire.strand_friction->extra_stiffness : 0.0; },
+      .set =
+          [](PushProblem& p, ReadingModel&, double v) {
+            if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
+            p.wire.strand_friction->extra_stiffness = v;
+          },
+      .lower = [](const PushProblem& p) { return 1e-4 * p.wire.bending_stiffness(); },
+      .upper = [](const PushProblem& p) { return 1e3 * p.wire.bending_stiffness(); },
+      .step = 1e-6};
+}
+
+/// Change of curvature at which they slide.
+Parameter slip_curvature() {
+  return {.key = "strand_hysteresis.slip_curvature_1_m",
+          .unit = "1/m",
+          .parametrisation = Parametrisation::magnitude,
+          .get =
+              [](const PushProblem& p, const ReadingModel&) {
+                return p.wire.strand_friction ? p.wire.strand_friction->slip_curvature
+                                              : std::numeric_limits<double>::infinity();
+              },
+          .set =
+              [](PushProblem& p, ReadingModel&, double v) {
+                if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
+                p.wire.strand_friction->slip_curvature = v;
+              },
+          .lower = [](const PushProblem&) { return 1e-4; },
+          .upper = [](const PushProblem&) { return 1e3; },
+          .step = 1e-3};
+}
+
+// With a given slip curvature the force is linear in the extra stiffness, to first order: one amplitude, a
+// grid of thresholds.
 std::vector<std::vector<double>> trial_slips(const TrialContext& context) {
   std::vector<std::vector<double>> result;
   for (const double share : {0.01, 0.03, 0.1, 0.3, 0.7}) {
@@ -30,7 +69,7 @@ Effect strand_hysteresis_effect() {
   e.name = "strand_hysteresis";
   e.channel = Channel::wire;
   e.meaning = "the strands of the wire stick together and slip when it bends";
-  e.numbers = {{"strand_hysteresis.extra_stiffness_Nm2", 0.0, 10.0}, {"strand_hysteresis.slip_curvature_1_m", 1e-3, 500.0}};
+  e.numbers = {{extra_stiffness(), 0.0, 10.0}, {slip_curvature(), 1e-3, 500.0}};
   e.one_sided = true;
   e.trials = trial_slips;
   e.unobservable = needs_strand;

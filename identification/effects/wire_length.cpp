@@ -1,6 +1,24 @@
 #include "identification/effects/effect.hpp"
 
+#include "base/units.hpp"
+
 namespace snare::identification {
+
+namespace {
+
+/// Unstressed length between the mounts.
+Parameter length() {
+  return {.key = "wire.length_mm",
+          .unit = "mm",
+          .unit_size = base::mm,
+          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.length; },
+          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.length = v; },
+          .lower = [](const PushProblem& p) { return 0.99 * p.mount.span; },
+          .upper = [](const PushProblem& p) { return 1.2 * p.mount.span; },
+          .step = 1e-7};
+}
+
+}  // namespace
 
 /// More or less wire between the mounts than declared.
 Effect wire_length_effect() {
@@ -8,7 +26,7 @@ Effect wire_length_effect() {
   e.name = "wire_length";
   e.channel = Channel::geometry;
   e.meaning = "the length of wire between the mounts is not as declared";
-  e.numbers = {{"wire.length_mm", 0.0, 1e6}};
+  e.numbers = {{length(), 0.0, 1e6}};
   e.unobservable = needs_mounts;
   e.independent_check = "mark the wire at the mounts, take it out and measure the marks' distance";
   return e;

@@ -1,10 +1,10 @@
 #include "identification/fitting/experiment.hpp"
 
-#include "base/units.hpp"
-#include "scenario/push_reader.hpp"
-#include "identification/fitting/parameter.hpp"
 #include "base/csv.hpp"
 #include "base/toml_reader.hpp"
+#include "base/units.hpp"
+#include "identification/fitting/parameter_set.hpp"
+#include "scenario/push_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -30,20 +30,13 @@ constexpr std::string_view schema = "snare-experiment/1";
 using base::mm;
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
-constexpr double largest_length = 1e5;                // [mm]
-constexpr double largest_travel = 1000.0;             // [mm]
-constexpr double largest_force = 1e9;                 // [N]
+constexpr double largest_length = 1e5;     // [mm]
+constexpr double largest_travel = 1000.0;  // [mm]
+constexpr double largest_force = 1e9;      // [N]
 constexpr int most_points = 1'000'000;
 constexpr std::size_t most_travels = 10'000'000;  // points of a path
 constexpr int default_law_points = 41;
 constexpr std::size_t fewest_rows = 3;
-
-/// Numbers that a fit may change.
-std::vector<std::string> free_keys() {
-  std::vector<std::string> keys;
-  for (const Parameter& p : all_parameters()) keys.push_back(p.key);
-  return keys;
-}
 
 /// The tables of one series above those of the file.
 scenario::PushTables over(const scenario::PushTables& own, const scenario::PushTables& base) {
@@ -84,8 +77,7 @@ std::vector<double> read_path(const TomlTable& series) {
     series.fail("path_mm", "neighbouring turning points must differ");
   const std::size_t total = (turns.size() - 1) * static_cast<std::size_t>(points - 1) + 1;
   if (total > most_travels) {
-    series.fail("points",
-                fmt::format("gives {} points on the path, must give at most {}", total, most_travels));
+    series.fail("points", fmt::format("gives {} points on the path, must give at most {}", total, most_travels));
     return {};
   }
   std::vector<double> result;
@@ -113,8 +105,7 @@ std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& s
   const std::vector<CsvColumn> columns{
       {"displacement_mm", CsvColumn::Presence::required, Range::from(-largest_travel, largest_travel), mm},
       {"force_N", CsvColumn::Presence::required, Range::from(-largest_force, largest_force)},
-      {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0,
-       CsvColumn::Order::non_decreasing}};
+      {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0, CsvColumn::Order::non_decreasing}};
   const std::string name = series.text("file");
   if (name.empty()) {
     series.fail("file", "must be the name of a CSV file");
@@ -161,8 +152,7 @@ Source read_source(const TomlTable& table) {
       source = value;
     }
   }
-  if (first == nullptr)
-    table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
+  if (first == nullptr) table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
   if (source == Source::file && table.has("points")) table.fail("points", "cannot stand beside file");
   return source;
 }
@@ -171,16 +161,14 @@ std::string read_name(const TomlTable& table) {
   constexpr std::size_t longest = 64;
   const std::string name = table.text("name");
   const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
   };
   const bool safe = !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), fits) &&
                     name.front() != '.' && name.front() != '-';
   if (table.has("name") && !safe)
-    table.fail(
-        "name",
-        fmt::format("must be 1 to {} letters, digits, '_', '-' or '.', the first a letter, digit or '_'",
-                    longest));
+    table.fail("name", fmt::format("must be 1 to {} letters, digits, '_', '-' or '.', the first a letter, digit or '_'",
+                                   longest));
   return name;
 }
 
@@ -228,8 +216,8 @@ SolverSettings read_solver(const TomlTable& table) {
   solver.elements = table.integer_or("elements", solver.elements, 16, 100'000);
   if (solver.elements % 4 != 0) table.fail("elements", "must be a multiple of 4");
   solver.extrapolate = table.boolean_or("extrapolate", solver.extrapolate);
-  constexpr base::Choice<coupling::Instability> branches[]{
-      {"follow_path", coupling::Instability::follow_path}, {"switch_branch", coupling::Instability::switch_branch}};
+  constexpr base::Choice<coupling::Instability> branches[]{{"follow_path", coupling::Instability::follow_path},
+                                                           {"switch_branch", coupling::Instability::switch_branch}};
   if (table.has("instability")) {
     solver.instability = table.choice("instability", branches).value_or(solver.instability);
   }
@@ -237,8 +225,8 @@ SolverSettings read_solver(const TomlTable& table) {
 }
 
 /// Elements of an array of names that must come from a list, each once.
-std::vector<std::string> read_names(const TomlTable& table, std::string_view key,
-                                    const std::vector<std::string>& known, std::string_view what) {
+std::vector<std::string> read_names(const TomlTable& table, std::string_view key, const std::vector<std::string>& known,
+                                    std::string_view what) {
   std::vector<std::string> names = table.texts_or_none(key);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
@@ -254,10 +242,9 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
   return names;
 }
 
-Experiment read_document(TomlDocument& document, const std::filesystem::path& file) {
+Experiment read_document(TomlDocument& document, const std::filesystem::path& file, const ParameterSet& parameters) {
   const TomlTable root = document.root();
-  static constexpr Choice<bool> schemas[] = {{schema, true}};
-  static_cast<void>(root.choice("schema", schemas));
+  base::require_schema(root, schema);
 
   Experiment experiment;
   experiment.file = file;
@@ -277,15 +264,14 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
   if (tables.empty()) static_cast<void>(scenario::read_push_problem(base));  // what else is wrong
 
   const TomlTable fit = root.table("fit");
-  std::vector<std::string> keys = free_keys();
+  std::vector<std::string> keys = parameters.keys();
   for (const std::string& name : names) {
-    for (const Parameter& p : all_parameters()) keys.push_back("series[" + name + "]." + p.key);
+    for (const std::string& key : parameters.keys()) keys.push_back("series[" + name + "]." + key);
   }
   experiment.free = read_names(fit, "free", keys, "a number that can be fitted");
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
-  if (!names.empty() && distinct.size() >= names.size())
-    fit.fail("heldout", "must leave at least one series to fit");
+  if (!names.empty() && distinct.size() >= names.size()) fit.fail("heldout", "must leave at least one series to fit");
   document.finish();
   return experiment;
 }
@@ -302,15 +288,16 @@ double QuadraticLaw::scatter() const {
   return std::sqrt((1.0 - r_squared) / r_squared * std::max(variance, 0.0));
 }
 
-Experiment read_experiment(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+Experiment read_experiment(const std::filesystem::path& file, const ParameterSet& parameters,
+                           const std::vector<Override>& overrides) {
   TomlDocument document(file, overrides);
-  return read_document(document, file);
+  return read_document(document, file, parameters);
 }
 
-Experiment parse_experiment(const std::filesystem::path& file, std::string_view text,
+Experiment parse_experiment(const std::filesystem::path& file, std::string_view text, const ParameterSet& parameters,
                             const std::vector<Override>& overrides) {
   TomlDocument document(file.string(), text, overrides);
-  return read_document(document, file);
+  return read_document(document, file, parameters);
 }
 
 }  // namespace snare::identification

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/statics/push_problem.hpp"
 #include "base/toml_tree.hpp"
+#include "coupling/statics/push_problem.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -26,9 +26,7 @@ struct QuadraticLaw {
   double r_squared = 1.0;  ///< coefficient of determination that was printed with it, in (0, 1]
   double to = 0.0;         ///< the range is 0 to this travel [m], > 0
 
-  [[nodiscard]] double force(double displacement) const noexcept {
-    return (a * displacement + b) * displacement + c;
-  }
+  [[nodiscard]] double force(double displacement) const noexcept { return (a * displacement + b) * displacement + c; }
   /// Standard deviation of the lost readings about the law that R^2 implies for readings evenly spread
   /// over the range: sqrt((1 - R^2) / R^2 * variance of the law over the range) [N].
   [[nodiscard]] double scatter() const;
@@ -45,7 +43,7 @@ struct Series {
 };
 
 struct SolverSettings {
-  int elements = 256;       ///< edges of the finest mesh, a multiple of 4, 16 to 100000
+  int elements = 256;  ///< edges of the finest mesh, a multiple of 4, 16 to 100000
   coupling::Instability instability = coupling::Instability::follow_path;  ///< at a bifurcation
   bool extrapolate = true;  ///< Richardson extrapolation from this mesh, the half and the quarter one
 };
@@ -62,14 +60,16 @@ struct Experiment {
 
 using Override = base::Override;
 
+class ParameterSet;
+
 /// Reads and checks an experiment file and the CSV files it names.
-/// Keys, units, ranges and defaults: docs/experiment_file.md.
+/// Keys, units, ranges and defaults: docs/experiment_file.md. parameters: what [fit] free may name.
 /// Throws base::InputError with every problem found (file, line, key, value, what is allowed).
-[[nodiscard]] Experiment read_experiment(const std::filesystem::path& file,
+[[nodiscard]] Experiment read_experiment(const std::filesystem::path& file, const ParameterSet& parameters,
                                          const std::vector<Override>& overrides = {});
 
 /// The same from text in memory; CSV files are looked for beside `file`, which need not exist.
 [[nodiscard]] Experiment parse_experiment(const std::filesystem::path& file, std::string_view text,
-                                          const std::vector<Override>& overrides = {});
+                                          const ParameterSet& parameters, const std::vector<Override>& overrides = {});
 
 }  // namespace snare::identification

@@ -1,7 +1,7 @@
 #include "identification/fitting/least_squares.hpp"
 
-#include <Eigen/SVD>
 #include <ceres/ceres.h>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,12 @@ namespace snare::identification {
 
 namespace {
 
-/// One whitened residual vector as a function of scaled coordinates. The last evaluation is kept, since Ceres asks for
-/// the derivatives where it has just asked for the values, and the best one, which is where it ends.
+/// One whitened residual vector as a function of scaled coordinates. The last evaluation is kept, since Ceres
+/// asks for the derivatives where it has just asked for the values, and the best one, which is where it ends.
 class Residuals final : public ceres::CostFunction {
  public:
-  Residuals(const Model& model, const Data& data, std::vector<Setting> settings, std::size_t free, Eigen::VectorXd scale)
+  Residuals(const Model& model, const Data& data, std::vector<Setting> settings, std::size_t free,
+            Eigen::VectorXd scale)
       : model_(model), data_(data), settings_(std::move(settings)), free_(free), scale_(std::move(scale)) {
     set_num_residuals(static_cast<int>(data.rows()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(free));
@@ -163,47 +164,41 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian) {
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start, const std::vector<Setting>& fixed,
-        const FitOptions& options) {
-  Fit result;
-  result.settings = start;
-  result.free = start.size();
-  result.settings.insert(result.settings.end(), fixed.begin(), fixed.end());
-  const auto n = static_cast<Eigen::Index>(start.size());
-  result.evaluation = model.evaluate(result.settings, result.parameters());
-  if (!result.evaluation.complete) {
-    result.report.termination = numerics::Termination::step_too_small;
-    result.report.message = result.evaluation.message;
-    return result;
-  }
-  const auto finish = [&] {
-    result.residual = data.residual(result.evaluation);
-    result.jacobian = data.jacobian(result.evaluation);
-    result.chi2 = result.residual.squaredNorm();
-    result.covariance = covariance_of(result.jacobian);
-  };
-  finish();
-  if (n == 0) return result;
+namespace {
 
-  // Scaled so that a unit of every unknown changes the residual by about one standard deviation in all.
-  Eigen::VectorXd scale(n);
-  Eigen::VectorXd unknown(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double norm = result.jacobian.col(k).norm();
+/// What follows from an evaluation with its derivatives.                                 theory.md (I.1)
+///   r = L^-1 (measured - computed),  J = L^-1 dF/dc,  chi2 = r^T r,  covariance (J^T J)^-1
+void take(const Data& data, Evaluation evaluation, Fit& fit) {
+  fit.evaluation = std::move(evaluation);
+  fit.residual = data.residual(fit.evaluation);
+  fit.jacobian = data.jacobian(fit.evaluation);
+  fit.chi2 = fit.residual.squaredNorm();
+  fit.covariance = covariance_of(fit.jacobian);
+}
+
+void fail(const std::string& message, Fit& fit) {
+  fit.report.termination = numerics::Termination::step_too_small;
+  fit.report.message = message;
+}
+
+/// The unknown is the coordinate over a scale by which it changes the residual by about one standard
+/// deviation in all.
+Eigen::VectorXd scale_of(const Eigen::MatrixXd& jacobian) {
+  Eigen::VectorXd scale(jacobian.cols());
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    const double norm = jacobian.col(k).norm();
     scale[k] = norm > 0.0 ? 1.0 / norm : 1.0;
-    unknown[k] = start[static_cast<std::size_t>(k)].coordinate / scale[k];
   }
-  Residuals residuals(model, data, result.settings, result.free, scale);
-  for (const Series& s : model.apply(result.settings).series) {
-    if (!coupling::differentiable(s.test)) residuals.derivatives_are_dear();
-  }
-  ceres::Problem::Options problem_options;
-  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
-  problem.AddResidualBlock(&residuals, nullptr, unknown.data());
+  return scale;
+}
+
+/// Gives the bounds of the numbers to the problem and moves the unknowns inside. Whether one of them had to
+/// move.
+bool bound(const Model& model, const Fit& fit, const Eigen::VectorXd& scale, Eigen::VectorXd& unknown,
+           ceres::Problem& problem) {
   bool moved = false;
-  for (int k = 0; k < static_cast<int>(n); ++k) {
-    const Parameter& p = *result.settings[static_cast<std::size_t>(k)].parameter;
+  for (int k = 0; k < static_cast<int>(unknown.size()); ++k) {
+    const Parameter& p = *fit.settings[static_cast<std::size_t>(k)].parameter;
     const double lower = model.lower(p) / scale[k];
     const double upper = model.upper(p) / scale[k];
     moved = moved || unknown[k] < lower || unknown[k] > upper;
@@ -211,7 +206,10 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
     problem.SetParameterLowerBound(unknown.data(), k, lower);
     problem.SetParameterUpperBound(unknown.data(), k, upper);
   }
-  if (!moved) residuals.keep(unknown, result.evaluation);
+  return moved;
+}
+
+ceres::Solver::Summary solve(const FitOptions& options, ceres::Problem& problem) {
   ceres::Solver::Options solve;
   solve.linear_solver_type = ceres::DENSE_QR;
   solve.logging_type = ceres::SILENT;
@@ -224,79 +222,117 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   solve.callbacks.push_back(&observer);
   ceres::Solver::Summary summary;
   ceres::Solve(solve, &problem, &summary);
+  return summary;
+}
+
+}  // namespace
+
+Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start, const std::vector<Setting>& fixed,
+        const FitOptions& options) {
+  Fit result;
+  result.settings = start;
+  result.free = start.size();
+  result.settings.insert(result.settings.end(), fixed.begin(), fixed.end());
+  Evaluation first = model.evaluate(result.settings, result.parameters());
+  if (!first.complete) {
+    fail(first.message, result);
+    result.evaluation = std::move(first);
+    return result;
+  }
+  take(data, std::move(first), result);
+  if (start.empty()) return result;
+
+  const Eigen::VectorXd scale = scale_of(result.jacobian);
+  Eigen::VectorXd unknown(scale.size());
+  for (Eigen::Index k = 0; k < unknown.size(); ++k) {
+    unknown[k] = start[static_cast<std::size_t>(k)].coordinate / scale[k];
+  }
+  Residuals residuals(model, data, result.settings, result.free, scale);
+  for (const Series& s : model.apply(result.settings).series) {
+    if (!coupling::differentiable(s.test)) residuals.derivatives_are_dear();
+  }
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(problem_options);
+  problem.AddResidualBlock(&residuals, nullptr, unknown.data());
+  if (!bound(model, result, scale, unknown, problem)) residuals.keep(unknown, result.evaluation);
+  const ceres::Solver::Summary summary = solve(options, problem);
   result.report.iterations = static_cast<int>(summary.iterations.size());
   if (summary.termination_type == ceres::USER_FAILURE) {
     result.report.termination = numerics::Termination::interrupted;
     result.report.message = "interrupted";
   } else if (!summary.IsSolutionUsable()) {
-    result.report.termination = numerics::Termination::step_too_small;
-    result.report.message = "the least squares did not converge";
+    fail("the least squares did not converge", result);
     return result;
   }
   for (std::size_t k = 0; k < result.free; ++k) {
-    result.settings[k].coordinate = unknown[static_cast<Eigen::Index>(k)] * scale[static_cast<Eigen::Index>(k)];
+    const auto i = static_cast<Eigen::Index>(k);
+    result.settings[k].coordinate = unknown[i] * scale[i];
   }
   const Evaluation* known = residuals.known(unknown);
   Evaluation at = known != nullptr ? *known : model.evaluate(result.settings, result.parameters());
-  if (!at.complete) {
-    result.report.termination = numerics::Termination::step_too_small;
-    result.report.message = at.message;
-    return result;
+  if (at.complete) {
+    take(data, std::move(at), result);
+  } else {
+    fail(at.message, result);
   }
-  result.evaluation = std::move(at);
-  finish();
   return result;
 }
 
-ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which, double rise) {
-  ProfileInterval interval;
-  const double centre = optimum.settings[which].coordinate;
-  const double spread = std::sqrt(std::max(optimum.covariance(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(which)), 0.0));
-  const Parameter& p = *optimum.settings[which].parameter;
-  if (!(spread > 0.0)) return interval;
+namespace {
+
+/// The fitted numbers but `which`, moved along with its step, to first order: c_i += step cov_ij / cov_jj.
+std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::size_t which, double step) {
+  const auto j = static_cast<Eigen::Index>(which);
+  const double spread = std::sqrt(std::max(optimum.covariance(j, j), 0.0));
   std::vector<Setting> others;
   for (std::size_t k = 0; k < optimum.free; ++k) {
-    if (k != which) others.push_back(optimum.settings[k]);
+    if (k == which) continue;
+    Setting& s = others.emplace_back(optimum.settings[k]);
+    const double slope = optimum.covariance(static_cast<Eigen::Index>(k), j) / (spread * spread);
+    s.coordinate = std::clamp(s.coordinate + step * slope, model.lower(*s.parameter), model.upper(*s.parameter));
   }
+  return others;
+}
+
+/// One end of a profile's interval, in the direction `sense` (-1 or 1).
+std::optional<double> profile_end(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
+                                  double rise, double sense) {
+  const Setting& centre = optimum.settings[which];
+  const auto j = static_cast<Eigen::Index>(which);
+  const double spread = std::sqrt(std::max(optimum.covariance(j, j), 0.0));
+  const double limit = sense < 0.0 ? model.lower(*centre.parameter) : model.upper(*centre.parameter);
   const std::vector<Setting> fixed = optimum.fixed();
   FitOptions options;
   options.max_iterations = 15;
-  for (const double sense : {-1.0, 1.0}) {
-    const double limit = sense < 0.0 ? model.lower(p) : model.upper(p);
-    double step = std::sqrt(rise) * spread;  // where the profile is a parabola
-    std::optional<double> end;
-    for (int k = 0; k < 4; ++k) {
-      const double at = centre + sense * step;
-      if ((at - limit) * sense >= 0.0) {
-        end.reset();
-        break;
-      }
-      std::vector<Setting> held{{&p, at}};
-      held.insert(held.end(), fixed.begin(), fixed.end());
-      // The others move along with the held one, to first order.
-      std::vector<Setting> start = others;
-      std::size_t j = 0;
-      for (std::size_t i = 0; i < optimum.free; ++i) {
-        if (i == which) continue;
-        const double slope = optimum.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(which)) / (spread * spread);
-        start[j].coordinate = std::clamp(start[j].coordinate + sense * step * slope, model.lower(*start[j].parameter),
-                                         model.upper(*start[j].parameter));
-        ++j;
-      }
-      const Fit other = fit(model, data, start, held, options);
-      if (!other.report.usable()) {
-        step *= 0.5;
-        continue;
-      }
-      const double risen = std::max(other.chi2 - optimum.chi2, 1e-3 * rise);
-      end = at;
-      if (std::abs(risen / rise - 1.0) < 0.05) break;
-      step *= std::clamp(std::sqrt(rise / risen), 0.3, 3.0);
-      end = centre + sense * step;
+  double step = std::sqrt(rise) * spread;  // where the profile is a parabola
+  std::optional<double> end;
+  for (int k = 0; k < 4; ++k) {
+    const double at = centre.coordinate + sense * step;
+    if ((at - limit) * sense >= 0.0) return std::nullopt;
+    std::vector<Setting> held{{centre.parameter, at}};
+    held.insert(held.end(), fixed.begin(), fixed.end());
+    const Fit other = fit(model, data, others_beside(model, optimum, which, sense * step), held, options);
+    if (!other.report.usable()) {
+      step *= 0.5;
+      continue;
     }
-    (sense < 0.0 ? interval.lower : interval.upper) = end;
+    const double risen = std::max(other.chi2 - optimum.chi2, 1e-3 * rise);
+    end = at;
+    if (std::abs(risen / rise - 1.0) < 0.05) break;
+    step *= std::clamp(std::sqrt(rise / risen), 0.3, 3.0);
+    end = centre.coordinate + sense * step;
   }
-  return interval;
+  return end;
+}
+
+}  // namespace
+
+ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
+                                 double rise) {
+  const auto j = static_cast<Eigen::Index>(which);
+  if (!(optimum.covariance(j, j) > 0.0)) return {};
+  return {profile_end(model, data, optimum, which, rise, -1.0), profile_end(model, data, optimum, which, rise, 1.0)};
 }
 
 }  // namespace snare::identification

@@ -12,9 +12,9 @@ namespace snare::identification {
 
 /// Measured forces of some of a model's series, with their noise.
 struct Data {
-  std::vector<std::size_t> series;       ///< which of the model's
-  std::vector<Eigen::VectorXd> measured; ///< of every series of the model [N]
-  Noise noise;                           ///< of every series of the model
+  std::vector<std::size_t> series;        ///< which of the model's
+  std::vector<Eigen::VectorXd> measured;  ///< of every series of the model [N]
+  Noise noise;                            ///< of every series of the model
 
   [[nodiscard]] Eigen::Index rows() const;
   /// (measured - computed), whitened, the data's series one below the other.
@@ -24,12 +24,12 @@ struct Data {
 };
 
 struct Fit {
-  std::vector<Setting> settings;   ///< fitted ones first, then the fixed ones
-  std::size_t free = 0;            ///< how many are fitted
-  Evaluation evaluation;           ///< at the optimum, with the derivatives by the fitted numbers
-  Eigen::VectorXd residual;        ///< whitened
-  Eigen::MatrixXd jacobian;        ///< whitened
-  Eigen::MatrixXd covariance;      ///< of the coordinates, (J^T J)^-1 in the directions that the data see
+  std::vector<Setting> settings;  ///< fitted ones first, then the fixed ones
+  std::size_t free = 0;           ///< how many are fitted
+  Evaluation evaluation;          ///< at the optimum, with the derivatives by the fitted numbers
+  Eigen::VectorXd residual;       ///< whitened
+  Eigen::MatrixXd jacobian;       ///< whitened
+  Eigen::MatrixXd covariance;     ///< of the coordinates, (J^T J)^-1 in the directions that the data see
   double chi2 = 0.0;
   numerics::SolveReport report;
   [[nodiscard]] double dof() const { return static_cast<double>(residual.size()) - static_cast<double>(free); }
@@ -42,7 +42,7 @@ struct Fit {
 
 struct FitOptions {
   int max_iterations = 50;
-  double tolerance = 1e-6;  ///< relative fall of chi2 below which the fit ends
+  double tolerance = 1e-6;                                   ///< relative fall of chi2 below which the fit ends
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops the fit
   double rival = 0.0;  ///< chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it
 };
@@ -52,14 +52,15 @@ struct FitOptions {
 [[nodiscard]] Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
                       const std::vector<Setting>& fixed = {}, const FitOptions& options = {});
 
-/// Ends of the interval of one coordinate in which the profile of chi2 (all others refitted) stays within `rise` of its
-/// minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is absent.
+/// Ends of the interval of one coordinate in which the profile of chi2 (all others refitted) stays within
+/// `rise` of its minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is
+/// absent.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
 };
-[[nodiscard]] ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
-                                               double rise);
+[[nodiscard]] ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum,
+                                               std::size_t which, double rise);
 
 /// (J^T J)^-1 by singular values, directions below 1e-10 of the largest (columns scaled to one) left out.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian);

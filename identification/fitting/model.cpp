@@ -10,18 +10,79 @@ namespace snare::identification {
 
 namespace {
 
-enum class Derivative { implicit, offset, gain, rate };
-
-Derivative kind_of(const Parameter& p) {
-  if (p.key.ends_with("reading.force_offset_N")) return Derivative::offset;
-  if (p.key.ends_with("reading.force_gain")) return Derivative::gain;
-  if (p.key.ends_with("rate_viscosity.relaxation_time_s")) return Derivative::rate;
-  return Derivative::implicit;
-}
-
 const Setting* find(const std::vector<Setting>& settings, const Parameter* p) {
   const auto at = std::find_if(settings.begin(), settings.end(), [p](const Setting& s) { return s.parameter == p; });
   return at == settings.end() ? nullptr : &*at;
+}
+
+/// Whether a number belongs to a series.
+bool concerns(const Parameter& p, const Series& series) {
+  return p.only.empty() || p.only == series.name;
+}
+
+/// Numbers of every series' test to differentiate by, in the order of `by`: how each moves the test.
+/// declared: the series as the file gives them, from which coordinates count; applied: with the settings.
+std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vector<Series>& declared,
+                                                                const std::vector<Series>& applied,
+                                                                const std::vector<Setting>& settings,
+                                                                const std::vector<const Parameter*>& by) {
+  std::vector<std::vector<coupling::PushVariation>> variations(declared.size());
+  for (const Parameter* number : by) {
+    const Parameter& p = *number;
+    const double at = find(settings, number)->coordinate;
+    // A ratio's step moves the value itself by about that share.
+    for (std::size_t k = 0; k < declared.size(); ++k) {
+      if (!concerns(p, declared[k])) {
+        variations[k].push_back({nullptr, p.step});
+        continue;
+      }
+      if (p.mount_gives && !applied[k].test.mount.translational_stiffness) {
+        variations[k].push_back({nullptr, p.step, 0.0, 1.0});
+        continue;
+      }
+      const double own = p.get(declared[k].test, {});
+      variations[k].push_back({[&p, own, at](PushProblem& test, double amount) {
+                                 if (p.travel != 0.0) return;
+                                 ReadingModel unused;
+                                 p.set(test, unused, p.value(own, at + amount));
+                               },
+                               p.step, p.travel});
+    }
+  }
+  return variations;
+}
+
+/// Derivatives of the recorded forces of a series, F = offset + gain (F_wire + tau v k_viscous), by every
+/// number.
+Eigen::MatrixXd record_derivatives(const Series& series, const Prediction& prediction, const Eigen::VectorXd& force,
+                                   const ReadingModel& reading, const std::vector<const Parameter*>& by) {
+  const Eigen::Index rows = force.size();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(by.size()));
+  Eigen::Index variation = 0;  // numbers of the test in the order in which they were asked for
+  for (std::size_t j = 0; j < by.size(); ++j) {
+    auto out = result.col(static_cast<Eigen::Index>(j));
+    const bool concerned = concerns(*by[j], series);
+    switch (by[j]->derivative) {
+      case Derivative::implicit:
+        if (prediction.force_by.cols() > 0) out = prediction.force_by.col(variation++);
+        break;
+      case Derivative::force_offset:
+        if (concerned) out.setOnes();
+        break;
+      case Derivative::force_gain:  // by the logarithm of the gain
+        if (concerned) out = force.array() - reading.force_offset;
+        break;
+      case Derivative::rate: {
+        if (!concerned) break;
+        const std::vector<double> speed = speeds(series);
+        for (Eigen::Index i = 0; i < rows; ++i) {
+          const auto r = static_cast<std::size_t>(i);
+          out[i] = reading.force_gain * speed[r] * prediction.viscous_stiffness[r];
+        }
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -36,7 +97,9 @@ double Model::declared(const Parameter& p) const {
   return p.get(series_.front().test, {});
 }
 
-double Model::shown(const Setting& s) const { return s.parameter->shown(declared(*s.parameter), s.coordinate); }
+double Model::shown(const Setting& s) const {
+  return s.parameter->shown(declared(*s.parameter), s.coordinate);
+}
 
 double Model::lower(const Parameter& p) const {
   const double d = declared(p);
@@ -44,14 +107,16 @@ double Model::lower(const Parameter& p) const {
   return std::isfinite(c) ? c : -50.0;
 }
 
-double Model::upper(const Parameter& p) const { return p.coordinate(declared(p), p.upper(series_.front().test)); }
+double Model::upper(const Parameter& p) const {
+  return p.coordinate(declared(p), p.upper(series_.front().test));
+}
 
 Model::Applied Model::apply(const std::vector<Setting>& settings) const {
   Applied result{series_, std::vector<ReadingModel>(series_.size())};
   for (const Setting& setting : settings) {
     const Parameter& p = *setting.parameter;
     for (std::size_t k = 0; k < series_.size(); ++k) {
-      if (!p.only.empty() && p.only != series_[k].name) continue;
+      if (!concerns(p, series_[k])) continue;
       // Relative to what the series declares itself.
       const double own = p.get(series_[k].test, {});
       p.set(result.series[k].test, result.reading[k], p.value(own, setting.coordinate));
@@ -79,7 +144,8 @@ Evaluation Model::predict_with(const Applied& model, const PredictionOptions& op
       result.complete = false;
       result.message = "series " + series[k].name + ": " + p.curve.curve.report.message;
     }
-    result.force.emplace_back(Eigen::Map<const Eigen::VectorXd>(p.force.data(), static_cast<Eigen::Index>(p.force.size())));
+    result.force.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(p.force.data(), static_cast<Eigen::Index>(p.force.size())));
     if (result.complete && !result.force.back().allFinite()) {
       result.complete = false;
       result.message = "series " + series[k].name + ": a computed force is not finite";
@@ -95,97 +161,56 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
   }
   const Applied applied = apply(settings);
   const std::vector<Series>& series = applied.series;
-  const bool implicit = std::all_of(series.begin(), series.end(),
-                                    [](const Series& s) { return coupling::differentiable(s.test); });
+  const bool implicit =
+      std::all_of(series.begin(), series.end(), [](const Series& s) { return coupling::differentiable(s.test); });
 
   PredictionOptions options;
   options.thin = thin_;
-  std::vector<std::vector<coupling::PushVariation>> variations;
-  std::vector<std::size_t> column;  // of the variations, among `by`
-  if (!by.empty()) {
-    for (const Parameter* p : by) options.examine_rates = options.examine_rates || kind_of(*p) == Derivative::rate;
-    variations.resize(series.size());
-    for (std::size_t j = 0; j < by.size() && implicit; ++j) {
-      const Parameter& p = *by[j];
-      if (kind_of(p) != Derivative::implicit) continue;
-      column.push_back(j);
-      const double at = find(settings, &p)->coordinate;
-      // A ratio's step moves the value itself by about that share.
-      for (std::size_t k = 0; k < series.size(); ++k) {
-        const double own = p.get(series_[k].test, {});
-        if (!p.only.empty() && p.only != series_[k].name) {
-          variations[k].push_back({nullptr, p.step});
-          continue;
-        }
-        if (p.mount_gives && !series[k].test.mount.translational_stiffness) {
-          variations[k].push_back({nullptr, p.step, 0.0, 1.0});
-          continue;
-        }
-        variations[k].push_back({[&p, own, at](coupling::PushProblem& test, double amount) {
-                                   if (p.travel != 0.0) return;
-                                   ReadingModel unused;
-                                   p.set(test, unused, p.value(own, at + amount));
-                                 },
-                                 p.step, p.travel});
-      }
-    }
+  std::vector<const Parameter*> of_test;
+  for (const Parameter* p : by) {
+    options.examine_rates = options.examine_rates || p->derivative == Derivative::rate;
+    if (p->derivative == Derivative::implicit) of_test.push_back(p);
   }
+  std::vector<std::vector<coupling::PushVariation>> variations;
+  if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test);
   Evaluation result = predict_with(applied, options, variations);
   if (by.empty() || !result.complete) return result;
 
   for (std::size_t k = 0; k < series.size(); ++k) {
-    const ReadingModel& reading = applied.reading[k];
-    const Prediction& p = result.predictions[k];
-    const auto rows = result.force[k].size();
-    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(by.size()));
-    const std::vector<double> speed = options.examine_rates ? speeds(series[k]) : std::vector<double>();
-    for (std::size_t j = 0; j < by.size(); ++j) {
-      auto out = derivative.col(static_cast<Eigen::Index>(j));
-      if (!by[j]->only.empty() && by[j]->only != series[k].name) continue;
-      switch (kind_of(*by[j])) {
-        case Derivative::implicit: break;
-        case Derivative::offset: out.setOnes(); break;
-        case Derivative::gain: out = result.force[k].array() - reading.force_offset; break;
-        case Derivative::rate:
-          for (Eigen::Index i = 0; i < rows; ++i) {
-            const auto r = static_cast<std::size_t>(i);
-            out[i] = reading.force_gain * speed[r] * p.viscous_stiffness[r];
-          }
-      }
-    }
-    for (std::size_t v = 0; v < column.size(); ++v) {
-      derivative.col(static_cast<Eigen::Index>(column[v])) = p.force_by.col(static_cast<Eigen::Index>(v));
-    }
-    result.by.push_back(std::move(derivative));
+    result.by.push_back(record_derivatives(series[k], result.predictions[k], result.force[k], applied.reading[k], by));
   }
-  if (implicit) return result;
+  if (!implicit) difference_curves(settings, by, result);
+  return result;
+}
 
-  // Differences of whole curves for the others.
+void Model::difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
+                              Evaluation& result) const {
   PredictionOptions plain;
   plain.thin = thin_;
   for (std::size_t j = 0; j < by.size(); ++j) {
-    if (kind_of(*by[j]) != Derivative::implicit) continue;
-    Setting& s = *std::find_if(settings.begin(), settings.end(), [&](const Setting& o) { return o.parameter == by[j]; });
+    if (by[j]->derivative != Derivative::implicit) continue;
+    Setting& s =
+        *std::find_if(settings.begin(), settings.end(), [&](const Setting& o) { return o.parameter == by[j]; });
     const double centre = s.coordinate;
     // Wide enough for the jumps of a section that slips vertex by vertex.
     const double h = s.parameter->parametrisation == Parametrisation::shift ? 100.0 * s.parameter->step : 2e-2;
-    std::array<Evaluation, 2> sides;
-    for (const int side : {0, 1}) {
-      s.coordinate = std::clamp(centre + (side == 0 ? -h : h), lower(*s.parameter), upper(*s.parameter));
-      sides[static_cast<std::size_t>(side)] = predict_with(apply(settings), plain, {});
-    }
+    const auto curve_at = [&](double coordinate) {
+      s.coordinate = std::clamp(coordinate, lower(*s.parameter), upper(*s.parameter));
+      return predict_with(apply(settings), plain, {});
+    };
+    const Evaluation below = curve_at(centre - h);
+    const Evaluation above = curve_at(centre + h);
     const double span = std::min(centre + h, upper(*s.parameter)) - std::max(centre - h, lower(*s.parameter));
     s.coordinate = centre;
-    if (!sides[0].complete || !sides[1].complete) {
+    if (!below.complete || !above.complete) {
       result.complete = false;
-      result.message = sides[0].complete ? sides[1].message : sides[0].message;
-      return result;
+      result.message = below.complete ? above.message : below.message;
+      return;
     }
-    for (std::size_t k = 0; k < series.size(); ++k) {
-      result.by[k].col(static_cast<Eigen::Index>(j)) = (sides[1].force[k] - sides[0].force[k]) / span;
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      result.by[k].col(static_cast<Eigen::Index>(j)) = (above.force[k] - below.force[k]) / span;
     }
   }
-  return result;
 }
 
 Evaluation Model::evaluate_windows(const std::vector<Setting>& settings, int windows) const {

@@ -28,8 +28,8 @@ struct Evaluation {
 /// The declared experiment as a function of settings.                                 theory.md (I.2)
 class Model {
  public:
-  /// `series` as declared; every evaluation computes all of them, in parallel, with the same bits for any number of
-  /// threads. thin: see PredictionOptions.
+  /// `series` as declared; every evaluation computes all of them, in parallel, with the same bits for any
+  /// number of threads. thin: see PredictionOptions.
   Model(std::vector<Series> series, const SolverSettings& solver, bool thin = true);
 
   [[nodiscard]] const std::vector<Series>& series() const { return series_; }
@@ -49,12 +49,14 @@ class Model {
   };
   [[nodiscard]] Applied apply(const std::vector<Setting>& settings) const;
 
-  /// Forces, and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values). Implicit differentiation; central differences of whole curves
-  /// where coupling::differentiable() says no.
-  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings, const std::vector<const Parameter*>& by = {}) const;
+  /// Forces, and their derivatives by the coordinates of `by` (settings, or further numbers at their declared
+  /// values).
+  /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no.
+  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings,
+                                    const std::vector<const Parameter*>& by = {}) const;
 
-  /// Derivatives by factors of EI on windows of the wire, one a column: hat functions over `windows` evenly spread
-  /// stations of the material between the mounts. Empty where the model is not differentiable.
+  /// Derivatives by factors of EI on windows of the wire, one a column: hat functions over `windows` evenly
+  /// spread stations of the material between the mounts. Empty where the model is not differentiable.
   [[nodiscard]] Evaluation evaluate_windows(const std::vector<Setting>& settings, int windows) const;
 
   /// Predictions of whole series so far.
@@ -63,6 +65,9 @@ class Model {
  private:
   [[nodiscard]] Evaluation predict_with(const Applied& model, const PredictionOptions& options,
                                         const std::vector<std::vector<coupling::PushVariation>>& variations) const;
+  /// Derivatives by the numbers of the test by differences of whole curves, into `result`.
+  void difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
+                         Evaluation& result) const;
 
   std::vector<Series> series_;
   SolverSettings solver_;

@@ -20,7 +20,9 @@ bool same_test(const coupling::PushProblem& a, const coupling::PushProblem& b) {
          a.pusher.direction == b.pusher.direction && a.pusher.friction == b.pusher.friction;
 }
 
-double highest(const std::vector<double>& d) { return *std::max_element(d.begin(), d.end()); }
+double highest(const std::vector<double>& d) {
+  return *std::max_element(d.begin(), d.end());
+}
 
 /// Force of a record at a displacement of its first loading, by straight lines; the path's first pass counts.
 double force_at(const Readings& r, double displacement) {
@@ -32,6 +34,76 @@ double force_at(const Readings& r, double displacement) {
     }
   }
   return r.force.back();
+}
+
+constexpr int common_points = 200;  // displacements of the loading at which replicates are compared
+
+/// Deviations of replicates from their mean at common displacements of the loading.
+struct Scatter {
+  double squares = 0.0;                                                    ///< sum [N^2]
+  double count = 0.0;                                                      ///< degrees of freedom
+  double longest = 0.0;                                                    ///< range of the displacements [m]
+  std::vector<double> products = std::vector<double>(common_points, 0.0);  ///< of deviations this many points apart
+};
+
+void add_scatter(const std::vector<Series>& series, const std::vector<std::size_t>& group, Scatter& scatter) {
+  double range = 1e300;
+  for (const std::size_t k : group) range = std::min(range, highest(series[k].readings->displacement));
+  scatter.longest = std::max(scatter.longest, range);
+  std::vector<std::vector<double>> deviations(group.size());
+  for (int i = 0; i < common_points; ++i) {
+    const double d = range * (0.02 + 0.96 * i / (common_points - 1));
+    double mean = 0.0;
+    for (std::size_t j = 0; j < group.size(); ++j) {
+      deviations[j].push_back(force_at(*series[group[j]].readings, d));
+      mean += deviations[j].back() / static_cast<double>(group.size());
+    }
+    for (std::vector<double>& one : deviations) {
+      one.back() -= mean;
+      scatter.squares += one.back() * one.back();
+    }
+    scatter.count += static_cast<double>(group.size() - 1);
+  }
+  for (const std::vector<double>& one : deviations) {
+    for (std::size_t lag = 1; lag < one.size(); ++lag) {
+      for (std::size_t i = lag; i < one.size(); ++i) {
+        scatter.products[lag] += one[i] * one[i - lag] / static_cast<double>(one.size() - lag) * common_points;
+      }
+    }
+  }
+}
+
+/// Variance of the independent part from second differences, mean (f_{i-1} - 2 f_i + f_{i+1})^2 / 6, at most
+/// `all`.
+double white_variance(const std::vector<Series>& series, double all) {
+  double white = 0.0;
+  double bends = 0.0;
+  for (const Series& s : series) {
+    const std::vector<double>& f = s.readings->force;
+    for (std::size_t i = 1; i + 1 < f.size(); ++i) {
+      white += std::pow(f[i - 1] - 2.0 * f[i] + f[i + 1], 2) / 6.0;
+      bends += 1.0;
+    }
+  }
+  return bends > 0.0 ? std::min(white / bends, all) : all;
+}
+
+/// Cholesky factor of  variance ((1 - smooth) I + smooth exp(-|path_i - path_j| / length)).   theory.md (I.3)
+Eigen::MatrixXd covariance_factor(const Series& series, double variance, double smooth, double length) {
+  const std::vector<double>& d = measured_displacement(series);
+  const auto n = static_cast<Eigen::Index>(d.size());
+  Eigen::VectorXd path = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 1; i < n; ++i) {
+    path[i] = path[i - 1] + std::abs(d[static_cast<std::size_t>(i)] - d[static_cast<std::size_t>(i - 1)]);
+  }
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      covariance(i, j) = variance * smooth * std::exp(-std::abs(path[i] - path[j]) / length);
+    }
+    covariance(i, i) += variance * (1.0 - smooth);
+  }
+  return covariance.llt().matrixL();
 }
 
 }  // namespace
@@ -71,85 +143,33 @@ std::vector<std::vector<std::size_t>> replicates(const std::vector<Series>& seri
 
 Noise known_noise(const std::vector<Series>& series) {
   Noise noise;
-  const bool declared = std::all_of(series.begin(), series.end(),
-                                    [](const Series& s) { return s.force_sigma || s.law; });
+  const bool declared =
+      std::all_of(series.begin(), series.end(), [](const Series& s) { return s.force_sigma || s.law; });
   if (declared && !series.empty()) {
     noise.source = "declared";
     for (const Series& s : series) noise.sigma.push_back(s.force_sigma ? *s.force_sigma : s.law->scatter());
     return noise;
   }
-  // Deviations of replicates from their mean at common displacements of the loading.
-  constexpr int points = 200;
-  double squares = 0.0;
-  double count = 0.0;
-  double longest = 0.0;
-  std::vector<double> products(points, 0.0);  // of deviations this many points apart
-  for (const std::vector<std::size_t>& group : replicates(series)) {
-    double range = 1e300;
-    for (const std::size_t k : group) range = std::min(range, highest(series[k].readings->displacement));
-    longest = std::max(longest, range);
-    std::vector<std::vector<double>> deviations(group.size());
-    for (int i = 0; i < points; ++i) {
-      const double d = range * (0.02 + 0.96 * i / (points - 1));
-      double mean = 0.0;
-      for (std::size_t j = 0; j < group.size(); ++j) {
-        deviations[j].push_back(force_at(*series[group[j]].readings, d));
-        mean += deviations[j].back() / static_cast<double>(group.size());
-      }
-      for (std::vector<double>& one : deviations) {
-        one.back() -= mean;
-        squares += one.back() * one.back();
-      }
-      count += static_cast<double>(group.size() - 1);
-    }
-    for (const std::vector<double>& one : deviations) {
-      for (std::size_t lag = 1; lag < one.size(); ++lag) {
-        for (std::size_t i = lag; i < one.size(); ++i) {
-          products[lag] += one[i] * one[i - lag] / static_cast<double>(one.size() - lag) * points;
-        }
-      }
-    }
-  }
-  if (count == 0.0 || squares == 0.0) return noise;
+  Scatter scatter;
+  for (const std::vector<std::size_t>& group : replicates(series)) add_scatter(series, group, scatter);
+  if (scatter.count == 0.0 || scatter.squares == 0.0) return noise;
   noise.source = "replicates";
-  const double variance = squares / count;
+  const double variance = scatter.squares / scatter.count;
   noise.sigma.assign(series.size(), std::sqrt(variance));
-  double white = 0.0;
-  double bends = 0.0;
-  double most = 0.0;
-  for (const Series& s : series) {
-    const std::vector<double>& f = s.readings->force;
-    most = std::max(most, static_cast<double>(f.size()));
-    for (std::size_t i = 1; i + 1 < f.size(); ++i) {
-      white += std::pow(f[i - 1] - 2.0 * f[i] + f[i + 1], 2) / 6.0;
-      bends += 1.0;
-    }
-  }
-  white = bends > 0.0 ? std::min(white / bends, variance) : variance;
-  noise.smooth = std::clamp(1.0 - white / variance, 0.0, 0.9999);
-  if (noise.smooth < 0.02 || most > 2000.0) {
+  // What is not independent is smooth; dense records count as independent.
+  std::size_t most = 0;
+  for (const Series& s : series) most = std::max(most, s.readings->force.size());
+  noise.smooth = std::clamp(1.0 - white_variance(series, variance) / variance, 0.0, 0.9999);
+  if (noise.smooth < 0.02 || most > 2000) {
     noise.smooth = 0.0;
     return noise;
   }
+  // Its length: where the correlation has fallen to 1/e.
+  const std::vector<double>& products = scatter.products;
   std::size_t lag = 1;
   while (lag + 1 < products.size() / 2 && products[lag] > products[1] / std::numbers::e) ++lag;
-  noise.length = longest * 0.96 * static_cast<double>(lag) / (points - 1);
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    const std::vector<double>& d = measured_displacement(series[k]);
-    const auto n = static_cast<Eigen::Index>(d.size());
-    Eigen::VectorXd path = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index i = 1; i < n; ++i) {
-      path[i] = path[i - 1] + std::abs(d[static_cast<std::size_t>(i)] - d[static_cast<std::size_t>(i - 1)]);
-    }
-    Eigen::MatrixXd covariance(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        covariance(i, j) = variance * noise.smooth * std::exp(-std::abs(path[i] - path[j]) / noise.length);
-      }
-      covariance(i, i) += variance * (1.0 - noise.smooth);
-    }
-    noise.factor.push_back(covariance.llt().matrixL());
-  }
+  noise.length = scatter.longest * 0.96 * static_cast<double>(lag) / (common_points - 1);
+  for (const Series& s : series) noise.factor.push_back(covariance_factor(s, variance, noise.smooth, noise.length));
   return noise;
 }
 

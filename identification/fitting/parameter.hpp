@@ -1,13 +1,14 @@
 #pragma once
 
-#include "identification/fitting/experiment.hpp"
-#include "identification/fitting/prediction.hpp"
+#include "coupling/statics/push_problem.hpp"
+#include "identification/fitting/reading_model.hpp"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace snare::identification {
+
+using coupling::PushProblem;
 
 /// How a fit moves a number away from its declared value, by a coordinate c that is 0 where nothing changes.
 enum class Parametrisation {
@@ -16,21 +17,33 @@ enum class Parametrisation {
   magnitude  ///< exp(c) in SI units: a threshold that is absent (infinite) in the declared model
 };
 
-/// A number that a fit may change. SI units, but for key and unit, which are as in files.
+/// How the derivative of the recorded force by a number is found.                       theory.md (I.2)
+///   F = offset + gain (F_wire(p) + tau v k_viscous)
+enum class Derivative {
+  implicit,      ///< p of the push, or the zero of its travel: implicit differentiation of the equilibrium
+  force_offset,  ///< 1
+  force_gain,    ///< (F - offset), by the gain's own ratio
+  rate           ///< gain v k_viscous, v the pusher's speed
+};
+
+/// A number that a fit may change: what it is called, how it enters the model, what it may be. SI units, but
+/// for key and unit, which are as in files. A number of an effect stands in the effect's file
+/// (identification/effects), others in construction_numbers.cpp.
 struct Parameter {
-  std::string key;         ///< dotted, with its unit: "wire.length_mm"
-  std::string unit;        ///< as printed: "mm"; empty for a pure number
+  std::string key{};       ///< dotted, with its unit: "wire.length_mm"
+  std::string unit{};      ///< as printed: "mm"; empty for a pure number
   double unit_size = 1.0;  ///< SI value of one unit
   Parametrisation parametrisation = Parametrisation::shift;
-  double (*get)(const coupling::PushProblem&, const ReadingModel&) = nullptr;
-  void (*set)(coupling::PushProblem&, ReadingModel&, double) = nullptr;
-  double (*lower)(const coupling::PushProblem&) = nullptr;  ///< admissible values
-  double (*upper)(const coupling::PushProblem&) = nullptr;
+  double (*get)(const PushProblem&, const ReadingModel&) = nullptr;
+  void (*set)(PushProblem&, ReadingModel&, double) = nullptr;
+  double (*lower)(const PushProblem&) = nullptr;  ///< admissible values
+  double (*upper)(const PushProblem&) = nullptr;
   double step = 0.0;    ///< of the coordinate, for differences of the residual, > 0
   double travel = 0.0;  ///< d travel / d coordinate: -1 for the zero of the displacement
+  Derivative derivative = Derivative::implicit;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
-  std::string only;             ///< name of the one series that it belongs to; empty: all
   bool mount_gives = false;     ///< the compliance of the mounts: differentiated as such where they are rigid
+  std::string only{};           ///< name of the one series that it belongs to; empty: all
 
   /// Value for a series that declares `declared`.
   [[nodiscard]] double value(double declared, double coordinate) const;
@@ -40,13 +53,7 @@ struct Parameter {
   [[nodiscard]] double coordinate(double declared, double value) const;
 };
 
-/// Every number that a fit may change.
-[[nodiscard]] const std::vector<Parameter>& all_parameters();
-
-/// Null when there is none of this key. "series[NAME].KEY" is the number KEY of one series alone.
-[[nodiscard]] const Parameter* find_parameter(std::string_view key);
-
-/// Throws base::InputError when there is none.
-[[nodiscard]] const Parameter& parameter(const std::string& key);
+/// Numbers of the declared construction, which belong to no effect: sizes and material.
+[[nodiscard]] const std::vector<Parameter>& construction_numbers();
 
 }  // namespace snare::identification

@@ -36,7 +36,8 @@ std::vector<std::size_t> turning_points(const std::vector<double>& d) {
       if (sense != 0.0) extreme = i;
       continue;
     }
-    if ((d[i] - d[extreme]) * sense >= 0.0) extreme = i;
+    if ((d[i] - d[extreme]) * sense >= 0.0)
+      extreme = i;
     else if ((d[extreme] - d[i]) * sense > threshold) {
       turns.push_back(extreme);
       extreme = i;
@@ -68,6 +69,7 @@ Sampling sample(const std::vector<double>& d, bool thin) {
       const double u = static_cast<double>(k) / (points_a_leg - 1);
       result.displacement.push_back(from + (to - from) * u * (0.3 + 0.7 * u));
     }
+    // Each reading by Lagrange's cubic through the four knots about it, w_a = prod_b (d - d_b) / (d_a - d_b).
     for (std::size_t i = begin; i <= end; ++i) {
       const auto knot = [&](std::size_t k) { return result.displacement[first + k]; };
       std::size_t j = 1;
@@ -93,7 +95,8 @@ std::vector<double> speeds(const Series& series) {
   std::vector<double> result(d.size(), 0.0);
   if (!series.readings || series.readings->time.size() != d.size()) return result;
   const std::vector<double>& t = series.readings->time;
-  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
+  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after
+  // it.
   for (std::size_t i = 0; i < d.size(); ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1;
     const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;
@@ -110,8 +113,7 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   Prediction result;
   result.reading = reading;
   // Points before the first touch stand at the front; a later return to no contact is part of the path.
-  while (result.before_touch < displacement.size() &&
-         displacement[result.before_touch] < reading.displacement_offset) {
+  while (result.before_touch < displacement.size() && displacement[result.before_touch] < reading.displacement_offset) {
     ++result.before_touch;
   }
   test.travel.clear();
@@ -147,12 +149,15 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   result.tension.assign(readings, 0.0);
   result.viscous_stiffness.assign(readings, 0.0);
   result.force_by.setZero(static_cast<Eigen::Index>(readings), numbers);
+  // F = offset + gain (F_wire + tau v G), v the speed and G the viscous stiffness: theory.md (I.2)
   const auto add = [&](std::size_t i, const coupling::PushPoint* p, double weight) {
     if (p == nullptr) return;
     result.force[i] += weight * reading.force_gain * p->force;
     result.tension[i] += weight * p->tension_left;
     result.viscous_stiffness[i] += weight * p->viscous_stiffness;
-    if (flows) result.force[i] += weight * reading.force_gain * reading.relaxation_time * speed[i] * p->viscous_stiffness;
+    if (flows) {
+      result.force[i] += weight * reading.force_gain * reading.relaxation_time * speed[i] * p->viscous_stiffness;
+    }
     if (p->force_by.empty()) return;
     result.force_by.row(static_cast<Eigen::Index>(i)) +=
         weight * reading.force_gain * Eigen::Map<const Eigen::RowVectorXd>(p->force_by.data(), numbers);

@@ -2,6 +2,7 @@
 
 #include "coupling/statics/push_solver.hpp"
 #include "identification/fitting/experiment.hpp"
+#include "identification/fitting/reading_model.hpp"
 
 #include <Eigen/Core>
 
@@ -11,39 +12,30 @@
 
 namespace snare::identification {
 
-/// How the machine's record differs from what the wire feels.
-struct ReadingModel {
-  double displacement_offset = 0.0;  ///< recorded displacement at which the pusher touches the wire [m]
-  double force_offset = 0.0;         ///< recorded force without contact [N]
-  double force_gain = 1.0;           ///< recorded over true force [-], > 0
-  /// Of a Kelvin-Voigt wire, N = EA (e + tau de/dt) and so in bending, to first order in tau [s], >= 0; acts where the
-  /// record has times.                                                                 theory.md (W.14), (I.2)
-  double relaxation_time = 0.0;
-};
-
 /// What a model says the machine records, at the displacements of a series.
 struct Prediction {
-  coupling::ExtrapolatedCurve curve;  ///< at the travels after first touch, in order
-  std::vector<double> force;          ///< recorded force [N], one a displacement that was reached
-  Eigen::MatrixXd force_by;           ///< d force / d number: a row a displacement, a column a variation asked for
+  coupling::ExtrapolatedCurve curve;      ///< at the travels after first touch, in order
+  std::vector<double> force;              ///< recorded force [N], one a displacement that was reached
+  Eigen::MatrixXd force_by;               ///< d force / d number: a row a displacement, a column a variation asked for
   std::vector<double> tension;            ///< in the wire at the left mount, one a displacement [N]
   std::vector<double> viscous_stiffness;  ///< see coupling::PushPoint, one a displacement [N/m]
-  ReadingModel reading;               ///< as it was predicted with
-  std::size_t before_touch = 0;       ///< points that lie before first touch: they have no entry in `curve`
+  ReadingModel reading;                   ///< as it was predicted with
+  std::size_t before_touch = 0;           ///< points that lie before first touch: they have no entry in `curve`
 };
 
 struct PredictionOptions {
-  std::vector<double> shapes_at;                ///< travels of which to keep the wire's shape [m]
-  bool examine_out_of_plane = false;            ///< see coupling::PushOptions
-  bool examine_rates = false;                   ///< see coupling::PushOptions
-  std::function<bool(double travel)> progress;  ///< see coupling::PushOptions
+  std::vector<double> shapes_at;                    ///< travels of which to keep the wire's shape [m]
+  bool examine_out_of_plane = false;                ///< see coupling::PushOptions
+  bool examine_rates = false;                       ///< see coupling::PushOptions
+  std::function<bool(double travel)> progress;      ///< see coupling::PushOptions
   std::vector<coupling::PushVariation> variations;  ///< numbers of the test to differentiate by
-  /// Compute dense records (more than 120 readings on a leg of the path) at 60 points a leg and interpolate by cubics;
-  /// the readings of a leg then count by their displacement, whatever their order.
+  /// Compute dense records (more than 120 readings on a leg of the path) at 60 points a leg and interpolate
+  /// by cubics; the readings of a leg then count by their displacement, whatever their order.
   bool thin = false;
 };
 
-/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without times.
+/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without
+/// times.
 [[nodiscard]] std::vector<double> speeds(const Series& series);
 
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
@@ -65,8 +57,8 @@ struct PredictionOptions {
 
 /// Misfit of predicted and measured force over the points that were reached.
 struct Misfit {
-  double rmse = 0.0;   ///< [N]
-  double nrmse = 0.0;  ///< rmse over the range of the measured force [-]
+  double rmse = 0.0;     ///< [N]
+  double nrmse = 0.0;    ///< rmse over the range of the measured force [-]
   double largest = 0.0;  ///< largest |difference| [N]
 };
 [[nodiscard]] Misfit misfit(const std::vector<double>& measured, const std::vector<double>& predicted);

@@ -40,12 +40,17 @@ double chi_square_mixture_tail(double x, const Eigen::VectorXd& weights) {
   return bm::cdf(bm::complement(bm::non_central_chi_squared(dof, noncentrality), at));
 }
 
-double normal_tail(double z) { return bm::cdf(bm::complement(bm::normal(), z)); }
+double normal_tail(double z) {
+  return bm::cdf(bm::complement(bm::normal(), z));
+}
 
-double normal_quantile(double p) { return bm::quantile(bm::complement(bm::normal(), p)); }
+double normal_quantile(double p) {
+  return bm::quantile(bm::complement(bm::normal(), p));
+}
 
 double runs_p(const std::vector<Eigen::VectorXd>& residuals) {
-  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m the mean.
+  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m
+  // the mean.
   double excess = 0.0;
   double variance = 0.0;
   for (const Eigen::VectorXd& r : residuals) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/ring_down/estimate.hpp"
 #include "numerics/report.hpp"
 
 #include <Eigen/Core>
@@ -9,14 +10,6 @@
 #include <vector>
 
 namespace snare::identification {
-
-/// A number with its standard error; the 95 % interval is value -+ 1.96 error.
-struct Estimate {
-  double value = 0.0;
-  double error = 0.0;  ///< standard error, >= 0
-  [[nodiscard]] double lower() const { return value - 1.959963984540054 * error; }
-  [[nodiscard]] double upper() const { return value + 1.959963984540054 * error; }
-};
 
 /// The displacement of one point of a freely vibrating wire.
 struct RingDown {
@@ -42,45 +35,26 @@ struct RingDownMode {
 };
 
 struct RingDownFit {
-  std::vector<RingDownMode> modes;  ///< by frequency
-  std::size_t largest = 0;          ///< index of the mode of the largest amplitude
-  std::optional<Estimate>
-      friction;               ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
-  double friction_bic = 0.0;  ///< BIC without friction less that with it; kept above 10
-  Eigen::VectorXd fitted;     ///< [m]
-  double rmse = 0.0;          ///< [m]
-  double nrmse = 0.0;         ///< over the range of the readings [-]
-  double runs_p = 1.0;        ///< p of the number of runs of one sign of the residual
-  double ljung_box_p = 1.0;   ///< p of its autocorrelations
+  std::vector<RingDownMode> modes;   ///< by frequency
+  std::size_t largest = 0;           ///< index of the mode of the largest amplitude
+  std::optional<Estimate> friction;  ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
+  double friction_bic = 0.0;         ///< BIC without friction less that with it; kept above 10
+  Eigen::VectorXd fitted;            ///< [m]
+  double rmse = 0.0;                 ///< [m]
+  double nrmse = 0.0;                ///< over the range of the readings [-]
+  double runs_p = 1.0;               ///< p of the number of runs of one sign of the residual
+  double ljung_box_p = 1.0;          ///< p of its autocorrelations
   numerics::SolveReport report;
   /// The residual looks like noise; where it does not, the standard errors are too small.
   [[nodiscard]] bool noise_only() const { return runs_p > 1e-3 && ljung_box_p > 1e-3; }
 };
 
-/// What is wrong with the readings for this purpose, or empty: fewer than 20, no motion, times that do not rise.
+/// What is wrong with the readings for this purpose, or empty: fewer than 20, no motion, times that do not
+/// rise.
 [[nodiscard]] std::string ring_down_problem(const RingDown& data);
 
-/// Fits decaying oscillations by least squares (Ceres): frequencies from peaks of the spectrum one after the other, then
-/// all numbers together. The noise is what is left. The data must have no ring_down_problem.
+/// Fits decaying oscillations by least squares (Ceres): frequencies from peaks of the spectrum one after the
+/// other, then all numbers together. The noise is what is left. The data must have no ring_down_problem.
 [[nodiscard]] RingDownFit fit_ring_down(const RingDown& data);
-
-/// One decay rate for the split: 2 s = mass_rate + bending_time share w^2.                       theory.md (M.4)
-struct DecayOfMode {
-  double natural = 0.0;  ///< w [rad/s], > 0
-  double bending_share =
-      1.0;         ///< of the mode's stiffness that bends material: 1 for a straight wire without tension
-  Estimate decay;  ///< s [1/s]
-};
-
-/// Material and mass-proportional damping from decay rates.
-struct DampingSplit {
-  bool separated = false;  ///< two frequencies far enough apart
-  Estimate bending_time;   ///< [s]; not separated: the value if all were material
-  Estimate mass_rate;      ///< [1/s]; not separated: the value if all were mass-proportional
-  double correlation = 0.0;
-  double misfit_p = 1.0;  ///< P(chi2 beyond what is left) where there are more modes than numbers
-  std::string statement;  ///< in words: what is known and what is not
-};
-[[nodiscard]] DampingSplit split_damping(const std::vector<DecayOfMode>& decays);
 
 }  // namespace snare::identification

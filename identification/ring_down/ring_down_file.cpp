@@ -1,18 +1,13 @@
 #include "identification/ring_down/ring_down_file.hpp"
 
-#include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
-#include "scenario/push_reader.hpp"
 #include "base/csv.hpp"
 #include "base/toml_reader.hpp"
-#include "wire/rod_modes.hpp"
+#include "base/units.hpp"
+#include "scenario/push_reader.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 namespace snare::identification {
@@ -35,8 +30,7 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
   const std::string name = table.text("file");
   const double from =
       table.number_or("from_s", -std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
-  const double to =
-      table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
+  const double to = table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
   if (to <= from) table.fail("to_s", "must be > from_s");
   if (name.empty()) return data;
   const std::filesystem::path path = folder / name;
@@ -45,10 +39,10 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
     return data;
   }
   try {
-    const base::CsvTable csv = base::read_csv(
-        path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0,
-                CsvColumn::Order::non_decreasing},
-               {"displacement_mm", CsvColumn::Presence::required, Range::from(-1e4, 1e4), mm}});
+    const base::CsvTable csv =
+        base::read_csv(path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0,
+                               CsvColumn::Order::non_decreasing},
+                              {"displacement_mm", CsvColumn::Presence::required, Range::from(-1e4, 1e4), mm}});
     std::vector<double> time;
     std::vector<double> displacement;
     for (std::size_t i = 0; i < csv.rows; ++i) {
@@ -57,8 +51,8 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
       displacement.push_back(csv.columns[1][i]);
     }
     data.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
-    data.displacement = Eigen::Map<const Eigen::VectorXd>(displacement.data(),
-                                                          static_cast<Eigen::Index>(displacement.size()));
+    data.displacement =
+        Eigen::Map<const Eigen::VectorXd>(displacement.data(), static_cast<Eigen::Index>(displacement.size()));
     if (time.size() > most_rows)
       table.fail("file", fmt::format("{} has {} readings, must have at most {}: thin it out", path.string(),
                                      time.size(), most_rows));
@@ -68,8 +62,7 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
   return data;
 }
 
-RingDownSeries read_series(TomlDocument& document, const TomlTable& table,
-                           const std::filesystem::path& folder) {
+RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const std::filesystem::path& folder) {
   RingDownSeries series;
   series.data = read_readings(document, table, folder);
   series.data.name = table.text("name");
@@ -90,18 +83,17 @@ RingDownSeries read_series(TomlDocument& document, const TomlTable& table,
 
 }  // namespace
 
-RingDownFile read_ring_down_file(const std::filesystem::path& file,
-                                 const std::vector<base::Override>& overrides) {
+RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
   TomlDocument document(file, overrides);
   const TomlTable root = document.root();
-  if (root.text("schema") != schema) root.fail("schema", fmt::format("must be \"{}\"", schema));
+  base::require_schema(root, schema);
   RingDownFile result;
   result.file = file;
   result.title = root.text("title");
   result.source = root.text_or("source", "");
   if (root.has("wire") || root.has("mount")) {
-    const scenario::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"),
-                                      root.table("wire"), root.table("wire")};
+    const scenario::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"), root.table("wire"),
+                                      root.table("wire")};
     result.wire = scenario::read_wire_and_mounts(tables);
     if (result.wire->mount.kind == wire::MountKind::supports)
       tables.mount.fail("kind", "must be \"clamped\" or \"pinned\"");
@@ -109,76 +101,17 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file,
       if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
     }
     for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
-      if (tables.wire.has(key))
-        tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+      if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
     }
   }
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("series")) {
     result.series.push_back(read_series(document, table, file.parent_path()));
-    if (!names.insert(result.series.back().data.name).second)
-      table.fail("name", "is taken by another series");
+    if (!names.insert(result.series.back().data.name).second) table.fail("name", "is taken by another series");
   }
   if (result.series.empty()) root.fail("series", "must have at least one [[series]]");
   document.finish();
   return result;
-}
-
-namespace {
-
-/// Modes of the declared wire at rest, some more than a record can show.
-std::vector<wire::RodMode> modes_of(const coupling::PushProblem& test) {
-  constexpr int elements = 60;
-  constexpr int count = 24;
-  wire::RodInMotion rod = coupling::rod_in_motion(test.wire, test.mount.span, elements);
-  rod.properties.left.kind = rod.properties.right.kind = test.mount.kind == wire::MountKind::clamped
-                                                             ? wire::SpatialEnd::Kind::clamp
-                                                             : wire::SpatialEnd::Kind::twisting_pin;
-  return wire::rod_modes(rod, coupling::resting_wire(rod), count);
-}
-
-}  // namespace
-
-std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector<RingDownFit>& fits) {
-  std::vector<wire::RodMode> computed;
-  if (file.wire) computed = modes_of(*file.wire);
-  std::vector<MatchedMode> modes;
-  for (std::size_t s = 0; s < fits.size(); ++s) {
-    if (!fits[s].report.usable()) continue;
-    for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
-      const RingDownMode& mode = fits[s].modes[m];
-      if (!mode.significant()) continue;
-      MatchedMode match{s, m, {mode.natural(), 1.0, mode.decay}, 0.0};
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const wire::RodMode& candidate : computed) {
-        const double distance = std::abs(std::log(candidate.natural / mode.natural()));
-        if (distance >= nearest) continue;
-        nearest = distance;
-        match.computed = candidate.natural;
-        match.decay.bending_share = candidate.bending_share + candidate.axial_share;
-      }
-      const std::vector<double>& given = file.series[s].bending_share;
-      if (!given.empty()) match.decay.bending_share = m < given.size() ? given[m] : 1.0;
-      modes.push_back(match);
-    }
-  }
-  return modes;
-}
-
-DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
-  constexpr double far_off = 1.2;
-  std::vector<DecayOfMode> decays;
-  std::string strangers;
-  for (const MatchedMode& m : modes) {
-    decays.push_back(m.decay);
-    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off)
-      continue;
-    strangers += fmt::format("; {:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
-                             0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed);
-  }
-  DampingSplit split = split_damping(decays);
-  split.statement += strangers;
-  return split;
 }
 
 }  // namespace snare::identification

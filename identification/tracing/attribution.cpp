@@ -10,12 +10,14 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace snare::identification {
 
 namespace {
 
-/// Ridge regression on second differences beside free columns.
+/// The function's values v and the fit's numbers c that together leave least, v smooth:       theory.md (I.6)
+///   min |r - J c - H v|^2 + weight sum_i (v_{i-1} - 2 v_i + v_{i+1})^2,  columns scaled to one
 struct Smooth {
   Eigen::VectorXd values;      // of the function
   Eigen::MatrixXd covariance;  // of them
@@ -25,6 +27,7 @@ struct Smooth {
 Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const Eigen::VectorXd& r, double weight) {
   const Eigen::Index p = free.cols();
   const Eigen::Index m = columns.cols();
+  // [J H], every column of J scaled by its own length, those of H by the longest of theirs.
   Eigen::MatrixXd all(free.rows(), p + m);
   all << free, columns;
   Eigen::VectorXd scale(p + m);
@@ -32,6 +35,7 @@ Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const 
   for (Eigen::Index k = 0; k < p; ++k) scale[k] = 1.0 / std::max(free.col(k).norm(), 1e-300);
   scale.tail(m).setConstant(1.0 / size);
   all = all * scale.asDiagonal();
+  // Normal equations with the penalty; ridges that keep directions without any data finite.
   Eigen::MatrixXd normal = all.transpose() * all;
   normal.diagonal().head(p).array() += 1e-12;
   for (Eigen::Index i = 1; i + 1 < m; ++i) {
@@ -47,7 +51,8 @@ Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const 
   return {x.tail(m), inverse.bottomRightCorner(m, m) / (size * size), x.head(p)};
 }
 
-/// Groups of series of one position, or of one slack: a function must hold in each when it was found without it.
+/// Groups of series of one position, or of one slack: a function must hold in each when it was found without
+/// it.
 std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const Data& data) {
   const auto group_by = [&](const std::function<double(const Series&)>& key) {
     std::map<double, std::vector<Eigen::Index>> groups;
@@ -59,9 +64,9 @@ std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const D
     return groups;
   };
   std::vector<std::vector<Eigen::Index>> result;
-  for (const auto& key : {std::function<double(const Series&)>([](const Series& s) { return s.test.contact_position / s.test.mount.span; }),
-                          std::function<double(const Series&)>([](const Series& s) { return s.test.wire.length - s.test.mount.span; })}) {
-    const auto groups = group_by(key);
+  const auto position = [](const Series& s) { return s.test.contact_position / s.test.mount.span; };
+  const auto slack = [](const Series& s) { return s.test.wire.length - s.test.mount.span; };
+  for (const auto& groups : {group_by(position), group_by(slack)}) {
     if (groups.size() < 2) continue;
     for (const auto& [value, rows] : groups) result.push_back(rows);
   }
@@ -78,7 +83,8 @@ std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const D
 }
 
 std::string describe(const ChannelFunction& f) {
-  // Stretches in which the function stands out by more than three deviations and a quarter of its largest value.
+  // Stretches in which the function stands out by more than three deviations and a quarter of its largest
+  // value.
   double largest = 0.0;
   for (const double v : f.value) largest = std::max(largest, std::abs(v));
   std::string text;
@@ -94,12 +100,14 @@ std::string describe(const ChannelFunction& f) {
     const std::size_t from = i;
     const bool high = f.value[i] > 0.0;
     while (i < f.value.size() && stands_out(i) && (f.value[i] > 0.0) == high) ++i;
-    text += fmt::format("{}{} between {:.3g} and {:.3g}", text.empty() ? "" : ", ", high ? "high" : "low", f.at[from], f.at[i - 1]);
+    text += fmt::format("{}{} between {:.3g} and {:.3g}", text.empty() ? "" : ", ", high ? "high" : "low", f.at[from],
+                        f.at[i - 1]);
   }
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
 
-/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
+/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone
+/// leave there.
 struct Fold {
   std::vector<Eigen::Index> in, out;
   Eigen::MatrixXd free_in, free_out;
@@ -142,6 +150,16 @@ double carried_over(const std::vector<Fold>& folds, const Eigen::MatrixXd& colum
   return without > 0.0 ? 1.0 - with / without : 0.0;
 }
 
+/// The largest share that is carried over, and the weight of smoothness that does it.
+std::pair<double, double> best_of_weights(const std::vector<Fold>& folds, const Eigen::MatrixXd& columns) {
+  std::pair<double, double> best{std::numeric_limits<double>::lowest(), 1.0};
+  for (const double weight : {1e-4, 1e-2, 1.0, 1e2}) {
+    const double share = carried_over(folds, columns, weight);
+    if (share > best.first) best = {share, weight};
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<ChannelFunction> attribute(const Model& model, const Data& data, const Fit& current) {
@@ -150,15 +168,8 @@ std::vector<ChannelFunction> attribute(const Model& model, const Data& data, con
   const std::vector<Fold> folds = folds_of(model, data, current);
   std::vector<ChannelFunction> result;
   for (const ChannelColumns& channel : channel_columns(model, data, current)) {
-    double best = std::numeric_limits<double>::lowest();
-    double best_weight = 1.0;
-    for (const double weight : {1e-4, 1e-2, 1.0, 1e2}) {
-      const double share = carried_over(folds, channel.columns, weight);
-      if (share > best) {
-        best = share;
-        best_weight = weight;
-      }
-    }
+    const auto [best, best_weight] = best_of_weights(folds, channel.columns);
+    // The function of all series, with the weight that carries over best.
     ChannelFunction f;
     f.channel = channel.channel;
     f.argument = channel.argument;

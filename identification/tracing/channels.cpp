@@ -1,7 +1,8 @@
 #include "identification/tracing/channels.hpp"
 
-#include "identification/tracing/score.hpp"
+#include "identification/effects/catalogue.hpp"
 #include "identification/fitting/statistics.hpp"
+#include "identification/tracing/projection.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -26,10 +27,10 @@ void add_hats(double u, double weight, Eigen::Ref<Eigen::MatrixXd> out, Eigen::I
   out(row, j + 1) += weight * part;
 }
 
-/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the argument.
+/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the
+/// argument.
 ChannelColumns function_of(const Data& data, const std::function<double(std::size_t, Eigen::Index)>& argument,
-                           const std::function<double(std::size_t, Eigen::Index)>& weight,
-                           double argument_unit) {
+                           const std::function<double(std::size_t, Eigen::Index)>& weight, double argument_unit) {
   double low = std::numeric_limits<double>::max();
   double high = std::numeric_limits<double>::lowest();
   for (const std::size_t k : data.series) {
@@ -50,8 +51,7 @@ ChannelColumns function_of(const Data& data, const std::function<double(std::siz
     result.columns.middleRows(row, n) = data.noise.whiten(k, own);
     row += n;
   }
-  for (int s = 0; s < stations; ++s)
-    result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
+  for (int s = 0; s < stations; ++s) result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
   return result;
 }
 
@@ -63,8 +63,8 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return measured_displacement(model.series()[k])[static_cast<std::size_t>(i)];
   };
   const auto computed = [&](std::size_t k, Eigen::Index i) { return current.evaluation.force[k][i]; };
-  const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument,
-                       const std::string& effect, double unit) {
+  const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument, const std::string& effect,
+                       double unit) {
     c.channel = channel;
     c.argument = argument;
     c.effect = effect;
@@ -84,11 +84,10 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
   };
   add(function_of(data, time, one, 1.0), Channel::sensor,
-      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]",
-      1.0);
+      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]", 1.0);
 
-  const Parameter& span = parameter("mount.span_mm");
-  const Parameter& zero = parameter("reading.displacement_offset_mm");
+  const Parameter& span = parameters().at("mount.span_mm");
+  const Parameter& zero = parameters().at("reading.displacement_offset_mm");
   const bool supports = model.series().front().test.mount.kind == wire::MountKind::supports;
   const Evaluation smooth = model.evaluate(current.settings, {&span, &zero});
   if (smooth.complete) {
@@ -106,8 +105,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
   }
   const auto sense = [&](std::size_t k, Eigen::Index i) {
     const Eigen::Index last = data.measured[k].size() - 1;
-    const double move =
-        displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
+    const double move = displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
     return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
   };
   add(function_of(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
@@ -136,9 +134,8 @@ double channel_p(const ChannelColumns& channel, const Fit& current) {
       prior(i, j) = std::exp(-0.5 * std::pow(static_cast<double>(i - j) / length, 2));
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(prior);
-  const Eigen::MatrixXd half = root.eigenvectors() *
-                               root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                               root.eigenvectors().transpose();
+  const Eigen::MatrixXd half =
+      root.eigenvectors() * root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
   const Eigen::MatrixXd c = Projection(current.jacobian).without(channel.columns) * half;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(c.transpose() * c, Eigen::EigenvaluesOnly);
   return chi_square_mixture_tail((c.transpose() * current.residual).squaredNorm(), spectrum.eigenvalues());

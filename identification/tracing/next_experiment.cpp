@@ -1,5 +1,7 @@
 #include "identification/tracing/next_experiment.hpp"
 
+#include "identification/effects/catalogue.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,8 +40,8 @@ Design design(const Series& present, double travel, double duration, double frac
   d.words = fmt::format("push at {:.0f} mm from the left {}, {:.3g} mm and back", 1e3 * t.contact_position,
                         supports ? "support" : "mount", 1e3 * travel);
   if (closer != 0.0) {
-    d.words += fmt::format(", the {} {:.3g} mm {} ({:.4g} mm)", supports ? "supports" : "mounts", 1e3 * std::abs(closer),
-                           closer > 0.0 ? "closer" : "farther apart", 1e3 * t.mount.span);
+    d.words += fmt::format(", the {} {:.3g} mm {} ({:.4g} mm)", supports ? "supports" : "mounts",
+                           1e3 * std::abs(closer), closer > 0.0 ? "closer" : "farther apart", 1e3 * t.mount.span);
   }
   if (direction != present.test.pusher.direction) {
     d.words += direction == coupling::PushDirection::inward ? ", against the bulge" : ", with the bulge";
@@ -58,7 +60,8 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
   for (const Series& s : model.series()) {
     const std::vector<double>& d = measured_displacement(s);
     travel = std::max(travel, *std::max_element(d.begin(), d.end()));
-    if (s.readings && !s.readings->time.empty()) duration = std::max(duration, s.readings->time.back() - s.readings->time.front());
+    if (s.readings && !s.readings->time.empty())
+      duration = std::max(duration, s.readings->time.back() - s.readings->time.front());
   }
   const bool supports = present.test.mount.kind == wire::MountKind::supports;
   const coupling::PushDirection along = present.test.pusher.direction;
@@ -95,8 +98,8 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
   if (best.what.empty() || best.sigmas < 1.0) {
     best.what = "no push of this kind separates them; " + checks;
   } else {
-    best.what += fmt::format(" (there they differ by {:.3g} N, {:.2g} times the noise of a reading); or {}", best.difference,
-                             best.sigmas, checks);
+    best.what += fmt::format(" (there they differ by {:.3g} N, {:.2g} times the noise of a reading); or {}",
+                             best.difference, best.sigmas, checks);
   }
   return best;
 }

@@ -1,14 +1,23 @@
 #pragma once
 
-#include "identification/tracing/trace.hpp"
+#include "identification/fitting/model.hpp"
 
+#include <string>
 #include <vector>
 
 namespace snare::identification {
 
-/// The push test, of a list of variations of the present ones (position, slack, load and unload, direction, speed), in
-/// which two models that explain the present data differ most; beside it the measurement that settles an effect by
-/// itself. names: of the two effects. sigma: of a reading [N].
+/// A measurement that would separate members of a class.
+struct NextExperiment {
+  std::string what;
+  std::vector<std::string> separates;
+  double difference = 0.0;  ///< root mean square difference of the two models' forces there [N]
+  double sigmas = 0.0;      ///< the same over the noise of a reading
+};
+
+/// The push test, of a list of variations of the present ones (position, slack, load and unload, direction,
+/// speed), in which two models that explain the present data differ most; beside it the measurement that
+/// settles an effect by itself. names: of the two effects. sigma: of a reading [N].
 [[nodiscard]] NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
                                              const std::vector<Setting>& other, const std::vector<std::string>& names,
                                              double sigma);

@@ -1,8 +1,8 @@
 #include "identification/tracing/score.hpp"
 
+#include "identification/effects/catalogue.hpp"
 #include "identification/fitting/statistics.hpp"
-
-#include <Eigen/SVD>
+#include "identification/tracing/projection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,11 @@ namespace snare::identification {
 
 namespace {
 
-/// Share of a column that must be left after projection, else it lies in the span: derivatives carry the mesh's error.
+/// Share of a column that must be left after projection, else it lies in the span: derivatives carry the
+/// mesh's error.
 constexpr double left_over = 1e-3;
+/// Change of all readings together below which nothing is seen: a thousandth of one reading's noise.
+constexpr double least_change = 1e-3;
 
 bool fitted(const Fit& fit, const Parameter* p) {
   return std::any_of(fit.settings.begin(), fit.settings.end(), [p](const Setting& s) { return s.parameter == p; });
@@ -25,25 +28,15 @@ double bounded(const Model& model, const Parameter& p, double coordinate) {
   return std::clamp(std::clamp(coordinate, -limit, limit), model.lower(p), model.upper(p));
 }
 
+/// One finite amplitude of an effect, and what it does to the curves.
+struct Trial {
+  double z = 0.0;
+  double size = 0.0;  // |g|, in standard deviations of all readings together
+  std::vector<double> coordinates;
+  Eigen::VectorXd direction;
+};
+
 }  // namespace
-
-Projection::Projection(const Eigen::MatrixXd& jacobian) {
-  if (jacobian.cols() == 0) return;
-  Eigen::MatrixXd scaled = jacobian;
-  for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
-    const double norm = scaled.col(k).norm();
-    if (norm > 0.0) scaled.col(k) /= norm;
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > 1e-9 * svd.singularValues()[0]) ++rank;
-  basis_ = svd.matrixU().leftCols(rank);
-}
-
-Eigen::MatrixXd Projection::without(const Eigen::MatrixXd& columns) const {
-  if (basis_.cols() == 0) return columns;
-  return columns - basis_ * (basis_.transpose() * columns);
-}
 
 TrialContext trial_context(const Model& model, const Fit& current) {
   TrialContext context;
@@ -79,136 +72,191 @@ TrialContext trial_context(const Model& model, const Fit& current) {
   return context;
 }
 
-std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current, const ScoreOptions& options) {
+namespace {
+
+/// The scores of one fitted model.
+class Scoring {
+ public:
+  Scoring(const Model& model, const Data& data, const Fit& current);
+  [[nodiscard]] std::vector<Score> run(double significance);
+
+ private:
+  [[nodiscard]] std::vector<Score> observable_scores();
+  void by_derivative(Score& score) const;
+  void by_trials(Score& score) const;
+  [[nodiscard]] std::vector<Trial> trials_of(const Effect& effect, bool& spanned) const;
+  void choose_starts(Score& score, std::vector<Trial>& trials) const;
+
+  const Model& model_;
+  const Data& data_;
+  const Fit& current_;
+  const Eigen::VectorXd& r_;                   // whitened residual
+  Projection projection_;                      // off the fitted columns
+  std::vector<const Parameter*> derivatives_;  // of effects that have one at null
+  Evaluation smooth_;                          // with those derivatives
+  Eigen::MatrixXd columns_;
+  TrialContext context_;
+  Model coarse_;  // changes by finite amplitudes need fewer edges than the forces: the mesh's error drops out
+  Evaluation unchanged_;
+  double needed_ = 0.0;  // |g| of a size that shows: quantile of the level plus that of 90 %
+};
+
+SolverSettings few_edges(const SolverSettings& asked) {
+  SolverSettings few = asked;
+  few.elements = std::min(64, asked.elements);
+  return few;
+}
+
+Scoring::Scoring(const Model& model, const Data& data, const Fit& current)
+    : model_(model),
+      data_(data),
+      current_(current),
+      r_(current.residual),
+      projection_(current.jacobian),
+      context_(trial_context(model, current)),
+      coarse_(model.series(), few_edges(model.solver())) {}
+
+// An empty score for every effect that is not fitted already; why these data cannot show it, where they
+// cannot.
+std::vector<Score> Scoring::observable_scores() {
   std::vector<Score> scores;
-  std::vector<const Parameter*> derivatives;
-  const std::vector<Series> now = model.apply(current.settings).series;
+  const std::vector<Series> now = model_.apply(current_.settings).series;
   for (const Effect& effect : catalogue()) {
     Score score;
     score.effect = &effect;
-    const Parameter* first = find_parameter(effect.numbers.front().key);
-    if (fitted(current, first)) continue;
+    const Parameter* first = &effect.numbers.front().parameter;
+    if (fitted(current_, first)) continue;
     if (effect.unobservable != nullptr) score.unobservable = effect.unobservable(now);
-    if (score.unobservable.empty() && effect.trials == nullptr) derivatives.push_back(first);
+    if (score.unobservable.empty() && effect.trials == nullptr) derivatives_.push_back(first);
     scores.push_back(std::move(score));
   }
-  const Projection projection(current.jacobian);
-  const Evaluation smooth = model.evaluate(current.settings, derivatives);
-  const Eigen::MatrixXd columns = smooth.complete ? data.jacobian(smooth) : Eigen::MatrixXd();
-  const TrialContext context = trial_context(model, current);
-  // Changes by finite amplitudes need fewer edges than the forces themselves: the mesh's error drops out.
-  SolverSettings few = model.solver();
-  few.elements = std::min(64, few.elements);
-  const Model coarse(model.series(), few);
-  const Evaluation unchanged = coarse.evaluate(current.settings);
-  // The residual of what can be explained at all, for sizes.
-  const Eigen::VectorXd& r = current.residual;
-  const double trials_in_all = static_cast<double>(scores.size());
-  const double needed = normal_quantile(options.significance / std::max(1.0, trials_in_all)) + normal_quantile(0.1);
+  return scores;
+}
 
+// z = g . r / |g|, g the projected derivative at null.                                     theory.md (I.4)
+void Scoring::by_derivative(Score& score) const {
+  const Effect& effect = *score.effect;
+  const Parameter& first = effect.numbers.front().parameter;
+  if (!smooth_.complete) {
+    score.unobservable = "the model could not be computed with it: " + smooth_.message;
+    return;
+  }
+  const auto j = std::find(derivatives_.begin(), derivatives_.end(), &first) - derivatives_.begin();
+  const Eigen::VectorXd column = columns_.col(j);
+  const Eigen::VectorXd g = projection_.without(column);
+  const double norm = g.norm();
+  const double range = std::abs(model_.upper(first) - model_.lower(first));
+  if (!(column.norm() * range > least_change)) {
+    score.unobservable = "it does not change these curves";
+    return;
+  }
+  if (norm < left_over * column.norm() || !(norm * range > least_change)) {
+    score.absorbed = true;
+    score.unobservable = "the fitted numbers change the curves in the same way";
+    return;
+  }
+  score.direction = g / norm;
+  score.z = g.dot(r_) / norm;
+  if (effect.one_sided) score.z = std::max(score.z, 0.0);
+  score.p = effect.one_sided ? normal_tail(score.z) : 2.0 * normal_tail(std::abs(score.z));
+  score.starts = {{bounded(model_, first, score.z / norm)}};
+  const double declared = model_.declared(first);
+  score.detectable = first.parametrisation == Parametrisation::shift
+                         ? needed_ / norm / first.unit_size
+                         : first.shown(declared, needed_ / norm) - first.shown(declared, 0.0);
+}
+
+// Trials that change the curves otherwise than the fitted numbers. spanned: some change them in the same way.
+std::vector<Trial> Scoring::trials_of(const Effect& effect, bool& spanned) const {
+  std::vector<Trial> trials;
+  for (const std::vector<double>& coordinates : effect.trials(context_)) {
+    std::vector<Setting> settings = current_.settings;
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+      settings.push_back({&effect.numbers[k].parameter, coordinates[k]});
+    }
+    const Evaluation at = coarse_.evaluate(settings);
+    if (!at.complete || !unchanged_.complete) continue;
+    const Eigen::VectorXd change = data_.residual(unchanged_) - data_.residual(at);
+    const Eigen::VectorXd g = projection_.without(change);
+    const double norm = g.norm();
+    if (!(norm > least_change)) continue;
+    if (norm < left_over * change.norm()) {
+      spanned = true;
+      continue;
+    }
+    trials.push_back({g.dot(r_) / norm, norm, coordinates, g / norm});
+  }
+  return trials;
+}
+
+// The same with the change at each of a grid of finite amplitudes: the largest z counts, its p times their
+// number.
+void Scoring::by_trials(Score& score) const {
+  const Parameter& first = score.effect->numbers.front().parameter;
+  bool spanned = false;
+  std::vector<Trial> trials = trials_of(*score.effect, spanned);
+  if (trials.empty()) {
+    score.absorbed = spanned;
+    score.unobservable = spanned ? "the fitted numbers change the curves in the same way"
+                                 : "no size that was tried changes these curves";
+    return;
+  }
+  std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.z > b.z; });
+  score.z = std::max(trials.front().z, 0.0);
+  score.direction = trials.front().direction;
+  score.p = std::min(1.0, static_cast<double>(trials.size()) * normal_tail(score.z));
+  choose_starts(score, trials);
+  const auto smallest = std::min_element(trials.begin(), trials.end(), [this](const Trial& a, const Trial& b) {
+    const bool a_shows = a.size >= needed_;
+    const bool b_shows = b.size >= needed_;
+    return a_shows != b_shows ? a_shows : a.size < b.size;
+  });
+  if (first.parametrisation == Parametrisation::shift) {
+    score.detectable = smallest->coordinates.front() * needed_ / smallest->size / first.unit_size;
+  } else if (smallest->size >= needed_) {
+    score.detectable = first.shown(model_.declared(first), smallest->coordinates.front());
+  }
+}
+
+// From the likeliest trials, their first number brought to the size seen where it can be (a coefficient, a
+// stiffness); a threshold stays as it was tried, and what it then leaves is |r - change|^2 = |r|^2 - 2 size z
+// + size^2.
+void Scoring::choose_starts(Score& score, std::vector<Trial>& trials) const {
+  const Parameter& first = score.effect->numbers.front().parameter;
+  const bool scalable = first.parametrisation == Parametrisation::shift;
+  if (!scalable) {
+    std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+      return a.size * (2.0 * a.z - a.size) > b.size * (2.0 * b.z - b.size);
+    });
+  }
+  for (const Trial& trial : trials) {
+    if (score.starts.size() == 2) break;
+    if (scalable && trial.z < 0.7 * score.z) break;
+    std::vector<double> start = trial.coordinates;
+    if (scalable) {
+      const double seen = std::clamp(trial.z / trial.size, 0.05, 5.0);
+      start.front() = std::clamp(start.front() * seen, model_.lower(first), model_.upper(first));
+    }
+    score.starts.push_back(start);
+  }
+}
+
+std::vector<Score> Scoring::run(double significance) {
+  std::vector<Score> scores = observable_scores();
+  smooth_ = model_.evaluate(current_.settings, derivatives_);
+  if (smooth_.complete) columns_ = data_.jacobian(smooth_);
+  unchanged_ = coarse_.evaluate(current_.settings);
+  const auto trials_in_all = static_cast<double>(scores.size());
+  needed_ = normal_quantile(significance / std::max(1.0, trials_in_all)) + normal_quantile(0.1);
   for (Score& score : scores) {
     if (!score.unobservable.empty()) continue;
-    const Effect& effect = *score.effect;
-    const Parameter& first = parameter(effect.numbers.front().key);
-    if (effect.trials == nullptr) {
-      if (!smooth.complete) {
-        score.unobservable = "the model could not be computed with it: " + smooth.message;
-        continue;
-      }
-      const auto j = std::find(derivatives.begin(), derivatives.end(), &first) - derivatives.begin();
-      const Eigen::VectorXd column = columns.col(j);
-      const Eigen::VectorXd g = projection.without(column);
-      const double norm = g.norm();
-      const double range = std::abs(model.upper(first) - model.lower(first));
-      if (!(column.norm() * range > 1e-3)) {
-        score.unobservable = "it does not change these curves";
-        continue;
-      }
-      if (norm < left_over * column.norm() || !(norm * range > 1e-3)) {
-        score.absorbed = true;
-        score.unobservable = "the fitted numbers change the curves in the same way";
-        continue;
-      }
-      score.direction = g / norm;
-      score.z = g.dot(r) / norm;
-      if (effect.one_sided) score.z = std::max(score.z, 0.0);
-      score.p = effect.one_sided ? normal_tail(score.z) : 2.0 * normal_tail(std::abs(score.z));
-      score.starts = {{bounded(model, first, score.z / norm)}};
-      score.detectable = first.parametrisation == Parametrisation::shift ? needed / norm / first.unit_size
-                                                       : first.shown(model.declared(first), needed / norm) -
-                                                             first.shown(model.declared(first), 0.0);
-      continue;
-    }
-    // Finite amplitudes.
-    struct Trial {
-      double z = 0.0;
-      double size = 0.0;
-      std::vector<double> coordinates;
-      Eigen::VectorXd direction;
-    };
-    std::vector<Trial> trials;
-    bool spanned = false;
-    for (const std::vector<double>& coordinates : effect.trials(context)) {
-      std::vector<Setting> settings = current.settings;
-      for (std::size_t k = 0; k < coordinates.size(); ++k) {
-        settings.push_back({&parameter(effect.numbers[k].key), coordinates[k]});
-      }
-      const Evaluation at = coarse.evaluate(settings);
-      if (!at.complete || !unchanged.complete) continue;
-      const Eigen::VectorXd change = data.residual(unchanged) - data.residual(at);
-      const Eigen::VectorXd g = projection.without(change);
-      const double norm = g.norm();
-      if (!(norm > 1e-3)) continue;  // a thousandth of one reading's noise
-      if (norm < left_over * change.norm()) {
-        spanned = true;
-        continue;
-      }
-      Trial trial;
-      trial.z = g.dot(r) / norm;
-      trial.size = norm;
-      trial.coordinates = coordinates;
-      trial.direction = g / norm;
-      trials.push_back(std::move(trial));
-    }
-    if (trials.empty()) {
-      score.absorbed = spanned;
-      score.unobservable = spanned ? "the fitted numbers change the curves in the same way"
-                                   : "no size that was tried changes these curves";
-      continue;
-    }
-    std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.z > b.z; });
-    score.z = std::max(trials.front().z, 0.0);
-    score.direction = trials.front().direction;
-    score.p = std::min(1.0, static_cast<double>(trials.size()) * normal_tail(score.z));
-    // From the likeliest trials, their first number brought to the size seen where it can be (a coefficient, a stiffness);
-    // a threshold stays as it was tried, and what it then leaves is |r - change|^2 = |r|^2 - 2 size z + size^2.
-    const bool scalable = first.parametrisation == Parametrisation::shift;
-    if (!scalable) {
-      std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
-        return a.size * (2.0 * a.z - a.size) > b.size * (2.0 * b.z - b.size);
-      });
-    }
-    for (const Trial& trial : trials) {
-      if (score.starts.size() == 2) break;
-      if (scalable && trial.z < 0.7 * score.z) break;
-      std::vector<double> start = trial.coordinates;
-      if (scalable) {
-        start.front() = std::clamp(start.front() * std::clamp(trial.z / trial.size, 0.05, 5.0), model.lower(first), model.upper(first));
-      }
-      score.starts.push_back(start);
-    }
-    const auto smallest = std::min_element(trials.begin(), trials.end(), [needed](const Trial& a, const Trial& b) {
-      const bool a_shows = a.size >= needed;
-      const bool b_shows = b.size >= needed;
-      return a_shows != b_shows ? a_shows : a.size < b.size;
-    });
-    if (first.parametrisation == Parametrisation::shift) {
-      score.detectable = smallest->coordinates.front() * needed / smallest->size / first.unit_size;
-    } else if (smallest->size >= needed) {
-      score.detectable = first.shown(model.declared(first), smallest->coordinates.front());
+    if (score.effect->trials == nullptr) {
+      by_derivative(score);
+    } else {
+      by_trials(score);
     }
   }
-
+  // Holm over all effects that can be seen.
   std::vector<double> p;
   for (const Score& score : scores) {
     if (score.unobservable.empty()) p.push_back(score.p);
@@ -219,6 +267,12 @@ std::vector<Score> score_effects(const Model& model, const Data& data, const Fit
     if (score.unobservable.empty()) score.adjusted_p = adjusted[k++];
   }
   return scores;
+}
+
+}  // namespace
+
+std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current, double significance) {
+  return Scoring(model, data, current).run(significance);
 }
 
 }  // namespace snare::identification

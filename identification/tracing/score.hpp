@@ -11,38 +11,26 @@ namespace snare::identification {
 /// Score test of one effect against a fitted model.                                  theory.md (I.4)
 struct Score {
   const Effect* effect = nullptr;
-  std::string unobservable;   ///< why these data cannot show it; empty when they can
-  bool absorbed = false;      ///< the numbers already fitted change the curves in the same way
-  double z = 0.0;             ///< normal deviate of the best trial; >= 0 for one-sided effects
-  double p = 1.0;             ///< of the score, trials counted
-  double adjusted_p = 1.0;    ///< by Holm, over the observable effects
+  std::string unobservable;                 ///< why these data cannot show it; empty when they can
+  bool absorbed = false;                    ///< the numbers already fitted change the curves in the same way
+  double z = 0.0;                           ///< normal deviate of the best trial; >= 0 for one-sided effects
+  double p = 1.0;                           ///< of the score, trials counted
+  double adjusted_p = 1.0;                  ///< by Holm, over the observable effects
   std::vector<std::vector<double>> starts;  ///< coordinates of its numbers from which to refit, best first
   Eigen::VectorXd direction;  ///< whitened change of the forces, fitted columns projected out, unit length
-  /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and ratios) that
-  /// these data would show in nine of ten cases at this significance; absent when no trial would do.
+  /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and
+  /// ratios) that these data would show in nine of ten cases at this significance; absent when no trial would
+  /// do.
   std::optional<double> detectable;
 };
 
-struct ScoreOptions {
-  double significance = 0.02;  ///< after Holm
-};
-
 /// Score (Lagrange multiplier) tests of every effect of the catalogue that is not among the fitted numbers:
-///   z = g . r / |g|, r the whitened residual, g the whitened change of the forces with the fitted columns projected out,
-/// a derivative at null or, for effects without one, the change at each of a grid of finite amplitudes (the largest z,
-/// its p times the number of trials).
+///   z = g . r / |g|, r the whitened residual, g the whitened change of the forces with the fitted columns
+///   projected out,
+/// a derivative at null or, for effects without one, the change at each of a grid of finite amplitudes (the
+/// largest z, its p times the number of trials). significance: after Holm, for Score::detectable.
 [[nodiscard]] std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current,
-                                               const ScoreOptions& options = {});
-
-/// Removes from columns their components in the span of a Jacobian.
-class Projection {
- public:
-  explicit Projection(const Eigen::MatrixXd& jacobian);
-  [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const;
-
- private:
-  Eigen::MatrixXd basis_;
-};
+                                               double significance);
 
 /// What the trials of effects depend on.
 [[nodiscard]] TrialContext trial_context(const Model& model, const Fit& current);

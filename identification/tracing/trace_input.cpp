@@ -35,7 +35,8 @@ bool replace_laws(std::vector<Series>& series, bool draw, unsigned seed) {
   return drawn;
 }
 
-void check_readings(const std::filesystem::path& file, const std::vector<Series>& series, const std::vector<bool>& heldout) {
+void check_readings(const std::filesystem::path& file, const std::vector<Series>& series,
+                    const std::vector<bool>& heldout) {
   std::vector<base::InputProblem> problems;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const std::string key = "series[" + series[k].name + "]";
@@ -53,8 +54,8 @@ void check_readings(const std::filesystem::path& file, const std::vector<Series>
       refuse(fmt::format("force_N is {} in every reading: there is nothing to fit", *low));
       continue;
     }
-    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike (von Neumann 1941:
-    // the ratio is 2 +- 2/sqrt(n) for noise).
+    // A wire that is pushed answers with a force that goes with the travel: neighbouring readings are alike
+    // (von Neumann 1941: the ratio is 2 +- 2/sqrt(n) for noise).
     double mean = 0.0;
     for (const double v : f) mean += v / static_cast<double>(f.size());
     double variance = 0.0;

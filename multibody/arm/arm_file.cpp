@@ -1,8 +1,8 @@
 #include "multibody/arm/arm_file.hpp"
 
 #include "base/index.hpp"
-#include "base/units.hpp"
 #include "base/toml_reader.hpp"
+#include "base/units.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +19,8 @@ using base::Range;
 using base::TomlDocument;
 using base::TomlTable;
 
-using base::degree;
 using base::at;
+using base::degree;
 
 constexpr Choice<StiffnessReading> readings[] = {{"continuous", StiffnessReading::continuous},
                                                  {"literal", StiffnessReading::literal}};
@@ -29,8 +29,7 @@ constexpr Choice<DampingRate> damping_rates[] = {{"deflection", DampingRate::def
 constexpr Choice<DriveMode> drive_modes[] = {
     {"locked", DriveMode::locked}, {"servo", DriveMode::servo}, {"limp", DriveMode::limp}};
 enum class Law { linear, piecewise, backlash };
-constexpr Choice<Law> laws[] = {
-    {"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
+constexpr Choice<Law> laws[] = {{"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
 enum class BaseKind { fixed, free };
 constexpr Choice<BaseKind> base_kinds[] = {{"fixed", BaseKind::fixed}, {"free", BaseKind::free}};
 
@@ -81,11 +80,10 @@ int frame_of(const TomlTable& table, std::string_view key, const Tree& tree) {
 
 std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   const auto law = table.choice("law", laws);
-  const auto rate =
-      table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
+  const auto rate = table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
   if (!law || !rate) {
-    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg",
-                 "stiffness_Nm_rad", "damping_Nms_rad", "half_gap_deg"});
+    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg", "stiffness_Nm_rad",
+                 "damping_Nms_rad", "half_gap_deg"});
     return std::nullopt;
   }
   std::vector<DeflectionPiece> pieces;
@@ -121,8 +119,7 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   } else {
     const double stiffness = table.number("stiffness_Nm_rad", Range::above(0.0));
     const double damping = table.number("damping_Nms_rad", Range::from(0.0));
-    const double gap =
-        *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
+    const double gap = *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
     if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
     if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0, 0.0});
     pieces.push_back({gap, stiffness, damping, 0.0});
@@ -164,12 +161,11 @@ Drive drive_of(const TomlTable& table) {
 }
 
 ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
-  constexpr Choice<bool> schemas[] = {{"snare-arm/1", true}};
   ArmDescription description;
   description.file = file;
   const std::filesystem::path folder = file.parent_path();
   const TomlTable root = document.root();
-  static_cast<void>(root.choice("schema", schemas));
+  base::require_schema(root, "snare-arm/1");
   description.title = root.text("title");
   description.source = root.text("source");
   Tree& tree = description.arm.tree;
@@ -234,8 +230,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     }
   }
   const std::size_t count = description.joints.size();
-  if (whole && count == 0)
-    root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
+  if (whole && count == 0) root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
   for (const TomlTable& pose : root.tables("pose")) {
     ArmPose one;
     one.name = pose.text("name");

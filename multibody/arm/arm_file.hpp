@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/toml_tree.hpp"
 #include "multibody/arm/elastic_arm.hpp"
 #include "multibody/urdf.hpp"
-#include "base/toml_tree.hpp"
 
 #include <Eigen/Core>
 

@@ -14,9 +14,6 @@ namespace {
 
 using base::at;
 
-// Unknowns with which the equations of a joint are coupled: its own row of motion, of the motor, and the works.
-constexpr int slots_per_joint = 19;
-
 }  // namespace
 
 BaseEquations best_base_equations(const Tree& tree) {
@@ -34,7 +31,7 @@ double TimedLoad::share(double time) const {
 struct ElasticArmPart::Terms {
   double deflection, deflection_rate, motor_rate;
   double damping;  // of the present branch
-  double torque;              // of spring and damper on the motor
+  double torque;   // of spring and damper on the motor
   double motor_loss,
       motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
   double drive, drive_by_angle, drive_by_rate;
@@ -71,8 +68,7 @@ void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), numerics::DaeKind::differential, motion});
   motor_ = layout.add({"motor angle [rad]", {}, m, numerics::DaeKind::differential, motion});
   rate_ = layout.add({"motor rate [rad/s]", {}, m, numerics::DaeKind::differential, motion});
-  work_ = layout.add(
-      {"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
+  work_ = layout.add({"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
   if (base_ == BaseEquations::momentum) {
     momentum_ = layout.add({"momentum", {}, 6, numerics::DaeKind::differential, motion * arm_.tree.mass()});
   }
@@ -92,7 +88,7 @@ void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   }
   for (int k = 0; k < arm_.motors(); ++k) {
     const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
-    for (const int row : {v_ + body.v_index, rate_ + k, work_, work_ + 2}) {
+    for (const int row : {v_ + body.v_index, rate_ + k, drive_work(), lost()}) {
       for (const int column : {q_ + body.q_index, v_ + body.v_index, motor_ + k, rate_ + k})
         entries.emplace_back(row, column);
     }
@@ -101,8 +97,8 @@ void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   }
   for (int i = 0; i < 3; ++i) entries.emplace_back(work_ + i, work_ + i);
   if (!loads_.empty()) {
-    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(work_ + 1, q_ + j);
-    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(work_ + 1, v_ + j);
+    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(load_work(), q_ + j);
+    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(load_work(), v_ + j);
   }
   if (base_ == BaseEquations::momentum) {
     for (int i = 0; i < 6; ++i) {
@@ -115,13 +111,12 @@ void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
 }
 
 void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
-  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &joint_slots_, &work_by_q_,
-                      &work_by_v_, &momentum_slots_, &momentum_by_q_}) {
+  joint_slots_.clear();
+  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &work_slots_, &work_by_q_, &work_by_v_,
+                      &momentum_slots_, &momentum_by_q_}) {
     slots->clear();
   }
-  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) {
-    slots.push_back(pattern.slot(i, j));
-  };
+  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) { slots.push_back(pattern.slot(i, j)); };
   for (const TreeBody& body : arm_.tree.bodies()) {
     const int q = q_ + body.q_index, v = v_ + body.v_index;
     for (int i = 0; i < body.coordinates(); ++i) {
@@ -137,27 +132,17 @@ void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   }
   for (int k = 0; k < arm_.motors(); ++k) {
     const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
-    const int q = q_ + body.q_index, v = v_ + body.v_index, motor = motor_ + k, rate = rate_ + k;
-    for (const int row : {v, rate}) {
-      for (const int column : {q, v, motor, rate}) keep(joint_slots_, row, column);
-    }
-    keep(joint_slots_, motor, motor);
-    keep(joint_slots_, motor, rate);
-    keep(joint_slots_, work_, motor);
-    keep(joint_slots_, work_, rate);
-    keep(joint_slots_, work_ + 2, v);
-    keep(joint_slots_, work_ + 2, rate);
-    for (int i = 0; i < 3; ++i) keep(joint_slots_, work_ + i, work_ + i);
-    keep(joint_slots_, work_ + 2, q);
-    keep(joint_slots_, work_ + 2, motor);
-    assert(static_cast<int>(joint_slots_.size()) == slots_per_joint * (k + 1));
+    const auto slots_of = [&](int row) {
+      return JointSlots::Row{pattern.slot(row, q_ + body.q_index), pattern.slot(row, v_ + body.v_index),
+                             pattern.slot(row, motor_ + k), pattern.slot(row, rate_ + k)};
+    };
+    joint_slots_.push_back({slots_of(v_ + body.v_index), slots_of(motor_ + k), slots_of(rate_ + k),
+                            slots_of(drive_work()), slots_of(lost())});
   }
-  if (arm_.motors() == 0) {
-    for (int i = 0; i < 3; ++i) keep(joint_slots_, work_ + i, work_ + i);
-  }
+  for (const int row : {drive_work(), load_work(), lost()}) keep(work_slots_, row, row);
   if (!loads_.empty()) {
-    for (int j = 0; j < arm_.tree.coordinates(); ++j) keep(work_by_q_, work_ + 1, q_ + j);
-    for (int j = 0; j < arm_.tree.velocities(); ++j) keep(work_by_v_, work_ + 1, v_ + j);
+    for (int j = 0; j < arm_.tree.coordinates(); ++j) keep(work_by_q_, load_work(), q_ + j);
+    for (int j = 0; j < arm_.tree.velocities(); ++j) keep(work_by_v_, load_work(), v_ + j);
   }
   if (base_ == BaseEquations::momentum) {
     for (int i = 0; i < 6; ++i) {
@@ -172,8 +157,7 @@ void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
 
 double ElasticArmPart::inside(double time) const {
   const double margin = 1e-12 * (1.0 + std::abs(time));  // far below every time that matters
-  return std::clamp(time, interval_begin_ + margin,
-                    std::max(interval_begin_ + margin, interval_end_ - margin));
+  return std::clamp(time, interval_begin_ + margin, std::max(interval_begin_ + margin, interval_end_ - margin));
 }
 
 JointFriction ElasticArmPart::friction(int joint) const {
@@ -245,6 +229,7 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
   q_values_ = point.y.segment(q_, tree.coordinates());
   v_values_ = point.y.segment(v_, tree.velocities());
   a_values_ = point.rate.segment(v_, tree.velocities());
+  // q' - N(q) v = 0
   rows.segment(q_, tree.coordinates()) += point.rate.segment(q_, tree.coordinates());
   for (const TreeBody& body : tree.bodies()) {
     if (body.joint == JointKind::free) {
@@ -253,11 +238,12 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
       rows[q_ + body.q_index] -= v_values_[body.v_index];
     }
   }
-  rows.segment(v_, tree.velocities()) +=
-      inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
+  // Inertia less forces of the tree, or the momentum of its base.
+  rows.segment(v_, tree.velocities()) += inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
   rows.segment(work_, 3) += point.rate.segment(work_, 3);
   if (base_ == BaseEquations::momentum) use_momentum(point, loaded, rows);
 
+  // Joints: + tau on the link, - tau on the motor, and the powers of drives and losses.
   for (int k = 0; k < arm_.motors(); ++k) {
     const Terms t = terms(point.time, point.y, k);
     const ElasticJoint& joint = arm_.joints[at(k)];
@@ -265,11 +251,11 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
     rows[motor_ + k] += point.rate[motor_ + k] - t.motor_rate;
     rows[rate_ + k] += joint.motor_inertia * point.rate[rate_ + k];
     if (!fixed(k)) rows[rate_ + k] += t.motor_loss - t.torque - t.drive;
-    rows[work_] -= t.drive * t.motor_rate;
-    rows[work_ + 2] -= t.gear_damping * t.deflection_rate * t.deflection_rate + t.motor_loss * t.motor_rate;
+    rows[drive_work()] -= t.drive * t.motor_rate;
+    rows[lost()] -= t.gear_damping * t.deflection_rate * t.deflection_rate + t.motor_loss * t.motor_rate;
   }
   if (loaded) {
-    for (int i = 0; i < tree.size(); ++i) rows[work_ + 1] -= dot(kinematics_.V_B[at(i)], wrenches_[at(i)]);
+    for (int i = 0; i < tree.size(); ++i) rows[load_work()] -= dot(kinematics_.V_B[at(i)], wrenches_[at(i)]);
   }
 }
 
@@ -281,6 +267,7 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
   v_values_ = point.y.segment(v_, nv);
   a_values_ = point.rate.segment(v_, nv);
 
+  // q' - N(q) v, body by body.
   std::size_t slot = 0;
   for (const TreeBody& body : tree.bodies()) {
     if (body.joint != JointKind::free) {
@@ -297,6 +284,7 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     }
   }
 
+  // The balances of the tree; a free body's coordinates move it by free_coordinate_motion.
   differentiate_inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, derivatives_);
   if (loaded) add_load_derivatives(point.time, values);
   if (base_ == BaseEquations::momentum) add_momentum_derivatives(point.time, c, values);
@@ -319,35 +307,34 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
 
   for (int k = 0; k < arm_.motors(); ++k) {
     const Terms t = terms(point.time, point.y, k);
-    const int* s = &joint_slots_[at(slots_per_joint * k)];
-    const auto add = [&](int index, double value) { values[at(s[index])] += value; };
-    // Row of the link: q, v, qm, qm'.
-    add(0, t.torque_by_deflection);
-    add(1, t.gear_damping);
-    add(2, -t.torque_by_deflection);
-    add(3, -t.gear_damping);
-    // Row of the motor.
-    add(7, c * arm_.joints[at(k)].motor_inertia);
+    const JointSlots& s = joint_slots_[at(k)];
+    const auto add = [&values](int index, double value) { values[at(index)] += value; };
+    // Balance of the link: + tau.
+    add(s.link.q, t.torque_by_deflection);
+    add(s.link.v, t.gear_damping);
+    add(s.link.angle, -t.torque_by_deflection);
+    add(s.link.rate, -t.gear_damping);
+    // Balance of the motor: Im qm'' + losses - tau - drive.
+    add(s.motor_rate.rate, c * arm_.joints[at(k)].motor_inertia);
     if (!fixed(k)) {
-      add(4, t.loss_by_deflection - t.torque_by_deflection);
-      add(5, -t.gear_damping);
-      add(6, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
-      add(7, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
+      add(s.motor_rate.q, t.loss_by_deflection - t.torque_by_deflection);
+      add(s.motor_rate.v, -t.gear_damping);
+      add(s.motor_rate.angle, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
+      add(s.motor_rate.rate, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
     }
-    add(8, c);
-    add(9, -1.0);
-    // Works of the drives and losses.
-    add(10, -t.drive_by_angle * t.motor_rate);
-    add(11, -t.drive_by_rate * t.motor_rate - t.drive);
-    add(12, -2.0 * t.gear_damping * t.deflection_rate);
-    add(13, 2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
-    const double loss_by_deflection = t.gear_damping_slope * t.deflection_rate * t.deflection_rate +
-                                      t.loss_by_deflection * t.motor_rate;
-    add(17, -loss_by_deflection);
-    add(18, loss_by_deflection);
+    add(s.motor_angle.angle, c);
+    add(s.motor_angle.rate, -1.0);
+    // Work of the drives, - drive qm', and what is lost, - gear damping times rate^2 - losses qm'.
+    add(s.drive_work.angle, -t.drive_by_angle * t.motor_rate);
+    add(s.drive_work.rate, -t.drive_by_rate * t.motor_rate - t.drive);
+    add(s.lost.v, -2.0 * t.gear_damping * t.deflection_rate);
+    add(s.lost.rate, 2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
+    const double loss_by_deflection =
+        t.gear_damping_slope * t.deflection_rate * t.deflection_rate + t.loss_by_deflection * t.motor_rate;
+    add(s.lost.q, -loss_by_deflection);
+    add(s.lost.angle, loss_by_deflection);
   }
-  const std::size_t works = arm_.motors() > 0 ? 14 : 0;
-  for (std::size_t i = 0; i < 3; ++i) values[at(joint_slots_[works + i])] += c;
+  for (const int diagonal : work_slots_) values[at(diagonal)] += c;
 }
 
 void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& values) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "multibody/dynamics_derivatives.hpp"
 #include "multibody/arm/elastic_arm.hpp"
+#include "multibody/dynamics_derivatives.hpp"
 #include "numerics/dae.hpp"
 
 #include <Eigen/Core>
@@ -30,6 +30,16 @@ struct JointMode {
   int saturated = 0;  ///< +1, -1: the servo is at its limit
 };
 
+/// Functions of a joint that say by falling below zero that a mode is over, in the order of `events`.
+enum class JointEvent {
+  spring_lower,          ///< the deflection leaves the branch downwards
+  spring_upper,          ///< upwards
+  turn_forward_or_rest,  ///< the motor that sticks breaks away forwards; the one that turns comes to rest
+  turn_backward,         ///< the motor that sticks breaks away backwards
+  limit_upper_or_leave,  ///< the servo reaches its upper limit; the one at a limit leaves it
+  limit_lower            ///< the servo reaches its lower limit
+};
+
 /// Works since the start [J].
 struct ArmWork {
   double motors = 0.0;  ///< done by the drives
@@ -52,12 +62,13 @@ struct ArmTolerances {
   double work = 1e-6;    ///< [J], > 0
 };
 
-/// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.                       theory.md (A.9),
-/// (A.14)
+/// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.          theory.md (A.9), (A.14)
 ///
-/// Other parts attach to a frame of the arm: `body_row` gives the rows of the equations of motion, to which -J^T F
-/// is added
-/// for a wrench F with the frame's Jacobian of kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
+///   q' - N(q) v = 0,   ID(q, v, v', loads) + tau = 0 in a joint's row,   qm' - (qm') = 0,
+///   Im qm'' + losses - tau - drive = 0, or qm'' = 0 where the motor stands,   works' - powers = 0
+/// tau: torque of a joint's spring with its damper on the motor. Other parts attach to a frame of the arm: `velocities`
+/// is also the first row of the equations of motion, to which -J^T F is added for a wrench F with the frame's Jacobian of
+/// kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
 class ElasticArmPart : public numerics::DaePart {
  public:
   /// The arm stays the caller's and outlives the part.
@@ -69,7 +80,7 @@ class ElasticArmPart : public numerics::DaePart {
   void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
-  /// Six a joint, and one for the watched torque; one that falls below zero says that its mode is over.
+  /// Those of JointEvent for each joint, then one for the watched torque.
   [[nodiscard]] int event_count() const override { return events_per_joint * arm_.motors() + 1; }
   void events(const numerics::DaePoint& at, std::span<double> values) override;
   /// The modes; drives and watched torque are for who sets them to remember.
@@ -111,11 +122,20 @@ class ElasticArmPart : public numerics::DaePart {
   [[nodiscard]] const ElasticArm& arm() const { return arm_; }
   [[nodiscard]] int coordinates() const { return q_; }  ///< first of the coordinates
   [[nodiscard]] int velocities() const { return v_; }   ///< first of the velocities
-  [[nodiscard]] int body_row(int velocity) const { return v_ + velocity; }
 
-  static constexpr int events_per_joint = 6;
+  static constexpr int events_per_joint = 6;  ///< kinds of JointEvent
+  [[nodiscard]] static int joint_of_event(int event) { return event / events_per_joint; }
+  [[nodiscard]] static JointEvent kind_of_event(int event) { return static_cast<JointEvent>(event % events_per_joint); }
 
  private:
+  /// Slots of the entries that a joint's torques add, by rows; columns: its coordinate and velocity, the motor's angle
+  /// and rate; -1: none.
+  struct JointSlots {
+    struct Row {
+      int q = -1, v = -1, angle = -1, rate = -1;
+    };
+    Row link, motor_angle, motor_rate, drive_work, lost;
+  };
   struct Terms;
   [[nodiscard]] Terms terms(double time, numerics::VectorView y, int joint) const;
   [[nodiscard]] JointFriction friction(int joint) const;
@@ -135,7 +155,11 @@ class ElasticArmPart : public numerics::DaePart {
   int watched_joint_ = -1;
   double watched_torque_ = 0.0;
   double interval_begin_, interval_end_;
+  // First unknowns, and rows of the same index.
   int q_ = 0, v_ = 0, motor_ = 0, rate_ = 0, work_ = 0, momentum_ = 0;
+  [[nodiscard]] int drive_work() const { return work_; }
+  [[nodiscard]] int load_work() const { return work_ + 1; }
+  [[nodiscard]] int lost() const { return work_ + 2; }
 
   DynamicsWorkspace workspace_;
   InverseDynamicsDerivatives derivatives_;
@@ -143,8 +167,9 @@ class ElasticArmPart : public numerics::DaePart {
   std::vector<Wrench> wrenches_;  // empty while no load acts
   Eigen::VectorXd q_values_, v_values_, a_values_;
 
-  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, joint_slots_, work_by_q_, work_by_v_,
-      momentum_slots_, momentum_by_q_;
+  std::vector<JointSlots> joint_slots_;
+  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, work_slots_, work_by_q_, work_by_v_, momentum_slots_,
+      momentum_by_q_;
 };
 
 }  // namespace snare::multibody

@@ -1,5 +1,6 @@
-#include "base/index.hpp"
 #include "multibody/arm/arm_part.hpp"
+
+#include "base/index.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -41,33 +42,33 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
     const ElasticJoint& joint = arm_.joints[at(k)];
     const JointMode& mode = modes_[at(k)];
     const Drive& drive = drives_[at(k)];
-    const std::span<double> g = values.subspan(at(events_per_joint * k), events_per_joint);
-    for (double& value : g) value = never;
+    const std::span<double> of_joint = values.subspan(at(events_per_joint * k), events_per_joint);
+    for (double& value : of_joint) value = never;
+    const auto g = [&](JointEvent kind) -> double& { return of_joint[static_cast<std::size_t>(kind)]; };
 
     const double d = point.y[q_ + arm_.tree.body(joint.body).q_index] - point.y[motor_ + k];
     const double low = joint.spring.lower_end(mode.branch), high = joint.spring.upper_end(mode.branch);
     const double scale = joint.spring.pieces().size() > 1 ? joint.spring.pieces()[1].from : 1.0;
-    if (std::isfinite(low)) g[0] = (d - low) / scale;
-    if (std::isfinite(high)) g[1] = (high - d) / scale;
+    if (std::isfinite(low)) g(JointEvent::spring_lower) = (d - low) / scale;
+    if (std::isfinite(high)) g(JointEvent::spring_upper) = (high - d) / scale;
 
     const JointFriction law = friction(k);
     if (drive.mode != DriveMode::locked && law.sticks()) {
       if (mode.turning == 0) {
         const double applied = joint_torque(point.y, k) + drive_torque(point.time, point.y, k);
-        g[2] = (law.breakaway - applied) / law.breakaway;
-        g[3] = (law.breakaway + applied) / law.breakaway;
+        g(JointEvent::turn_forward_or_rest) = (law.breakaway - applied) / law.breakaway;
+        g(JointEvent::turn_backward) = (law.breakaway + applied) / law.breakaway;
       } else {
-        g[2] = mode.turning * point.y[rate_ + k] / law.stribeck_velocity;
+        g(JointEvent::turn_forward_or_rest) = mode.turning * point.y[rate_ + k] / law.stribeck_velocity;
       }
     }
     if (drive.mode == DriveMode::servo && std::isfinite(drive.limit)) {
-      const double demand =
-          drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
+      const double demand = drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
       if (mode.saturated == 0) {
-        g[4] = 1.0 - demand;
-        g[5] = 1.0 + demand;
+        g(JointEvent::limit_upper_or_leave) = 1.0 - demand;
+        g(JointEvent::limit_lower) = 1.0 + demand;
       } else {
-        g[4] = mode.saturated * demand - 1.0;
+        g(JointEvent::limit_upper_or_leave) = mode.saturated * demand - 1.0;
       }
     }
   }
@@ -118,17 +119,16 @@ void ElasticArmPart::settle(double time, numerics::VectorView y) {
 
 void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, const std::vector<int>& ended_modes) {
   for (const int event : ended_modes) {
-    if (event == torque_event()) continue;
-    const int k = event / events_per_joint;
+    const int k = joint_of_event(event);
     JointMode& mode = modes_[at(k)];
-    switch (event % events_per_joint) {
-      case 0:
+    switch (kind_of_event(event)) {
+      case JointEvent::spring_lower:
         --mode.branch;
         break;
-      case 1:
+      case JointEvent::spring_upper:
         ++mode.branch;
         break;
-      case 2:
+      case JointEvent::turn_forward_or_rest:
         if (mode.turning == 0) {
           mode.turning = 1;
         } else {  // come to rest: what acts now decides
@@ -137,13 +137,13 @@ void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, con
           mode.turning = std::abs(applied) <= friction(k).breakaway ? 0 : (applied > 0.0 ? 1 : -1);
         }
         break;
-      case 3:
+      case JointEvent::turn_backward:
         mode.turning = -1;
         break;
-      case 4:
+      case JointEvent::limit_upper_or_leave:
         mode.saturated = mode.saturated == 0 ? 1 : 0;
         break;
-      case 5:
+      case JointEvent::limit_lower:
         mode.saturated = -1;
         break;
     }
@@ -154,7 +154,7 @@ void ElasticArmPart::set_drives(std::vector<Drive> drives, Eigen::Ref<Eigen::Vec
   drives_ = std::move(drives);
   for (int k = 0; k < arm_.motors(); ++k) {
     if (drives_[at(k)].mode != DriveMode::locked) continue;
-    y[work_ + 2] += 0.5 * arm_.joints[at(k)].motor_inertia * y[rate_ + k] * y[rate_ + k];
+    y[lost()] += 0.5 * arm_.joints[at(k)].motor_inertia * y[rate_ + k] * y[rate_ + k];
     y[rate_ + k] = 0.0;
   }
 }
@@ -179,7 +179,7 @@ ArmState ElasticArmPart::state(numerics::VectorView y) const {
 }
 
 ArmWork ElasticArmPart::work(numerics::VectorView y) const {
-  return {y[work_], y[work_ + 1], y[work_ + 2]};
+  return {y[drive_work()], y[load_work()], y[lost()]};
 }
 
 void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate) {
@@ -193,14 +193,12 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
   rate.segment(work_, 3) = -rows.segment(work_, 3);
   if (base_ == BaseEquations::momentum) rate.segment<6>(momentum_) = -rows.segment<6>(momentum_);
   rate.segment(motor_, arm_.motors()) = y.segment(rate_, arm_.motors());
-  for (int k = 0; k < arm_.motors(); ++k)
-    rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
 
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(nv);
-  for (int k = 0; k < arm_.motors(); ++k)
-    torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
-  rate.segment(v_, nv) = forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque,
-                                          wrenches_, workspace_);
+  for (int k = 0; k < arm_.motors(); ++k) torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
+  rate.segment(v_, nv) =
+      forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque, wrenches_, workspace_);
 }
 
 void ElasticArmPart::solve_rates(numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate) {
@@ -210,8 +208,7 @@ void ElasticArmPart::solve_rates(numerics::VectorView y, numerics::VectorView ro
   annul(q_, tree.coordinates());
   annul(work_, 3);
   annul(motor_, arm_.motors());
-  for (int k = 0; k < arm_.motors(); ++k)
-    rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
   const Eigen::MatrixXd& H = mass_matrix(tree, y.segment(q_, tree.coordinates()), workspace_);
   rate.segment(v_, tree.velocities()) = -H.ldlt().solve(rows.segment(v_, tree.velocities()));
 }

@@ -19,11 +19,10 @@ double sign(int branch) {
 
 }  // namespace
 
-DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading,
-                             DampingRate damping_rate, double jump_width)
+DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading, DampingRate damping_rate,
+                             double jump_width)
     : pieces_(std::move(pieces)), reading_(reading), damping_rate_(damping_rate) {
-  if (pieces_.empty() || pieces_.front().from != 0.0)
-    throw std::invalid_argument("the first piece must begin at 0");
+  if (pieces_.empty() || pieces_.front().from != 0.0) throw std::invalid_argument("the first piece must begin at 0");
   double torque = 0.0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const DeflectionPiece& now = pieces_[i];
@@ -99,8 +98,7 @@ bool DeflectionLaw::outermost(int branch) const {
 
 double DeflectionLaw::lower_end(int branch) const {
   if (branch > 0) return piece(branch).from;
-  return outermost(branch) ? -std::numeric_limits<double>::infinity()
-                           : -pieces_[at(std::abs(branch) + 1)].from;
+  return outermost(branch) ? -std::numeric_limits<double>::infinity() : -pieces_[at(std::abs(branch) + 1)].from;
 }
 
 double DeflectionLaw::upper_end(int branch) const {
@@ -109,8 +107,7 @@ double DeflectionLaw::upper_end(int branch) const {
 
 double DeflectionLaw::torque(int branch, double deflection) const {
   const DeflectionPiece& p = piece(branch);
-  return sign(branch) * torque_from_[at(std::abs(branch))] +
-         p.stiffness * (deflection - sign(branch) * p.from);
+  return sign(branch) * torque_from_[at(std::abs(branch))] + p.stiffness * (deflection - sign(branch) * p.from);
 }
 
 double DeflectionLaw::stiffness(int branch) const {

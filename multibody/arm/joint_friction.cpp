@@ -11,8 +11,7 @@ double JointFriction::torque(int direction, double velocity) const {
 
 double JointFriction::slope(int direction, double velocity) const {
   const double ratio = velocity / stribeck_velocity;
-  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity +
-         viscous;
+  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity + viscous;
 }
 
 JointFriction JointFriction::with_back_drive(double torque) const {

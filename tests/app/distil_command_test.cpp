@@ -1,6 +1,6 @@
 // The verbs distil and compare as their users see them: files, exports that compile alone and agree, resuming.
 
-#include "reduction/force_table.hpp"
+#include "coupling/contact/force_table.hpp"
 #include "tests/support/traced_wire_text.hpp"
 
 #include <gtest/gtest.h>
@@ -64,12 +64,12 @@ double library_force(const json& table, double d, double s, double e) {
   const std::vector<double> nodes = table["nodes"];
   const double scale = table["force_scale_N"];
   const double span = table["span_m"];
-  for (std::size_t n = 0; n < nodes.size(); n += reduction::ForceTable::numbers_a_node) {
+  for (std::size_t n = 0; n < nodes.size(); n += coupling::ForceTable::numbers_a_node) {
     values.push_back(scale * nodes[n]);
     slopes.push_back(scale / span * nodes[n + 1]);
   }
-  const reduction::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes,
-                                      span, scale * span * span, table["mirrored"]);
+  const coupling::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes, span,
+                                     scale * span * span, table["mirrored"]);
   return rebuilt.force(d, s, e);
 }
 
@@ -114,10 +114,8 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
   }
   c << "int main(void) {\n" << calls_c << "  return 0;\n}\n";
   c.close();
-  ASSERT_EQ(
-      shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-  ASSERT_EQ(
-      shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+  ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
+  ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
   ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
                   "exec(open('run.py').read())\" > py.txt"),
             0);
@@ -133,8 +131,7 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
     const auto number = [&](std::size_t k, const char* name) {
       return laws[k]["parameters"][name]["value"].get<double>();
     };
-    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"),
-                1e-12 * values[40]);
+    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"), 1e-12 * values[40]);
     EXPECT_NEAR(values[46], number(3, "k") * std::pow(0.002, number(3, "p")), 1e-12 * values[46]);
     EXPECT_GT(values[48], 0.0);  // stretched wire
   }
@@ -155,11 +152,10 @@ TEST_F(DistilCommand, ResumesToTheSameBytes) {
                   "kill -9 $pid; wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e "
                   "part/law.json"),
             0);
-  fs::resize_file(folder_ / "part" / "distil.journal",
-                  fs::file_size(folder_ / "part" / "distil.journal") - 37);
+  fs::resize_file(folder_ / "part" / "distil.journal", fs::file_size(folder_ / "part" / "distil.journal") - 37);
   ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents(folder_ / "log.txt");
-  for (const char* file : {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml",
-                           "law_adams.adm", "report.html"}) {
+  for (const char* file :
+       {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml", "law_adams.adm", "report.html"}) {
     EXPECT_EQ(contents(folder_ / "whole" / file), contents(folder_ / "part" / file)) << file;
   }
 }
@@ -200,15 +196,14 @@ TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
 
   std::ofstream(folder_ / "o" / "run.py") << "import law\nmemory = [1.0, 0.0]\n" << calls_py;
   std::ofstream(folder_ / "o" / "run.cpp") << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\n"
-                                           << "int main() {\n  double z = 1.0, l = 0.0;\n" << calls_c << "}\n";
+                                           << "int main() {\n  double z = 1.0, l = 0.0;\n"
+                                           << calls_c << "}\n";
   std::ofstream(folder_ / "o" / "run.c")
       << "#include <stdio.h>\n#define N\ndouble load_unload_s40(double, double*, double*);\n"
       << "double force_unloading(double, double, double);\nint main(void) {\n  double z = 1.0, l = 0.0;\n"
       << calls_c << "  return 0;\n}\n";
-  ASSERT_EQ(
-      shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-  ASSERT_EQ(
-      shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+  ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
+  ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
   ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
                   "exec(open('run.py').read())\" > py.txt"),
             0);
@@ -263,8 +258,7 @@ TEST_F(DistilCommand, ComparesModelsOfAWireAndOfAnExperiment) {
   EXPECT_EQ(models.back()["model"], "stretched_wire_published");
   for (std::size_t i = 1; i < models.size(); ++i) {
     EXPECT_GT(models[i]["seconds_per_evaluation"].get<double>(), 0.0);
-    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(),
-              models[0]["seconds_per_evaluation"].get<double>());
+    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(), models[0]["seconds_per_evaluation"].get<double>());
   }
   std::string experiment = wire_text;
   experiment.replace(experiment.find("snare-wire"), 10, "snare-experiment");

@@ -35,8 +35,8 @@ class SimulateCheckpoint : public testing::Test {
   /// Arguments of a scenario that writes its checkpoints at every chance.
   [[nodiscard]] static std::vector<std::string> arguments_of(const std::string& scenario, const fs::path& out,
                                                              const std::vector<std::string>& settings) {
-    std::vector<std::string> list{SNARE_COMMAND, "simulate", std::string(SNARE_SOURCE_DIR) + "/data/scenarios/" + scenario,
-                                  "--out", out.string()};
+    std::vector<std::string> list{SNARE_COMMAND, "simulate",
+                                  std::string(SNARE_SOURCE_DIR) + "/data/scenarios/" + scenario, "--out", out.string()};
     for (const std::string& setting : settings) list.insert(list.end(), {"--set", setting});
     return list;
   }
@@ -102,7 +102,9 @@ struct Killed {
 };
 
 /// For the messages.
-void PrintTo(const Killed& killed, std::ostream* out) { *out << killed.name; }
+void PrintTo(const Killed& killed, std::ostream* out) {
+  *out << killed.name;
+}
 
 class KilledRun : public SimulateCheckpoint, public testing::WithParamInterface<Killed> {
  protected:
@@ -143,16 +145,20 @@ TEST_P(KilledRun, GoesOnToTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, KilledRun,
-    testing::Values(
-        Killed{"Contact", "air_table.toml",
-               {"duration_s=0.06", "solver.elements=12", "output.checkpoint_interval_s=0.005", "output.checkpoint_wall_time_s=0"}},
-        Killed{"Bodies", "grapple_shaft.toml",
-               {"duration_s=0.13", "wires[lower].elements=12", "wires[right].elements=12", "wires[left].elements=12",
-                "output.checkpoint_interval_s=0.01", "output.checkpoint_wall_time_s=0"}},
-        // Beyond the first touch.
-        Killed{"Arm", "jemrms_capture.toml",
-               {"duration_s=0.3", "contact.solver.elements=12", "contact.output.checkpoint_interval_s=0.03",
-                "contact.output.checkpoint_wall_time_s=0"}}),
+    testing::Values(Killed{"Contact",
+                           "air_table.toml",
+                           {"duration_s=0.06", "solver.elements=12", "output.checkpoint_interval_s=0.005",
+                            "output.checkpoint_wall_time_s=0"}},
+                    Killed{"Bodies",
+                           "grapple_shaft.toml",
+                           {"duration_s=0.13", "wires[lower].elements=12", "wires[right].elements=12",
+                            "wires[left].elements=12", "output.checkpoint_interval_s=0.01",
+                            "output.checkpoint_wall_time_s=0"}},
+                    // Beyond the first touch.
+                    Killed{"Arm",
+                           "jemrms_capture.toml",
+                           {"duration_s=0.3", "contact.solver.elements=12", "contact.output.checkpoint_interval_s=0.03",
+                            "contact.output.checkpoint_wall_time_s=0"}}),
     [](const auto& param) { return std::string(param.param.name); });
 
 TEST_F(SimulateCheckpoint, AnInterruptedRunKeepsWhatItHasAndGoesOn) {
@@ -192,9 +198,9 @@ TEST_F(SimulateCheckpoint, AnInterruptedRunKeepsWhatItHasAndGoesOn) {
 TEST_F(SimulateCheckpoint, AFailureNamesTimeStepAndUnknownAndKeepsTheRest) {
   // Tolerances below round-off cannot be met.
   std::vector<std::string> list = arguments(folder_ / "out");
-  for (const char* set : {"solver.relative_tolerance=1e-10", "solver.position_tolerance_m=1e-30",
-                          "solver.velocity_tolerance_m_s=1e-30", "solver.body_position_tolerance_m=1e-30",
-                          "solver.body_velocity_tolerance_m_s=1e-30"}) {
+  for (const char* set :
+       {"solver.relative_tolerance=1e-10", "solver.position_tolerance_m=1e-30", "solver.velocity_tolerance_m_s=1e-30",
+        "solver.body_position_tolerance_m=1e-30", "solver.body_velocity_tolerance_m_s=1e-30"}) {
     list.insert(list.end(), {"--set", set});
   }
   ASSERT_EQ(run(list), 3) << contents("log.txt");

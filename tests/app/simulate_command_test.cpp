@@ -28,8 +28,9 @@ class SimulateCommand : public testing::Test {
 
   /// Exit status of `snare simulate SCENARIO --out out ARGUMENTS`; what it says goes to log.txt.
   [[nodiscard]] int run(const std::string& scenario, const std::string& arguments) const {
-    const std::string command = std::string(SNARE_COMMAND) + " simulate " + SNARE_SOURCE_DIR + "/data/scenarios/" + scenario + " --out " +
-                                (folder_ / "out").string() + " " + arguments + " > " + (folder_ / "log.txt").string() + " 2>&1";
+    const std::string command = std::string(SNARE_COMMAND) + " simulate " + SNARE_SOURCE_DIR + "/data/scenarios/" +
+                                scenario + " --out " + (folder_ / "out").string() + " " + arguments + " > " +
+                                (folder_ / "log.txt").string() + " 2>&1";
     return WEXITSTATUS(std::system(command.c_str()));
   }
   [[nodiscard]] std::string contents(const std::string& name) const {
@@ -46,7 +47,8 @@ class SimulateCommand : public testing::Test {
 // The paper's statement of its air table (Abiko et al., section 4.3): the target starts to turn, the law misses the peak
 // force and keeps the impulse; then the velocity is constant.
 TEST_F(SimulateCommand, AirTable) {
-  ASSERT_EQ(run("air_table.toml", "--set duration_s=0.25 --set solver.elements=32 --set output.paraview=true"), 0) << contents("log.txt");
+  ASSERT_EQ(run("air_table.toml", "--set duration_s=0.25 --set solver.elements=32 --set output.paraview=true"), 0)
+      << contents("log.txt");
   const json s = summary();
   ASSERT_EQ(s["models"].size(), 3u);
   const json& wire = s["models"][0];
@@ -71,7 +73,8 @@ TEST_F(SimulateCommand, AirTable) {
 
 TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
-    ASSERT_EQ(run(name, "--set duration_s=0.04 --set contact.solver.elements=24 --set contact.body.distance_mm=0.02"), 0)
+    ASSERT_EQ(run(name, "--set duration_s=0.04 --set contact.solver.elements=24 --set contact.body.distance_mm=0.02"),
+              0)
         << contents("log.txt");
     const json s = summary();
     EXPECT_EQ(s["kind"], "arm_contact");
@@ -88,7 +91,10 @@ TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
 
 // A shaft among three wires strikes the lower one; names stand in the files.
 TEST_F(SimulateCommand, GrappleShaftBetweenWires) {
-  ASSERT_EQ(run("grapple_shaft.toml", "--set duration_s=0.16 --set wires[lower].elements=24 --set wires[left].elements=16 --set wires[right].elements=16"), 0)
+  ASSERT_EQ(run("grapple_shaft.toml",
+                "--set duration_s=0.16 --set wires[lower].elements=24 --set wires[left].elements=16 --set "
+                "wires[right].elements=16"),
+            0)
       << contents("log.txt");
   const json s = summary();
   ASSERT_EQ(s["contacts"].size(), 6u);

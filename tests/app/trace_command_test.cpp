@@ -52,8 +52,10 @@ elements = 32
 )";
     std::string plain = text;
     for (const char* at : {"65", "90"}) {
-      plain += std::string("[[series]]\nname = \"s") + at + "\"\ncontact_position_mm = " + at + ".0\ntravel_mm = 1.5\npoints = 16\n";
-      text += std::string("[[series]]\nname = \"s") + at + "\"\ncontact_position_mm = " + at + ".0\nforce_sigma_N = 0.2\nfile = \"s" + at + ".csv\"\n";
+      plain += std::string("[[series]]\nname = \"s") + at + "\"\ncontact_position_mm = " + at +
+               ".0\ntravel_mm = 1.5\npoints = 16\n";
+      text += std::string("[[series]]\nname = \"s") + at + "\"\ncontact_position_mm = " + at +
+              ".0\nforce_sigma_N = 0.2\nfile = \"s" + at + ".csv\"\n";
     }
     std::ofstream(folder_ / "plain.toml") << plain;
     std::ofstream(folder_ / "x.toml") << text;
@@ -75,7 +77,8 @@ elements = 32
     }
   }
   [[nodiscard]] int run(const std::string& arguments) const {
-    const std::string line = "cd '" + folder_.string() + "' && '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt";
+    const std::string line =
+        "cd '" + folder_.string() + "' && '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt";
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -97,13 +100,15 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   EXPECT_EQ(t["noise"]["source"], "declared");
   EXPECT_NEAR(t["noise"]["sigma_N"].get<double>(), 0.2, 1e-12);
   for (const char* model : {"base", "final"}) {
-    for (const char* key : {"rmse_N", "nrmse", "chi2_dof"}) EXPECT_TRUE(t[model][key].is_number()) << model << " " << key;
+    for (const char* key : {"rmse_N", "nrmse", "chi2_dof"})
+      EXPECT_TRUE(t[model][key].is_number()) << model << " " << key;
     EXPECT_TRUE(t[model]["parameters"].is_object());
   }
   const json& number = t["base"]["parameters"]["wire.axial_stiffness_N"];
   EXPECT_TRUE(number["value"].is_number());
   EXPECT_TRUE(number["stderr"].is_number());
-  for (const char* key : {"runs_p", "ljung_box_p", "lack_of_fit_p"}) EXPECT_TRUE(t["residual"]["tests"][key].is_number());
+  for (const char* key : {"runs_p", "ljung_box_p", "lack_of_fit_p"})
+    EXPECT_TRUE(t["residual"]["tests"][key].is_number());
   EXPECT_TRUE(t["residual"]["significant"].get<bool>());
   ASSERT_GE(t["candidates"].size(), 15u);
   for (const json& c : t["candidates"]) {
@@ -120,10 +125,19 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   EXPECT_TRUE(t["next_experiment"].contains("what"));
   EXPECT_TRUE(t["next_experiment"]["separates"].is_array());
   const std::string curves = text("t/curves.csv");
-  EXPECT_EQ(curves.substr(0, curves.find('\n')).substr(curves.substr(0, curves.find('\n')).size() - 25), "measured_N,base_N,final_N");
+  EXPECT_EQ(curves.substr(0, curves.find('\n')).substr(curves.substr(0, curves.find('\n')).size() - 25),
+            "measured_N,base_N,final_N");
   EXPECT_EQ(curves.find("nan"), std::string::npos);
   EXPECT_EQ(text("t/trace.json").find("nan,"), std::string::npos);
-  EXPECT_NE(text("t/report.html").find("</html>"), std::string::npos);
+  const std::string page = text("t/report.html");
+  EXPECT_NE(page.find("<h1>short</h1>"), std::string::npos);
+  EXPECT_NE(page.find("<p class=\"callout good\">Explained"), std::string::npos) << t["verdict"];
+  for (const char* series : {"s65", "s90"}) {
+    EXPECT_NE(page.find(std::string("<span>") + series + ", pushed at "), std::string::npos) << series;
+  }
+  const std::size_t rounds = t["rounds"].size();
+  EXPECT_NE(page.find("<h3>Round " + std::to_string(rounds) + "</h3>"), std::string::npos);
+  EXPECT_EQ(page.find("<h3>Round " + std::to_string(rounds + 1) + "</h3>"), std::string::npos);
 }
 
 TEST_F(TraceCommand, FitWritesItsNumbers) {

@@ -29,8 +29,7 @@ class CsvFiles : public testing::Test {
  protected:
   CsvFiles() {
     const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / ("snare_csv_" + test + "_" + std::to_string(::getpid()));
+    folder_ = std::filesystem::path(testing::TempDir()) / ("snare_csv_" + test + "_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder_);
   }
   ~CsvFiles() override {
@@ -92,25 +91,20 @@ INSTANTIATE_TEST_SUITE_P(
         Accepted{"byte order mark",
                  "\xEF\xBB\xBF"
                  "displacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
-        Accepted{"byte order mark, CRLF",
-                 "\xEF\xBB\xBF# a\r\ndisplacement_mm,force_N\r\n0.1,-0.5\r\n180,2500\r\n"},
-        Accepted{"comments anywhere",
-                 "# a\n  # b, c\ndisplacement_mm,force_N # d\n#\n0.1,-0.5#e\n180,2500\n# f"},
-        Accepted{
-            "a comment in UTF-8",
-            "# 0,1 \xC2\xB5m \xE5\x8A\x9B \xF0\x9F\x94\xA9\ndisplacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
+        Accepted{"byte order mark, CRLF", "\xEF\xBB\xBF# a\r\ndisplacement_mm,force_N\r\n0.1,-0.5\r\n180,2500\r\n"},
+        Accepted{"comments anywhere", "# a\n  # b, c\ndisplacement_mm,force_N # d\n#\n0.1,-0.5#e\n180,2500\n# f"},
+        Accepted{"a comment in UTF-8",
+                 "# 0,1 \xC2\xB5m \xE5\x8A\x9B \xF0\x9F\x94\xA9\ndisplacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
         Accepted{"blank lines", "\n\ndisplacement_mm,force_N\n\n0.1,-0.5\n   \n180,2500\n\n"},
         Accepted{"blanks around cells", " displacement_mm ,\tforce_N\n 0.1 , -0.5\n180 ,2500  \n"},
         Accepted{"other order", "force_N,displacement_mm\n-0.5,0.1\n2500,180\n"},
         Accepted{"other columns", "id,displacement_mm,note,force_N\na,0.1,nan,-0.5\n,180,,2500\n"},
-        Accepted{"quotes",
-                 "\"displacement_mm\",\"force_N\",\"a, # b\"\n0.1,-0.5,\"c, d\"\n\"180\",2500,# e\n"},
+        Accepted{"quotes", "\"displacement_mm\",\"force_N\",\"a, # b\"\n0.1,-0.5,\"c, d\"\n\"180\",2500,# e\n"},
         Accepted{"forms of numbers", "displacement_mm,force_N\n1e-1,-.5\n+1.8E+2,2500.\n"}));
 
 TEST(Csv, OptionalColumnIsEmptyWhenAbsentAndReadWhenPresent) {
   EXPECT_TRUE(parse_csv("m.csv", "displacement_mm,force_N\n1,2\n", columns).columns[2].empty());
-  const CsvTable table =
-      parse_csv("m.csv", "time_s,displacement_mm,force_N\n0,1,2\n0,2,3\n0.5,1,2\n", columns);
+  const CsvTable table = parse_csv("m.csv", "time_s,displacement_mm,force_N\n0,1,2\n0,2,3\n0.5,1,2\n", columns);
   EXPECT_EQ(table.columns[2], (std::vector<double>{0.0, 0.0, 0.5}));
 }
 
@@ -129,8 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
     Table, WrongCsv,
     testing::Values(
         Wrong{"", "m.csv: is empty, must have a header that names the columns"},
-        Wrong{"\xEF\xBB\xBF\n# only a comment\n\n",
-              "m.csv: is empty, must have a header that names the columns"},
+        Wrong{"\xEF\xBB\xBF\n# only a comment\n\n", "m.csv: is empty, must have a header that names the columns"},
         Wrong{"displacement_mm,force_N\n", "m.csv: has a header but no rows"},
         Wrong{"# a\ndisplacement_mm,force\n1,2\n", "m.csv:2: force_N, no such column"},
         Wrong{"1.0,2.0\n3.0,4.0\n",
@@ -154,13 +147,10 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"displacement_mm,force_N\n1,nan\n", "m.csv:2: force_N = nan, must be a finite number"},
         Wrong{"displacement_mm,force_N\n1,-inf\n", "m.csv:2: force_N = -inf, must be a finite number"},
         Wrong{"displacement_mm,force_N\n1,1e999\n", "m.csv:2: force_N = 1e999, must be a finite number"},
-        Wrong{"displacement_mm,force_N\n1000.5,1\n",
-              "m.csv:2: displacement_mm = 1000.5, must be >= -1000 and <= 1000"},
+        Wrong{"displacement_mm,force_N\n1000.5,1\n", "m.csv:2: displacement_mm = 1000.5, must be >= -1000 and <= 1000"},
         Wrong{"displacement_mm,force_N\n1,2\n1\n", "m.csv:3: the row has 1 cells, must have 2 as the header"},
-        Wrong{"displacement_mm,force_N\n0,1,2,3\n",
-              "m.csv:2: the row has 4 cells, must have 2 as the header"},
-        Wrong{"displacement_mm,force_N\n0,1,two\n",
-              "m.csv:2: the row has 3 cells, must have 2 as the header"},
+        Wrong{"displacement_mm,force_N\n0,1,2,3\n", "m.csv:2: the row has 4 cells, must have 2 as the header"},
+        Wrong{"displacement_mm,force_N\n0,1,two\n", "m.csv:2: the row has 3 cells, must have 2 as the header"},
         Wrong{"displacement_mm,force_N\n1,2,\n", "m.csv:2: the row has 3 cells, must have 2 as the header"},
         Wrong{"displacement_mm,force_N,time_s\n1,2,0.5\n1,2,0.4\n",
               "m.csv:3: time_s = 0.4, must be >= 0.5, the value of the row before"},
@@ -196,8 +186,7 @@ TEST_F(CsvFiles, FileThatCannotBeReadHasItsMessage) {
   EXPECT_EQ(message_of("folder.csv"), path("folder.csv") + ": is a directory, must be a file");
   EXPECT_EQ(message_of("none/a.csv"), path("none/a.csv") + ": no such file");
   ASSERT_EQ(::mkfifo(path("pipe.csv").c_str(), 0600), 0);
-  EXPECT_EQ(message_of("pipe.csv"),
-            path("pipe.csv") + ": is a device, a pipe or a socket, must be a regular file");
+  EXPECT_EQ(message_of("pipe.csv"), path("pipe.csv") + ": is a device, a pipe or a socket, must be a regular file");
 }
 
 TEST_F(CsvFiles, UnreadableFileHasItsMessage) {
@@ -235,13 +224,8 @@ TEST_F(CsvFiles, LineWithoutEndIsRefusedAndNotHeldInMemory) {
 TEST_F(CsvFiles, WriterRoundTripsExactly) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> exponent(-300.0, 300.0);
-  std::vector<double> values{0.0,
-                             -0.0,
-                             0.1,
-                             1.0 / 3.0,
-                             std::numeric_limits<double>::denorm_min(),
-                             std::numeric_limits<double>::max(),
-                             -1e22};
+  std::vector<double> values{
+      0.0, -0.0, 0.1, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(), -1e22};
   for (int i = 0; i < 1000; ++i) values.push_back(std::pow(10.0, exponent(random)));
   CsvWriter writer(path("a.csv"), {"series", "force_N", "iterations", "measured_N"}, {"unit: N"});
   for (const double value : values) writer.row({"s,4\"0", value, 3LL, std::monostate{}});

@@ -15,8 +15,7 @@ TEST(InputProblem, MessageNamesFileLineKeyValueAndRequirement) {
 }
 
 TEST(InputProblem, UnknownLineIsLeftOut) {
-  const InputProblem problem{
-      .file = "x.toml", .line = 0, .key = "wire", .value = "", .requirement = "is missing"};
+  const InputProblem problem{.file = "x.toml", .line = 0, .key = "wire", .value = "", .requirement = "is missing"};
   EXPECT_EQ(problem.message(), "x.toml: wire, is missing");
 }
 

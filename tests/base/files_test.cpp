@@ -17,8 +17,7 @@ class Files : public testing::Test {
  protected:
   Files() {
     const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("snare_files_" + test + "_" + std::to_string(::getpid()));
+    folder_ = std::filesystem::path(testing::TempDir()) / ("snare_files_" + test + "_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder_);
   }
   ~Files() override {
@@ -27,9 +26,7 @@ class Files : public testing::Test {
   }
 
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] auto entries() const {
-    return std::distance(std::filesystem::directory_iterator(folder_), {});
-  }
+  [[nodiscard]] auto entries() const { return std::distance(std::filesystem::directory_iterator(folder_), {}); }
 
  private:
   std::filesystem::path folder_;
@@ -103,14 +100,14 @@ TEST(Utf8, FindsTheFirstByteThatIsNotWellFormed) {
   EXPECT_EQ(find_invalid_utf8(""), none);
   EXPECT_EQ(find_invalid_utf8("a\xC2\xB5\xE5\x8A\x9B\xF0\x9F\x94\xA9\x7F"), none);
   EXPECT_EQ(find_invalid_utf8("\xED\x9F\xBF\xEE\x80\x80\xF4\x8F\xBF\xBF"), none);  // ends of the ranges
-  EXPECT_EQ(find_invalid_utf8("ab\x80"), 2u);            // continuation without a start
-  EXPECT_EQ(find_invalid_utf8("a\xC2"), 1u);             // cut short
-  EXPECT_EQ(find_invalid_utf8("\xE5\x8A"), 0u);          //
-  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);          // overlong
-  EXPECT_EQ(find_invalid_utf8("\xE0\x9F\xBF"), 0u);      // overlong
-  EXPECT_EQ(find_invalid_utf8("\xF0\x8F\xBF\xBF"), 0u);  // overlong
-  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);      // surrogate
-  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);  // beyond U+10FFFF
+  EXPECT_EQ(find_invalid_utf8("ab\x80"), 2u);                                      // continuation without a start
+  EXPECT_EQ(find_invalid_utf8("a\xC2"), 1u);                                       // cut short
+  EXPECT_EQ(find_invalid_utf8("\xE5\x8A"), 0u);                                    //
+  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);                                    // overlong
+  EXPECT_EQ(find_invalid_utf8("\xE0\x9F\xBF"), 0u);                                // overlong
+  EXPECT_EQ(find_invalid_utf8("\xF0\x8F\xBF\xBF"), 0u);                            // overlong
+  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);                                // surrogate
+  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);                            // beyond U+10FFFF
   EXPECT_EQ(find_invalid_utf8("\xFF"), 0u);
 }
 

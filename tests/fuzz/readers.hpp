@@ -1,8 +1,9 @@
 #pragma once
 
-#include "identification/fitting/experiment.hpp"
 #include "base/csv.hpp"
 #include "base/errors.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/fitting/experiment.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -12,11 +13,10 @@
 namespace snare::fuzz {
 
 /// Gives arbitrary bytes to the CSV reader. It must return finite numbers or throw InputError; whatever else
-/// leaves here is a defect.
-inline void read_bytes_as_csv(std::string_view bytes) {
+/// leaves here is a defect. Whether it was accepted.
+inline bool read_bytes_as_csv(std::string_view bytes) {
   const std::vector<base::CsvColumn> columns{
-      {"displacement_mm", base::CsvColumn::Presence::required, base::Range::from(-1000.0, 1000.0),
-       1e-3},
+      {"displacement_mm", base::CsvColumn::Presence::required, base::Range::from(-1000.0, 1000.0), 1e-3},
       {"force_N"},
       {"time_s", base::CsvColumn::Presence::optional, base::Range::finite(), 1.0,
        base::CsvColumn::Order::non_decreasing}};
@@ -25,14 +25,16 @@ inline void read_bytes_as_csv(std::string_view bytes) {
     for (const auto& column : table.columns)
       for (const double value : column)
         if (!std::isfinite(value)) throw std::logic_error("a number that is not finite was read");
+    return true;
   } catch (const base::InputError& error) {
     if (error.problems().empty()) throw std::logic_error("an error without a problem");
+    return false;
   }
 }
 
 /// The same for the reader of experiment files (and of overrides: the first line, where it starts with "--set
 /// ").
-inline void read_bytes_as_experiment(std::string_view bytes) {
+inline bool read_bytes_as_experiment(std::string_view bytes) {
   try {
     std::vector<identification::Override> overrides;
     constexpr std::string_view flag = "--set ";
@@ -42,18 +44,19 @@ inline void read_bytes_as_experiment(std::string_view bytes) {
       bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + 1);
     }
     const identification::Experiment experiment =
-        identification::parse_experiment("fuzz.toml", bytes, overrides);
+        identification::parse_experiment("fuzz.toml", bytes, identification::parameters(), overrides);
     for (const identification::Series& series : experiment.series) {
       const coupling::PushProblem& test = series.test;
       for (const double value :
            {test.wire.diameter, test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(),
             test.wire.torsional_stiffness(), test.mount.span, test.contact_position})
-        if (!(std::isfinite(value) && value > 0.0))
-          throw std::logic_error("a number that must be positive is not");
+        if (!(std::isfinite(value) && value > 0.0)) throw std::logic_error("a number that must be positive is not");
       if (test.travel.size() < 2) throw std::logic_error("a series without travel");
     }
+    return true;
   } catch (const base::InputError& error) {
     if (error.problems().empty()) throw std::logic_error("an error without a problem");
+    return false;
   }
 }
 

@@ -14,8 +14,7 @@ namespace {
 Eigen::MatrixXd dense(const SymmetricBandMatrix& a) {
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(a.order(), a.order());
   for (int j = 0; j < a.order(); ++j) {
-    for (int i = j; i < a.order() && i - j <= a.half_bandwidth(); ++i)
-      full(i, j) = full(j, i) = a.lower(i, j);
+    for (int i = j; i < a.order() && i - j <= a.half_bandwidth(); ++i) full(i, j) = full(j, i) = a.lower(i, j);
   }
   return full;
 }

@@ -42,9 +42,7 @@ class Oscillator final : public DaePart {
     rows[first_ + 2] += at.y[first_ + 2] - 0.5 * (v * v + omega_ * omega_ * x * x);
   }
   void jacobian(const DaePoint& at, double c, std::vector<double>& values) override {
-    const auto add = [&](int i, int j, double value) {
-      values[static_cast<std::size_t>(slot_[i][j])] += value;
-    };
+    const auto add = [&](int i, int j, double value) { values[static_cast<std::size_t>(slot_[i][j])] += value; };
     add(0, 0, c);
     add(0, 1, -1.0);
     add(1, 0, omega_ * omega_);
@@ -99,8 +97,7 @@ TEST(Ida, FindsConsistentAlgebraicUnknownsAndRates) {
   Oscillator part(2.0);
   DaeSystem system({&part});
   Ida ida(system, tight());
-  const IdaReport report =
-      ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
+  const IdaReport report = ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
   ASSERT_TRUE(report.usable()) << report.message;
   // The Newton iteration for initial values ends at a hundredth of the tolerance of 1e-10.
   EXPECT_NEAR(ida.y()[2], 0.125 + 2.0, 1e-9);

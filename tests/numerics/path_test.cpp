@@ -20,7 +20,8 @@ BorderedSystem random_system(int n, int m, std::mt19937& random, Eigen::VectorXd
   system.reset(n, m);
   system.matrix = SymmetricBandMatrix(n, 5);
   for (int j = 0; j < n; ++j) {
-    for (int i = j; i <= std::min(n - 1, j + 5); ++i) system.matrix.lower(i, j) = uniform(random) + (i == j ? 8.0 : 0.0);
+    for (int i = j; i <= std::min(n - 1, j + 5); ++i)
+      system.matrix.lower(i, j) = uniform(random) + (i == j ? 8.0 : 0.0);
   }
   system.anchors = {{3, 0}, {4, 1}};
   column = Eigen::VectorXd::NullaryExpr(n, [&] { return uniform(random); });

@@ -1,8 +1,8 @@
 // KLU, CHOLMOD and KINSOL behind our handles, against dense Eigen.
 
-#include "numerics/cholmod.hpp"
 #include "base/errors.hpp"
-#include "numerics/kinsol.hpp"
+#include "benchmarks/peers/cholmod.hpp"
+#include "benchmarks/peers/kinsol.hpp"
 #include "numerics/klu.hpp"
 
 #include <gtest/gtest.h>
@@ -16,6 +16,11 @@
 
 namespace snare::numerics {
 namespace {
+
+using benchmarks::Cholmod;
+using benchmarks::KinsolOptions;
+using benchmarks::NonlinearSystem;
+using benchmarks::solve_kinsol;
 
 SymmetricBandMatrix random_band(int n, int b, std::mt19937& random, double diagonal) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -72,7 +77,9 @@ TEST(Klu, SingularMatrixIsReported) {
 
 TEST(Klu, PivotsThatNoLongerSuitAreChosenAnew) {
   SparseMatrix matrix = make_pattern(2, {{0, 0}, {0, 1}, {1, 0}, {1, 1}});
-  const auto values = [&matrix](double a00, double a10, double a01, double a11) { matrix.value = {a00, a10, a01, a11}; };
+  const auto values = [&matrix](double a00, double a10, double a01, double a11) {
+    matrix.value = {a00, a10, a01, a11};
+  };
   values(2.0, 1.0, 1.0, 2.0);
   Klu klu(matrix);
   ASSERT_TRUE(klu.factorize(matrix));

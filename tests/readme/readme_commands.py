@@ -6,8 +6,9 @@ usage: readme_commands.py REPOSITORY SNARE
 A marker on a line of its own says what is done with the fenced block that follows it:
     <!-- test: run -->           the lines of the ```sh block are run one by one and must succeed
     <!-- test: file NAME -->     the block is written to the file NAME first
-Other blocks are left alone. The commands run in an empty folder that looks like the repository: `./run` and
-`build/release/snare` both start SNARE, `data` is the repository's.
+Other blocks are left alone; one marked `same as FILE` is compared by tests/docs. The commands run in an empty
+folder that looks like the repository: `./run` and `build/release/snare` both start SNARE, `data` is the
+repository's.
 """
 
 import os

@@ -27,8 +27,7 @@ TEST(ImpactDamping, LinearSpringDashpotReturnsAsPublished) {
   for (const double c : {1.0, 20.0, 100.0}) {
     const double beta = 0.5 * c / mass;
     const double q = std::sqrt(k / mass - beta * beta);
-    const double closed =
-        std::exp(-beta / q * (std::numbers::pi - std::atan2(2.0 * beta * q, q * q - beta * beta)));
+    const double closed = std::exp(-beta / q * (std::numbers::pi - std::atan2(2.0 * beta * q, q * q - beta * beta)));
     const LawRebound found = rebound(law, c, mass, 0.2);
     EXPECT_NEAR(found.restitution, closed, 1e-6) << c;  // the last step is not cut at the parting
     EXPECT_NEAR(damping_of_restitution(law, closed, mass, 0.2), c, 1e-5 * c);
@@ -79,7 +78,8 @@ TEST(ImpactDamping, StraightWireLosesWhatItsMaterialTakes) {
   settings.mass = mass;
   settings.damping.axial_time = tau;
   settings.elements = 12;
-  const numerics::HermiteCurve law = curve_of(0.02, [](double x) { return 0.5 * axial * l * curvature * curvature * x * x * x; });
+  const numerics::HermiteCurve law =
+      curve_of(0.02, [](double x) { return 0.5 * axial * l * curvature * curvature * x * x * x; });
   numerics::SolveReport report;
   const ImpactDamping impact = distil_impact(test, settings, speed, law, report);
   ASSERT_TRUE(report.usable()) << report.message;

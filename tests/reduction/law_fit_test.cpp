@@ -67,7 +67,7 @@ TEST(LawFit, DerivativesMatchDifferences) {
       EXPECT_NEAR(form->stiffness(p, d), slope, 1e-6 * std::abs(slope)) << form->name();
       const double power = (form->energy(p, d + h) - form->energy(p, d - h)) / (2.0 * h);
       EXPECT_NEAR(form->force(p, d), power, 1e-6 * std::abs(power)) << form->name();
-      EXPECT_NEAR(form->with(p)(d), form->force(p, d), 1e-13 * std::abs(power)) << form->name();
+      EXPECT_NEAR(form->with(p)->force(d), form->force(p, d), 1e-13 * std::abs(power)) << form->name();
     }
   }
 }
@@ -116,11 +116,11 @@ TEST(FittedLaw, RefusesOrFlagsOutsideItsRange) {
   std::vector<double> force;
   for (const double x : d) force.push_back(3000.0 * x);
   const FittedLaw law = fit_law(coupling::linear_law(), numerics::HermiteCurve(d, force), {0, 10, 20, 30});
-  EXPECT_FALSE(law.at(2e-3, Outside::refuse).extrapolated);
-  EXPECT_EQ(law.at(-1e-3, Outside::refuse).force, 0.0);
-  EXPECT_TRUE(law.at(5e-3, Outside::extrapolate).extrapolated);
+  EXPECT_FALSE(law.at(2e-3, coupling::Outside::refuse).extrapolated);
+  EXPECT_EQ(law.at(-1e-3, coupling::Outside::refuse).force, 0.0);
+  EXPECT_TRUE(law.at(5e-3, coupling::Outside::extrapolate).extrapolated);
   try {
-    static_cast<void>(law.at(5e-3, Outside::refuse));
+    static_cast<void>(law.at(5e-3, coupling::Outside::refuse));
     FAIL() << "accepted";
   } catch (const std::domain_error& error) {
     EXPECT_STREQ(error.what(), "travel of 5 mm is outside the range of the law linear, 0 to 4 mm");

@@ -6,83 +6,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 namespace snare::reduction {
 namespace {
-
-// Not-a-knot splines reproduce cubics, to round-off over the smallest cell.
-TEST(CubicSpline, ReproducesCubics) {
-  const std::vector<double> x{0.0, 0.1, 0.35, 0.5, 1.2, 1.3};
-  const auto f = [](double t) { return 1.0 - 2.0 * t + 0.5 * t * t + 3.0 * t * t * t; };
-  std::vector<double> v;
-  for (const double t : x) v.push_back(f(t));
-  const numerics::HermiteCurve curve(x, v);
-  for (double t = 0.0; t <= 1.3; t += 0.013) {
-    EXPECT_NEAR(curve.value(t), f(t), 1e-12);
-    EXPECT_NEAR(curve.slope(t), -2.0 + t + 9.0 * t * t, 1e-11);
-    EXPECT_NEAR(curve.integral(t), t - t * t + t * t * t / 6.0 + 0.75 * t * t * t * t, 1e-12);
-  }
-}
-
-// Fourth order: halving the cells divides the error by 16; 13 leaves room for the ends.
-TEST(CubicSpline, ConvergesAtFourthOrder) {
-  const auto error = [](int n) {
-    std::vector<double> x, v;
-    for (int i = 0; i <= n; ++i) {
-      x.push_back(static_cast<double>(i) / n);
-      v.push_back(std::exp(2.0 * x.back()));
-    }
-    const numerics::HermiteCurve curve(x, v);
-    double worst = 0.0;
-    for (double t = 0.0; t <= 1.0; t += 1e-3)
-      worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
-    return worst;
-  };
-  EXPECT_GT(error(10) / error(20), 13.0);
-}
-
-// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond
-// mid-span.
-TEST(ForceTable, IsExactForCubicsAndMirrors) {
-  const ForceTable::Axes axes{{{0.0, 0.01, 0.02, 0.03}, {0.2, 0.3, 0.35, 0.5}, {0.001, 0.002, 0.004, 0.005}}};
-  const auto f = [](double d, double s, double e) {
-    return d * (1.0 + 50.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e));
-  };
-  const auto fd = [](double d, double s, double e) {
-    return (1.0 + 100.0 * d) * (2.0 - s * (1.0 - s)) * (1.0 + 40.0 * e * (1.0 - 30.0 * e));
-  };
-  std::vector<double> values, slopes;
-  for (const double e : axes[2]) {
-    for (const double s : axes[1]) {
-      for (const double d : axes[0]) {
-        values.push_back(f(d, s, e));
-        slopes.push_back(fd(d, s, e));
-      }
-    }
-  }
-  const double span = 2.0;
-  const double ei = 4.0;
-  // Values in N at travels in m: the groups divide by the span.
-  std::vector<double> slopes_m = slopes;
-  for (double& m : slopes_m) m /= span;
-  const ForceTable table(axes, values, slopes_m, span, ei, true);
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> u(0.0, 1.0);
-  for (int i = 0; i < 200; ++i) {
-    const double d = 0.03 * u(random);
-    const double s = 0.2 + 0.3 * u(random);
-    const double e = 0.001 + 0.004 * u(random);
-    EXPECT_NEAR(table.force(d * span, s * span, e * span), f(d, s, e), 1e-13);
-    EXPECT_NEAR(table.force(d * span, (1.0 - s) * span, e * span), f(d, s, e), 1e-13);
-    EXPECT_NEAR(table.at(d * span, s * span, e * span, Outside::refuse).stiffness * span, fd(d, s, e), 1e-11);
-  }
-  EXPECT_TRUE(table.proven_monotone());
-  EXPECT_TRUE(table.at(0.04 * span, 0.3 * span, 0.002 * span, Outside::extrapolate).extrapolated);
-  EXPECT_THROW(static_cast<void>(table.at(0.01 * span, 0.1 * span, 0.002 * span, Outside::refuse)),
-               std::domain_error);
-}
 
 // The bound that a table states holds at random places, solved anew by the full wire; a coarse table and a coarse mesh.
 TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
@@ -102,9 +29,9 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   ASSERT_TRUE(fresh.sample(places).usable());
   for (const CurvePlace& place : places) {
     for (std::size_t k = 0; k < fresh.travel().size(); ++k) {
-      EXPECT_LE(std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) -
-                         fresh.at(place).loading[k]),
-                built.loading_error.bound);
+      EXPECT_LE(
+          std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) - fresh.at(place).loading[k]),
+          built.loading_error.bound);
     }
   }
 }
@@ -143,8 +70,7 @@ TEST(SlowTable, AThousandRandomPoints) {
 TEST(CurveStore, ATornJournalGivesTheSameCurves) {
   const WireFile file = small_wire();
   const WireCase& wire = file.cases.front();
-  const std::filesystem::path journal =
-      std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
+  const std::filesystem::path journal = std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
   std::filesystem::remove(journal);
   const std::vector<CurvePlace> places{{0.05, 4e-4}, {0.06, 5e-4}, {0.08, 6e-4}};
   CurveStore first(wire, file.settings, sampling_travel(wire, file.settings), journal);

@@ -1,4 +1,4 @@
-#include "scenario/arm_contact_scenario.hpp"
+#include "scenario/scenario.hpp"
 
 #include "base/errors.hpp"
 
@@ -18,9 +18,13 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(SNARE_SOURCE_DIR) / "data" / "scenarios" / name;
 }
 
+/// The first motion of a scenario.
+NamedMotion first_run(const std::filesystem::path& file, const std::vector<base::Override>& overrides = {}) {
+  return std::get<WireMotions>(read_scenario(file, overrides).content).runs.at(0);
+}
+
 TEST(ArmContactScenario, TheWireRidesOnTheTipWhereItIsAsked) {
-  const ArmContactScenario s = read_arm_contact_scenario(shipped("jemrms_capture.toml"));
-  const coupling::Motion motion = motion_of(s, s.contact.models[0]);
+  const coupling::Motion motion = first_run(shipped("jemrms_capture.toml")).motion;
   ASSERT_EQ(motion.arms.size(), 1U);
   ASSERT_EQ(motion.mounts.size(), 2U);
   EXPECT_TRUE(motion.welds.empty());
@@ -33,8 +37,7 @@ TEST(ArmContactScenario, TheWireRidesOnTheTipWhereItIsAsked) {
 }
 
 TEST(ArmContactScenario, AnArmThatCarriesTheBodyStartsWithItsMotion) {
-  const ArmContactScenario s = read_arm_contact_scenario(shipped("jemrms_payload_on_wire.toml"));
-  const coupling::Motion motion = motion_of(s, s.contact.models[0]);
+  const coupling::Motion motion = first_run(shipped("jemrms_payload_on_wire.toml")).motion;
   ASSERT_EQ(motion.welds.size(), 1U);
   const multibody::Tree& tree = motion.arms[0].arm.tree;
   multibody::Kinematics kinematics(tree);
@@ -47,17 +50,15 @@ TEST(ArmContactScenario, AnArmThatCarriesTheBodyStartsWithItsMotion) {
 
 TEST(ArmContactScenario, MistakesInAllFilesAreListedAtOnce) {
   try {
-    static_cast<void>(read_arm_contact_scenario(
-        shipped("jemrms_capture.toml"),
-        {{"carries", "probe"}, {"pose", "crooked"}, {"contact.wire.diameter_mm", "-1.0"}}));
+    static_cast<void>(read_scenario(shipped("jemrms_capture.toml"),
+                                    {{"carries", "probe"}, {"pose", "crooked"}, {"contact.wire.diameter_mm", "-1.0"}}));
     FAIL() << "accepted";
   } catch (const base::InputError& error) {
     EXPECT_THAT(
         error.what(),
-        testing::AllOf(
-            testing::HasSubstr("--set: carries = probe, must be \"wire\" or \"body\""),
-            testing::HasSubstr("--set: pose = crooked, must be a pose of the arm: \"straight\", \"bent\""),
-            testing::HasSubstr("wire.diameter_mm = -1.0")));
+        testing::AllOf(testing::HasSubstr("--set: carries = probe, must be \"wire\" or \"body\""),
+                       testing::HasSubstr("--set: pose = crooked, must be a pose of the arm: \"straight\", \"bent\""),
+                       testing::HasSubstr("wire.diameter_mm = -1.0")));
   }
 }
 
@@ -71,24 +72,23 @@ TEST(ArmContactScenario, ALawNeedsAWireThatStands) {
       << (std::filesystem::path(SNARE_SOURCE_DIR) / "data/arms/jemrms_like.toml").string()
       << "\"\npose = \"bent\"\ncontact = \"air_table.toml\"\ncarries = \"wire\"\nhold = \"limp\"\n";
   try {
-    static_cast<void>(read_arm_contact_scenario(folder / "x.toml"));
+    static_cast<void>(read_scenario(folder / "x.toml"));
     FAIL() << "accepted";
   } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(),
-                testing::HasSubstr(
-                    "x.toml:7: carries = \"wire\", must be \"body\" with the model quadratic of Table 4"));
+    EXPECT_THAT(
+        error.what(),
+        testing::HasSubstr("x.toml:7: carries = \"wire\", must be \"body\" with the model quadratic of Table 4"));
   }
   std::filesystem::remove_all(folder);
 }
 
 /// A short run of the shipped capture, begun just before the touch.
 coupling::MotionResult run(const std::string& name, double duration, double& arm_moved) {
-  ArmContactScenario s = read_arm_contact_scenario(shipped(name), {{"contact.solver.elements", "24"},
-                                                                   {"contact.body.distance_mm", "0.02"},
-                                                                   {"duration_s", std::to_string(duration)}});
-  const coupling::Motion motion = motion_of(s, s.contact.models[0]);
-  const Eigen::VectorXd start = motion.arms[0].start.v;
-  return coupling::simulate(motion, s.contact.options, [&](const coupling::MotionSample& sample) {
+  const NamedMotion asked = first_run(shipped(name), {{"contact.solver.elements", "24"},
+                                                      {"contact.body.distance_mm", "0.02"},
+                                                      {"duration_s", std::to_string(duration)}});
+  const Eigen::VectorXd start = asked.motion.arms[0].start.v;
+  return coupling::simulate(asked.motion, asked.options, [&](const coupling::MotionSample& sample) {
     arm_moved = std::max(arm_moved, (sample.arms[0].state.v - start).norm());
     return false;
   });

@@ -1,4 +1,4 @@
-#include "scenario/bodies_scenario.hpp"
+#include "scenario/scenario.hpp"
 
 #include "base/errors.hpp"
 #include "tests/support/mesh_files.hpp"
@@ -106,16 +106,16 @@ class MotionScenarios : public testing::Test {
     std::ofstream(folder_ / "every_kind.toml") << every_kind;
   }
   ~MotionScenarios() override { fs::remove_all(folder_); }
-  [[nodiscard]] MotionScenario read(const std::vector<std::string>& settings) const {
+  [[nodiscard]] NamedMotion read(const std::vector<std::string>& settings) const {
     std::vector<base::Override> overrides;
     for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-    return read_motion_scenario(folder_ / "every_kind.toml", overrides);
+    return std::get<WireMotions>(read_scenario(folder_ / "every_kind.toml", overrides).content).runs.at(0);
   }
   fs::path folder_;
 };
 
 TEST_F(MotionScenarios, ReadEveryKindOfShape) {
-  const MotionScenario s = read({});
+  const NamedMotion s = read({});
   ASSERT_EQ(s.motion.wires.size(), 1u);
   ASSERT_EQ(s.motion.bodies.size(), 2u);
   ASSERT_EQ(s.motion.contacts.size(), 7u);
@@ -134,7 +134,7 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   EXPECT_EQ(s.motion.contacts[2].wire_radius, 0.75e-3);
   EXPECT_TRUE(s.motion.bodies[1].driven);
   EXPECT_LT((s.motion.bodies[0].start.orientation * Vector3d::UnitX() - Vector3d::UnitY()).norm(), 1e-14);
-  EXPECT_LT((s.motion.contacts[3].shape_rotation * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), 1e-14);
+  EXPECT_LT((s.motion.contacts[3].X_BS.R * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), 1e-14);
   EXPECT_EQ(s.motion.gravity, Vector3d(0.0, 0.0, -9.81));
   // The wire stands between its mounts and bulges where it was told, across its chord.
   const coupling::MotionWire& w = s.motion.wires[0];
@@ -166,7 +166,8 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
       {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be from_mm"},
-      {"wires[a].bulge=[0.0, 0.0, 1.0]", "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
+      {"wires[a].bulge=[0.0, 0.0, 1.0]",
+       "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
       {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
       {"wires[a].yield_stress_MPa=500", "the wire is elastic and naturally straight in motion"},
       {"wires[a].elements=4", "wires[a].elements = 4"},
@@ -174,14 +175,16 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"bodies[target].inertia_kg_m2=[1.0, 1.0, 3.0]", "triangle inequality"},
       {"bodies[machine].mass_kg=1", "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
       {"bodies[machine].name=\"target\"", "is taken by another body"},
-      {"shapes[ball].body=\"moon\"", "shapes[ball].body = \"moon\", must be the name of a body: \"target\", \"machine\""},
+      {"shapes[ball].body=\"moon\"",
+       "shapes[ball].body = \"moon\", must be the name of a body: \"target\", \"machine\""},
       {"shapes[ball].wires=[\"b\"]", "must be the name of a wire: \"a\""},
       {"shapes[ball].kind=\"cube\"", "shapes[ball].kind = \"cube\", must be \"knife_edge\", \"cylinder\""},
       {"shapes[ball].radius_mm=-1", "shapes[ball].radius_mm = -1, must be > 0"},
       {"shapes[ball].length_mm=1", "shapes[ball].length_mm = 1, unknown key"},
       {"shapes[ball].points=0", "shapes[ball].points = 0"},
       {"shapes[ball].static_speed_m_s=2", "must be > static_speed_m_s"},
-      {"shapes[taper].lower_radius_mm=0", "shapes[taper].upper_radius_mm = 0.0, must be > 0 where lower_radius_mm is 0"},
+      {"shapes[taper].lower_radius_mm=0",
+       "shapes[taper].upper_radius_mm = 0.0, must be > 0 where lower_radius_mm is 0"},
       {"shapes[shaft].cam_radius_mm=5", "grapple shaft cam_radius = 0.005, must be > shaft_radius"},
       {"shapes[box].file=\"none.stl\"", "none.stl"},
       {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},
@@ -204,14 +207,19 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
     ADD_FAILURE();
   } catch (const base::InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("shapes[box].file = \"hole.obj\""));
-    EXPECT_THAT(error.what(), HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
   }
 }
 
 TEST(ShippedScenarios, GrappleShaftIsReadAndKnownAsAList) {
-  EXPECT_TRUE(lists_bodies(shipped, {}));
-  EXPECT_FALSE(lists_bodies(fs::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml", {}));
-  const MotionScenario s = read_motion_scenario(shipped);
+  const auto content = [](const fs::path& file) { return std::get<WireMotions>(read_scenario(file).content); };
+  EXPECT_TRUE(content(fs::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml").probe);
+  const WireMotions listed = content(shipped);
+  EXPECT_FALSE(listed.probe);
+  ASSERT_EQ(listed.runs.size(), 1u);
+  const NamedMotion& s = listed.runs[0];
   EXPECT_EQ(s.motion.wires.size(), 3u);
   EXPECT_EQ(s.motion.contacts.size(), 6u);
   // The three wires are one wire turned: bulges of 18.88 mm at 120 degrees (the digest of the declared wire).

@@ -1,7 +1,7 @@
 #include "scenario/contact_scenario.hpp"
 
-#include "coupling/dynamics/law_part.hpp"
 #include "base/errors.hpp"
+#include "coupling/dynamics/law_part.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,8 +93,9 @@ TEST(ContactScenario, SaysWhatIsWrong) {
 
 // Digest of Table 4: the quadratic at s = 90 mm, head-on, without damping: 8.9 kg at 0.1 m/s.
 TEST(ContactScenario, QuadraticLawHeadOn) {
-  const ContactScenario s = air_table_with({"body.probe_mm=[0.0, 100.0, 0.0]", "duration_s=0.4", "solver.relative_tolerance=1e-7",
-                                           "solver.position_tolerance_m=1e-9", "solver.velocity_tolerance_m_s=1e-6"});
+  const ContactScenario s =
+      air_table_with({"body.probe_mm=[0.0, 100.0, 0.0]", "duration_s=0.4", "solver.relative_tolerance=1e-7",
+                      "solver.position_tolerance_m=1e-9", "solver.velocity_tolerance_m_s=1e-6"});
   const coupling::MotionResult r = coupling::simulate(motion_of(s, s.models[1]), s.options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   // Quadrature of A d^2 + B d + C (cut off where it would pull) against m v^2/2 gives depth 6.07 mm, force 25.2 N;
@@ -130,7 +131,8 @@ TEST(LawPart, JacobianMatchesDifferences) {
   for (Eigen::Index k = 0; k < y.size(); ++k) {
     VectorXd direction = VectorXd::Unit(y.size(), k);
     // Along the sphere: the length of the quaternion has an equation of its own.
-    if (k >= part.quaternion() && k < part.quaternion() + 4) direction.segment<4>(part.quaternion()) -= q[k - part.quaternion()] * q;
+    if (k >= part.quaternion() && k < part.quaternion() + 4)
+      direction.segment<4>(part.quaternion()) -= q[k - part.quaternion()] * q;
     constexpr double h = 1e-6;
     const VectorXd up = y + h * direction, down = y - h * direction;
     const VectorXd up_rate = rate + c * h * direction, down_rate = rate - c * h * direction;

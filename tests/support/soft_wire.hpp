@@ -1,6 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 
 #include <Eigen/Core>
 
@@ -25,7 +26,8 @@ namespace snare::test {
 }
 
 /// The wire and a body of `mass` that carries a shape at its centre and moves along y.
-[[nodiscard]] inline coupling::Motion body_below(const wire::RodInMotion& rod, std::shared_ptr<const coupling::ContactShape> shape,
+[[nodiscard]] inline coupling::Motion body_below(const wire::RodInMotion& rod,
+                                                 std::shared_ptr<const coupling::ContactShape> shape,
                                                  const Eigen::Vector3d& place, double speed, double mass) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::straight_wire(rod, Eigen::Vector3d::Zero(), {0.2, 0.0, 0.0}), {}});

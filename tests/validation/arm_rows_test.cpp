@@ -3,20 +3,14 @@
 #include "validation/arm_checks.hpp"
 #include "validation/linked_motion_checks.hpp"
 
+#include "tests/validation/row_checks.hpp"
+
 #include <gtest/gtest.h>
 
 #include <string>
 
 namespace snare::validation {
 namespace {
-
-void expect_within(const std::vector<Row>& rows) {
-  EXPECT_FALSE(rows.empty());
-  for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference
-                              << ", error " << row.error() << " of " << row.limit;
-  }
-}
 
 const std::string arms = std::string(SNARE_SOURCE_DIR) + "/data/arms";
 

@@ -1,17 +1,14 @@
 #include "validation/contact_law_checks.hpp"
 
+#include "tests/validation/row_checks.hpp"
+
 #include <gtest/gtest.h>
 
 namespace snare::validation {
 namespace {
 
 TEST(ContactLawRows, AreWithinTheirLimits) {
-  for (const Check& check : contact_law_checks()) {
-    for (const Row& row : check.run()) {
-      EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference
-                                << ", error " << row.error();
-    }
-  }
+  for (const Check& check : contact_law_checks()) expect_within(check.run());
 }
 
 }  // namespace

@@ -1,17 +1,11 @@
 #include "validation/friction_checks.hpp"
 
+#include "tests/validation/row_checks.hpp"
+
 #include <gtest/gtest.h>
 
 namespace snare::validation {
 namespace {
-
-void expect_within(const std::vector<Row>& rows) {
-  ASSERT_FALSE(rows.empty());
-  for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.name << ": " << row.value << " instead of " << row.reference
-                              << ", error " << row.error() << " of " << row.limit;
-  }
-}
 
 TEST(Friction, RestsBelowTheFrictionAngleAndSlidesAboveIt) {
   expect_within(incline_rows());

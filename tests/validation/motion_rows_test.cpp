@@ -3,18 +3,12 @@
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
 
+#include "tests/validation/row_checks.hpp"
+
 #include <gtest/gtest.h>
 
 namespace snare::validation {
 namespace {
-
-void expect_within(const std::vector<Row>& rows) {
-  EXPECT_FALSE(rows.empty());
-  for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.group << ", " << row.name << ": " << row.value << " instead of "
-                              << row.reference << ", error " << row.error() << " of " << row.limit;
-  }
-}
 
 TEST(SlowMotionRows, AxialWavesRunAtTheirSpeed) {
   expect_within(axial_wave_rows());

@@ -9,10 +9,10 @@
 namespace snare::validation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 HelicalBuckling standard_case() {
-  return helical_buckling(1.345, 0.789, 100.0, 3.0, 27.0 * 2.0 * kPi);
+  return helical_buckling(1.345, 0.789, 100.0, 3.0, 27.0 * 2.0 * pi);
 }
 
 TEST(HelicalBuckling, StandardCase) {
@@ -21,16 +21,17 @@ TEST(HelicalBuckling, StandardCase) {
   const HelicalBuckling rod = standard_case();
   EXPECT_NEAR(rod.moment_scaled / 98.541496171190744, 1.0, 1e-13);
   EXPECT_NEAR(rod.tension_scaled / 2.900993205792131e3, 1.0, 1e-13);
-  EXPECT_NEAR(rod.largest_angle,
-              std::acos(rod.moment_scaled * rod.moment_scaled / (2.0 * rod.tension_scaled) - 1.0), 1e-13);
+  EXPECT_NEAR(rod.largest_angle, std::acos(rod.moment_scaled * rod.moment_scaled / (2.0 * rod.tension_scaled) - 1.0),
+              1e-13);
 }
 
 TEST(HelicalBuckling, SatisfiesItsTwoConditions) {
   const HelicalBuckling rod = standard_case();
   const double x = rod.moment_scaled;
   const double y = rod.tension_scaled;
+  // Shortening 3 of 100 and 27 turns, to rounding of numbers of one and of a hundred.
   EXPECT_NEAR(std::sqrt(16.0 / y * (1.0 - x * x / (4.0 * y))), 0.03, 1e-14);
-  EXPECT_NEAR(x * 1.345 / 0.789 + 4.0 * std::acos(x / (2.0 * std::sqrt(y))), 54.0 * kPi, 1e-11);
+  EXPECT_NEAR(x * 1.345 / 0.789 + 4.0 * std::acos(x / (2.0 * std::sqrt(y))), 54.0 * pi, 1e-11);
 }
 
 TEST(HelicalBuckling, EnvelopeGivesTheShortening) {
@@ -57,12 +58,11 @@ TEST(CriticalTorque, ClampedWithoutTension) {
   EXPECT_NEAR(critical_torque_clamped(1.0, 0.0, 1.0), 8.986818915818, 1e-11);
   EXPECT_NEAR(critical_torque_clamped(3.0, 0.0, 2.0), 1.5 * 8.986818915818, 1e-11);
   // Continuous through zero tension, slope about 0.147.
-  EXPECT_NEAR(critical_torque_clamped(1.0, 1e-3, 1.0) - critical_torque_clamped(1.0, -1e-3, 1.0), 2.95e-4,
-              1e-5);
+  EXPECT_NEAR(critical_torque_clamped(1.0, 1e-3, 1.0) - critical_torque_clamped(1.0, -1e-3, 1.0), 2.95e-4, 1e-5);
 }
 
 TEST(CriticalTorque, ClampedVanishesAtTheColumnsLoad) {
-  const double load = 4.0 * kPi * kPi;
+  const double load = 4.0 * pi * pi;
   const double near = critical_torque_clamped(1.0, -load * (1.0 - 1e-6), 1.0);
   const double farther = critical_torque_clamped(1.0, -load * (1.0 - 4e-6), 1.0);
   EXPECT_NEAR(farther / near, 2.0, 1e-4);  // M grows as the root of the distance
@@ -105,13 +105,12 @@ TEST(CriticalTwist, Ring) {
 TEST(LateralBuckling, NarrowBeams) {
   EXPECT_NEAR(lateral_buckling_load(1.0, 1.0, 1.0), 4.013, 5e-4);  // Timoshenko and Gere 1961, sec. 6.3
   EXPECT_NEAR(lateral_buckling_load(4.0, 9.0, 2.0), 6.0 * 4.0126 / 4.0, 1e-4);
-  EXPECT_NEAR(lateral_buckling_moment(4.0, 9.0, 2.0), 3.0 * kPi, 1e-13);
+  EXPECT_NEAR(lateral_buckling_moment(4.0, 9.0, 2.0), 3.0 * pi, 1e-13);
   // Independent check of the root: J_{-1/4} = J_{3/4}-type recurrence by the standard library,
   // J_{-nu}(x) = J_nu cos(nu pi) - Y_nu sin(nu pi).
   const double x = 0.5 * lateral_buckling_load(1.0, 1.0, 1.0);
   const double nu = 0.25;
-  EXPECT_NEAR(std::cyl_bessel_j(nu, x) * std::cos(nu * kPi) - std::cyl_neumann(nu, x) * std::sin(nu * kPi),
-              0.0, 1e-12);
+  EXPECT_NEAR(std::cyl_bessel_j(nu, x) * std::cos(nu * pi) - std::cyl_neumann(nu, x) * std::sin(nu * pi), 0.0, 1e-12);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace snare::validation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Row {
   double compression;
@@ -25,20 +25,20 @@ struct Row {
 
 // Values computed before and apart from this code, to the digits they were given with.
 constexpr Row kTable[] = {
-    {4 * kPi * kPi, 0.5, 0.0, 1e-15, 2.0 / kPi, 1e-15}, {20.0, 0.5, 61.181, 5e-4, 0.641347, 5e-7},
-    {0.0, 0.5, 123.936, 5.5e-4, 0.645497, 5e-7},        {-100.0, 0.5, 435.748, 5e-4, 0.659454, 5e-7},
-    {-1000.0, 0.5, 3142.19, 5e-3, 0.686182, 5e-7},      {4 * kPi * kPi, 0.4, 0.0, 1e-15, 0.5758, 5e-5},
-    {20.0, 0.4, 67.100, 5e-4, 0.605935, 5e-7},          {0.0, 0.4, 134.479, 5e-4, 0.619677, 5e-7},
-    {-100.0, 0.4, 459.565, 5e-4, 0.643166, 5e-7},       {-1000.0, 0.4, 3231.43, 5e-3, 0.671176, 5e-7},
+    {4 * pi * pi, 0.5, 0.0, 1e-15, 2.0 / pi, 1e-15}, {20.0, 0.5, 61.181, 5e-4, 0.641347, 5e-7},
+    {0.0, 0.5, 123.936, 5.5e-4, 0.645497, 5e-7},     {-100.0, 0.5, 435.748, 5e-4, 0.659454, 5e-7},
+    {-1000.0, 0.5, 3142.19, 5e-3, 0.686182, 5e-7},   {4 * pi * pi, 0.4, 0.0, 1e-15, 0.5758, 5e-5},
+    {20.0, 0.4, 67.100, 5e-4, 0.605935, 5e-7},       {0.0, 0.4, 134.479, 5e-4, 0.619677, 5e-7},
+    {-100.0, 0.4, 459.565, 5e-4, 0.643166, 5e-7},    {-1000.0, 0.4, 3231.43, 5e-3, 0.671176, 5e-7},
 };
 
 TEST(ShallowElastica, OutwardTable) {
   for (const Row& row : kTable) {
     const ShallowState state = shallow_state(row.compression, row.position);
     EXPECT_NEAR(state.force, row.force, row.force_digit) << row.compression << " " << row.position;
-    EXPECT_NEAR(state.deflection, row.deflection, row.deflection_digit)
-        << row.compression << " " << row.position;
+    EXPECT_NEAR(state.deflection, row.deflection, row.deflection_digit) << row.compression << " " << row.position;
   }
+  // 192 EI/l^3 times the deflection sqrt(5/12) at mid-span; taut: sqrt(2 s (1 - s)), printed to six digits at 0.4.
   EXPECT_NEAR(shallow_state(0.0, 0.5).force, 192.0 * std::sqrt(5.0 / 12.0), 1e-11);
   EXPECT_NEAR(shallow_taut_deflection(0.5), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(shallow_taut_deflection(0.4), 0.692820, 5e-7);
@@ -62,7 +62,8 @@ TEST(ShallowElastica, CentrePathHasItsClosedForm) {
 TEST(ShallowElastica, WithoutCompressionItIsTheClampedBeam) {
   for (const double s : {0.5, 0.4, 0.25, 0.1}) {
     const ShallowState state = shallow_state(0.0, s);
-    EXPECT_NEAR(state.force / state.deflection * std::pow(s * (1.0 - s), 3) / 3.0, 1.0, 1e-13);
+    EXPECT_NEAR(state.force / state.deflection * std::pow(s * (1.0 - s), 3) / 3.0, 1.0,
+                1e-13);  // some hundred roundings
   }
 }
 
@@ -151,7 +152,7 @@ TEST(ShallowElastica, InwardLargestForces) {
 
 TEST(ShallowElastica, InwardBifurcationAtMidSpan) {
   const ShallowState state = shallow_largest_inward(0.5);
-  EXPECT_NEAR(state.compression, 80.7629, 5e-5);
+  EXPECT_NEAR(state.compression, 80.7629, 5e-5);  // last digits given
   EXPECT_NEAR(state.deflection, 0.62351, 5e-6);
   // Branch: F = 207.744 EI d/L^3; given cut, not rounded: it is 207.7448.
   EXPECT_NEAR(-shallow_branch_stiffness(), 207.744, 1e-3);
@@ -161,9 +162,10 @@ TEST(ShallowElastica, InwardBifurcationAtMidSpan) {
 TEST(ShallowElastica, LargestInwardForceIsAMaximum) {
   for (const double s : {0.45, 0.4, 0.35}) {
     const ShallowState best = shallow_largest_inward(s);
+    // Forces against the bulge are negative: the largest is the least.
     EXPECT_LT(best.force, shallow_state(best.compression + 0.1, s).force);
     EXPECT_LT(best.force, shallow_state(best.compression - 0.1, s).force);
-    EXPECT_NEAR(best.force, shallow_largest_inward(1.0 - s).force, 1e-9);  // mirror image
+    EXPECT_NEAR(best.force, shallow_largest_inward(1.0 - s).force, 1e-9);  // mirror image: forces of 100 to rounding
   }
 }
 

@@ -1,6 +1,8 @@
 // Every validation row of the command is within its limit.
 
-#include "validation/suite.hpp"
+#include "validation/push_checks.hpp"
+
+#include "tests/validation/row_checks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,13 +28,7 @@ TEST(Row, ErrorIsNeverInsideForANaN) {
 class SlowStaticChecks : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(SlowStaticChecks, AllRowsAreWithinTheirLimits) {
-  const Check check = static_wire_checks()[GetParam()];
-  const std::vector<Row> rows = check.run();
-  EXPECT_FALSE(rows.empty());
-  for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.group << ", " << row.name << ": " << row.value << " instead of " << row.reference
-                              << ", error " << row.error() << " of " << row.limit;
-  }
+  expect_within(static_wire_checks()[GetParam()].run());
 }
 
 INSTANTIATE_TEST_SUITE_P(SlowStatic, SlowStaticChecks, testing::Range(std::size_t{0}, static_wire_checks().size()));

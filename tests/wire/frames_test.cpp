@@ -61,8 +61,7 @@ TEST(Frames, TransportDoesNotTurnAboutTheTangent) {
 TEST(Frames, StayOrthonormalOverManySteps) {
   std::mt19937 random(4);
   Frame frame{Vector3d::UnitX(), Vector3d::UnitY()};
-  for (int k = 0; k < 10000; ++k)
-    frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
+  for (int k = 0; k < 10000; ++k) frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
   EXPECT_NEAR(frame.director.norm(), 1.0, kRoundOff);
   EXPECT_NEAR(frame.director.dot(frame.tangent), 0.0, kRoundOff);
 }

@@ -18,17 +18,17 @@ TEST(MaterialMesh, CarriesItsControls) {
     EXPECT_EQ(mesh.edges(), 16);
     EXPECT_EQ(mesh.vertices(), 17);
     EXPECT_EQ(mesh.contact_vertex(), 6);
-    EXPECT_NEAR(mesh.coordinate(0, kControls), kControls[0], kRoundOff);
-    EXPECT_NEAR(mesh.coordinate(6, kControls), kControls[1], kRoundOff);
-    EXPECT_NEAR(mesh.coordinate(16, kControls), kControls[2], kRoundOff);
+    EXPECT_NEAR(mesh.coordinate(0, kControls), kControls.left, kRoundOff);
+    EXPECT_NEAR(mesh.coordinate(6, kControls), kControls.contact, kRoundOff);
+    EXPECT_NEAR(mesh.coordinate(16, kControls), kControls.right, kRoundOff);
   }
 }
 
 TEST(MaterialMesh, RestLengthsAreTheGapsOfTheCoordinates) {
   const MaterialMesh mesh(6, 10, 2.0);
   for (int e = 0; e < mesh.edges(); ++e) {
-    EXPECT_NEAR(mesh.rest_length(e, kControls),
-                mesh.coordinate(e + 1, kControls) - mesh.coordinate(e, kControls), kRoundOff);
+    EXPECT_NEAR(mesh.rest_length(e, kControls), mesh.coordinate(e + 1, kControls) - mesh.coordinate(e, kControls),
+                kRoundOff);
     EXPECT_GT(mesh.rest_length(e, kControls), 0.0);
   }
 }
@@ -56,8 +56,7 @@ TEST(MaterialMesh, GradingDrawsVerticesTowardsMountsAndContact) {
   for (const int side : {0, 8}) {
     for (int e = 0; e < 4; ++e) {
       // Symmetric about the middle of the side, growing towards it.
-      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls),
-                  kRoundOff);
+      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls), kRoundOff);
     }
     for (int e = 1; e < 4; ++e) {
       EXPECT_GT(mesh.rest_length(side + e, kControls), mesh.rest_length(side + e - 1, kControls));

@@ -22,11 +22,11 @@ TEST(SectionLaw, OneSliderIsTheBilinearLoopOfMasing) {
     slide(strand, strain, &slipped);
     return r.resultant;
   };
-  EXPECT_DOUBLE_EQ(at(0.1), 0.4);              // both springs
-  EXPECT_DOUBLE_EQ(at(0.5), 0.5 + 0.6);        // slipped at 0.2
-  EXPECT_DOUBLE_EQ(at(0.4), 0.4 + 0.3);        // sticks again on the way back
-  EXPECT_DOUBLE_EQ(at(0.0), -0.6);             // twice the slip strain further it slides the other way
-  EXPECT_NEAR(at(0.5), 0.5 + 0.6, 1e-15);      // the loop closes
+  EXPECT_DOUBLE_EQ(at(0.1), 0.4);          // both springs
+  EXPECT_DOUBLE_EQ(at(0.5), 0.5 + 0.6);    // slipped at 0.2
+  EXPECT_DOUBLE_EQ(at(0.4), 0.4 + 0.3);    // sticks again on the way back
+  EXPECT_DOUBLE_EQ(at(0.0), -0.6);         // twice the slip strain further it slides the other way
+  EXPECT_NEAR(at(0.5), 0.5 + 0.6, 1e-15);  // the loop closes
 }
 
 // The stored and dissipated energy is the work of the resultant along a monotone path.
@@ -53,7 +53,8 @@ TEST(SectionLaw, YieldingSectionFollowsTheRoundBar) {
         2.0 / std::numbers::pi * ((5.0 - 2.0 * eta * eta) * std::sqrt(1.0 - eta * eta) / 3.0 + std::asin(eta) / eta);
     // Eight pairs of fibres.
     EXPECT_NEAR(respond(hardening * ei, fibres, ratio * first, nullptr).resultant, exact * first * ei,
-                1.5e-2 * first * ei) << ratio;
+                1.5e-2 * first * ei)
+        << ratio;
   }
 }
 

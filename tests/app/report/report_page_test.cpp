@@ -71,12 +71,10 @@ TEST(ReportPage, EscapesUserTextEverywhere) {
 
   const std::string html = page.html();
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
-  EXPECT_NE(
-      html.find("<title>&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;quoted&quot;</title>"),
-      std::string::npos);
+  EXPECT_NE(html.find("<title>&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;quoted&quot;</title>"),
+            std::string::npos);
   EXPECT_EQ(data_of_plot(html)["curves"][0]["name"], attack) << "the plot shows the text as it was written";
-  EXPECT_EQ(count(html, "</script>"), 3U)
-      << "data of one plot, D3 and the plot script; no text may end one early";
+  EXPECT_EQ(count(html, "</script>"), 3U) << "data of one plot, D3 and the plot script; no text may end one early";
 }
 
 TEST(ReportPage, AcceptsTextThatIsNotUtf8) {
@@ -139,7 +137,7 @@ TEST(ReportPage, RejectsValuesThatAreNotFinite) {
 }
 
 TEST(ReportPage, RejectsValueThatIsNotFiniteInAThinnedCurve) {
-  const std::size_t size = 10 * ReportPage::max_points_per_curve;
+  const std::size_t size = 10 * max_points_per_curve;
   PlotSpecification plot = simple_plot();
   plot.curves[0].x.assign(size, 0.0);
   plot.curves[0].y.assign(size, 1.0);
@@ -203,8 +201,8 @@ TEST(ReportPage, ThinsLongCurvesButKeepsTheirExtremes) {
   const auto curve = data_of_plot(page.html())["curves"][0];
   const auto x = curve["x"].get<std::vector<double>>();
   const auto y = curve["y"].get<std::vector<double>>();
-  EXPECT_LE(x.size(), ReportPage::max_points_per_curve);
-  EXPECT_GT(x.size(), ReportPage::max_points_per_curve / 4);
+  EXPECT_LE(x.size(), max_points_per_curve);
+  EXPECT_GT(x.size(), max_points_per_curve / 4);
   EXPECT_EQ(x.size(), y.size());
   EXPECT_TRUE(std::ranges::is_sorted(x));
   EXPECT_EQ(std::ranges::max(y), 7.0);

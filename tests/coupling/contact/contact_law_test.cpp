@@ -1,5 +1,5 @@
-#include "base/units.hpp"
 #include "coupling/contact/contact_law.hpp"
+#include "base/units.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,11 @@ void expect_derivatives(const ContactLaw& law, double d, double rate) {
 
 TEST(ContactLaw, DerivativesMatchDifferences) {
   for (const ContactLaw& law :
-       {spring_dashpot(3e3, 5.0), power_law(2e4, 1.5, 40.0, 1.0), power_law(2e4, 2.6, 40.0, 1.3), power_law(2e4, 1.5, 4.0, 1.0, 0.0),
-        power_law(2e4, 1.5, 40.0, 1.2, 2.0), step_damped_law(2e4, 1.5, 5.0, 3.0 * mm), step_damped_law(2e4, 1.5, 5.0, 1.0 * mm), quadratic_law(890183.0, 1297.6, 0.3),
-        stretched_wire_law(5.55e5, 90 * mm, 87.5 * mm), stretched_wire_tangent(5.55e5, 90 * mm, 87.5 * mm)}) {
+       {spring_dashpot(3e3, 5.0), power_law(2e4, 1.5, 40.0, 1.0), power_law(2e4, 2.6, 40.0, 1.3),
+        power_law(2e4, 1.5, 4.0, 1.0, 0.0), power_law(2e4, 1.5, 40.0, 1.2, 2.0),
+        step_damped_law(2e4, 1.5, 5.0, 3.0 * mm), step_damped_law(2e4, 1.5, 5.0, 1.0 * mm),
+        quadratic_law(890183.0, 1297.6, 0.3), stretched_wire_law(5.55e5, 90 * mm, 87.5 * mm),
+        stretched_wire_tangent(5.55e5, 90 * mm, 87.5 * mm)}) {
     expect_derivatives(law, 2.0 * mm, 0.05);
     expect_derivatives(law, 2.0 * mm, -0.05);
   }

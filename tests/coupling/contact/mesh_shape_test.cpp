@@ -1,7 +1,7 @@
 #include "coupling/contact/mesh_shape.hpp"
 
-#include "coupling/contact/revolved_shape.hpp"
 #include "base/errors.hpp"
+#include "coupling/contact/revolved_shape.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/mesh_files.hpp"
 
@@ -21,13 +21,15 @@ namespace fs = std::filesystem;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using ::testing::HasSubstr;
 using test::cuboid;
 using test::revolved_mesh;
+using ::testing::HasSubstr;
 
 class MeshFiles : public testing::Test {
  protected:
-  MeshFiles() : folder_(fs::temp_directory_path() / ("snare_mesh_" + std::to_string(::getpid()))) { fs::create_directories(folder_); }
+  MeshFiles() : folder_(fs::temp_directory_path() / ("snare_mesh_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
   ~MeshFiles() override { fs::remove_all(folder_); }
   [[nodiscard]] fs::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
@@ -64,9 +66,10 @@ TEST_F(MeshFiles, AreReadInEveryFormat) {
     EXPECT_NEAR(shape.distance({6e-3, 0.0, 0.0}), 2e-3, 1e-15) << name;
   }
   // Quadrilaterals are cut, comments and counts from the end understood.
-  const fs::path file = write("quads.obj",
-                              "# a box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvn 0 0 1\n"
-                              "f 1 4 3 2\nf -4 -3 -2 -1\nf 1 2 6 5\nf 2/1/1 3/1/1 7 6\nf 3 4 8 7 # side\nf 4 1 5 8\n");
+  const fs::path file =
+      write("quads.obj",
+            "# a box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvn 0 0 1\n"
+            "f 1 4 3 2\nf -4 -3 -2 -1\nf 1 2 6 5\nf 2/1/1 3/1/1 7 6\nf 3 4 8 7 # side\nf 4 1 5 8\n");
   EXPECT_NEAR(MeshShape(read_triangle_mesh(file, 1.0)).volume(), 1.0, 1e-15);
 }
 
@@ -77,7 +80,8 @@ TEST_F(MeshFiles, WrongOnesAreNamedWithTheirLine) {
       {"empty.stl", "", "mesh = 0 bytes, is no STL: neither \"solid\" nor a binary header"},
       {"text.stl", std::string(200, 'x'), "is no STL: neither \"solid\" nor the "},
       {"cut.stl", "solid a\n" + facet, "cut.stl:5: mesh, must be \"vertex\" with three numbers"},
-      {"quad.stl", "solid a\n" + facet + "vertex 1 1 0\nvertex 0 1 0\nendloop\n", "quad.stl:7: mesh = vertex, must be \"endloop\""},
+      {"quad.stl", "solid a\n" + facet + "vertex 1 1 0\nvertex 0 1 0\nendloop\n",
+       "quad.stl:7: mesh = vertex, must be \"endloop\""},
       {"nan.stl", "solid a\n" + facet + "vertex 1 nan 0\n", "nan.stl:6: mesh = nan, must be a finite number"},
       {"none.stl", "solid a\nendsolid a\n", "mesh = 0 triangles, must have some"},
       {"far.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "far.obj:3: mesh = 3, must be a point's number, 1 to 2"},
@@ -86,8 +90,10 @@ TEST_F(MeshFiles, WrongOnesAreNamedWithTheirLine) {
       {"empty.obj", "", "mesh = 0 triangles, must have some"},
       {"no.off", "COFF\n", "no.off:1: mesh = COFF, must be \"OFF\""},
       {"short.off", "OFF\n3 1 0\n0 0 0\n", "mesh, ends after 1 of 3 points"},
-      {"index.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "index.off:5: mesh = 7, must be a point's index, 0 to 2"},
-      {"edge.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "edge.off:5: mesh = 2, must be the number of the face's corners"},
+      {"index.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",
+       "index.off:5: mesh = 7, must be a point's index, 0 to 2"},
+      {"edge.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n",
+       "edge.off:5: mesh = 2, must be the number of the face's corners"},
   };
   for (const auto& [name, text, message] : wrong) EXPECT_THAT(complaint(name, text), HasSubstr(message)) << name;
   test::write_mesh(folder_ / "cut_binary.stl", cuboid(1.0, 1.0, 1.0), 1.0);
@@ -107,10 +113,12 @@ TEST(MeshShapes, WrongSurfacesAreNamedWithTriangleAndEdge) {
   };
   TriangleMesh hole = cuboid(1.0, 1.0, 1.0);
   hole.triangles.erase(hole.triangles.begin() + 3);
-  EXPECT_THAT(said(hole), HasSubstr("cuboid: mesh edge of points 5, 6 = triangle 2, must have a triangle on its other side too"));
+  EXPECT_THAT(said(hole),
+              HasSubstr("cuboid: mesh edge of points 5, 6 = triangle 2, must have a triangle on its other side too"));
   TriangleMesh flipped = cuboid(1.0, 1.0, 1.0);
   std::swap(flipped.triangles[4][0], flipped.triangles[4][1]);
-  EXPECT_THAT(said(flipped), HasSubstr("mesh edge of points 1, 4 = triangles 4 and 5, must be run along in opposite directions"));
+  EXPECT_THAT(said(flipped),
+              HasSubstr("mesh edge of points 1, 4 = triangles 4 and 5, must be run along in opposite directions"));
   TriangleMesh inside_out = cuboid(1.0, 1.0, 1.0);
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
   EXPECT_THAT(said(inside_out), HasSubstr("mesh = volume -1 m^3, must face outward: it is turned inside out"));

@@ -75,19 +75,19 @@ std::vector<Sampled> sampled_shapes() {
                   [](const Vector3d& p) { return p.norm() < 0.7; }});
   std::vector<Vector2d> capsule = arc({0.0, -0.5}, 0.3, -0.5 * pi, 0.0);
   for (const Vector2d& p : arc({0.0, 0.5}, 0.3, 0.0, 0.5 * pi)) capsule.push_back(p);
-  list.push_back({"capsule", std::make_shared<Capsule>(0.3, 1.0), revolve(capsule, spacing), spacing,
-                  [](const Vector3d& p) {
-                    return (p - Vector3d(0.0, 0.0, std::clamp(p.z(), -0.5, 0.5))).norm() < 0.3;
-                  }});
-  list.push_back({"knife edge", std::make_shared<Capsule>(0.0, 1.0),
-                  revolve({{0.0, -0.5}, {0.0, 0.5}}, spacing), spacing, [](const Vector3d&) { return false; }});
-  list.push_back({"cylinder", finite_cylinder(0.5, 1.2), revolve({{0.0, -0.6}, {0.5, -0.6}, {0.5, 0.6}, {0.0, 0.6}}, spacing),
-                  spacing, [](const Vector3d& p) { return radius_of(p) < 0.5 && std::abs(p.z()) < 0.6; }});
+  list.push_back(
+      {"capsule", std::make_shared<Capsule>(0.3, 1.0), revolve(capsule, spacing), spacing,
+       [](const Vector3d& p) { return (p - Vector3d(0.0, 0.0, std::clamp(p.z(), -0.5, 0.5))).norm() < 0.3; }});
+  list.push_back({"knife edge", std::make_shared<Capsule>(0.0, 1.0), revolve({{0.0, -0.5}, {0.0, 0.5}}, spacing),
+                  spacing, [](const Vector3d&) { return false; }});
+  list.push_back({"cylinder", finite_cylinder(0.5, 1.2),
+                  revolve({{0.0, -0.6}, {0.5, -0.6}, {0.5, 0.6}, {0.0, 0.6}}, spacing), spacing,
+                  [](const Vector3d& p) { return radius_of(p) < 0.5 && std::abs(p.z()) < 0.6; }});
   list.push_back({"truncated cone", truncated_cone(0.6, 0.2, 1.0),
-                  revolve({{0.0, -0.5}, {0.6, -0.5}, {0.2, 0.5}, {0.0, 0.5}}, spacing), spacing, [](const Vector3d& p) {
-                    return std::abs(p.z()) < 0.5 && radius_of(p) < 0.4 - 0.4 * p.z();
-                  }});
-  list.push_back({"full cone", truncated_cone(0.6, 0.0, 1.0), revolve({{0.0, -0.5}, {0.6, -0.5}, {0.0, 0.5}}, spacing), spacing,
+                  revolve({{0.0, -0.5}, {0.6, -0.5}, {0.2, 0.5}, {0.0, 0.5}}, spacing), spacing,
+                  [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.4 - 0.4 * p.z(); }});
+  list.push_back({"full cone", truncated_cone(0.6, 0.0, 1.0), revolve({{0.0, -0.5}, {0.6, -0.5}, {0.0, 0.5}}, spacing),
+                  spacing,
                   [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.3 - 0.6 * p.z(); }});
   // A cam of chord (0.6, 1.0) to (0.6, 0.4) rotated: the arc's circle is found here from its three points.
   GrappleShaft g;
@@ -109,13 +109,14 @@ std::vector<Sampled> sampled_shapes() {
   std::vector<Vector2d> shaft{{0.0, 0.0}, {0.3, 0.0}, {0.3, 1.0}};
   for (const Vector2d& p : arc(centre, radius, angle(a), angle(c))) shaft.push_back(p);
   shaft.emplace_back(0.0, 2.1);
-  list.push_back({"grapple shaft", grapple_shaft(g), revolve(shaft, spacing), spacing, [centre, radius](const Vector3d& p) {
-                    const double r = radius_of(p), z = p.z();
-                    if (z < 0.0 || z > 2.1) return false;
-                    if (z < 1.0) return r < 0.3;
-                    if (z < 1.3) return r < 0.3 + (z - 1.0);
-                    return r < centre.x() + std::sqrt(radius * radius - (z - centre.y()) * (z - centre.y()));
-                  }});
+  list.push_back(
+      {"grapple shaft", grapple_shaft(g), revolve(shaft, spacing), spacing, [centre, radius](const Vector3d& p) {
+         const double r = radius_of(p), z = p.z();
+         if (z < 0.0 || z > 2.1) return false;
+         if (z < 1.0) return r < 0.3;
+         if (z < 1.3) return r < 0.3 + (z - 1.0);
+         return r < centre.x() + std::sqrt(radius * radius - (z - centre.y()) * (z - centre.y()));
+       }});
   // A waist: a concave arc of radius 0.5 between two rims.
   std::vector<Vector2d> waist{{0.0, -0.4}, {0.6, -0.4}};
   for (const Vector2d& p : arc({0.9, 0.0}, 0.5, pi + std::asin(0.8), pi - std::asin(0.8))) waist.push_back(p);
@@ -252,12 +253,16 @@ TEST(ContactShapes, WrongProfilesAreNamed) {
   using Pieces = std::vector<ProfilePiece>;
   const std::tuple<double, Pieces, const char*> wrong[] = {
       {0.0, Pieces{{{0.0, 1.0}, 0.0}}, "profile = 1 pieces, must have two or more"},
-      {0.0, Pieces{{{-1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}}, "profile[1] = (-1, 0), must be finite and right of the axis"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}}, "profile[2] = (1, 0), must not be where the piece begins"},
+      {0.0, Pieces{{{-1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
+       "profile[1] = (-1, 0), must be finite and right of the axis"},
+      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
+       "profile[2] = (1, 0), must not be where the piece begins"},
       {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{0.5, 1.0}, 0.0}}, "profile[2] = (0.5, 1), must end on the axis"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 2.0}, 1.5}, {{0.0, 2.0}, 0.0}}, "needs a radius of curvature of half its chord of 2 m"},
+      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 2.0}, 1.5}, {{0.0, 2.0}, 0.0}},
+       "needs a radius of curvature of half its chord of 2 m"},
       {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{0.0, -1.0}, 0.0}}, "must run upward"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}, {{0.5, -1.0}, 0.0}, {{0.5, 2.0}, 0.0}, {{0.0, 2.0}, 0.0}}, "must not cross itself"},
+      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}, {{0.5, -1.0}, 0.0}, {{0.5, 2.0}, 0.0}, {{0.0, 2.0}, 0.0}},
+       "must not cross itself"},
   };
   for (const auto& [start, pieces, message] : wrong) {
     try {

@@ -1,7 +1,8 @@
 // Balances of energy, momentum and angular momentum along a motion, and going on from a state.
 
-#include "coupling/dynamics/motion.hpp"
 #include "base/errors.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +40,7 @@ Motion oblique_impact(const wire::RodInMotion& rod) {
   motion.bodies.push_back(body);
   MotionContact contact;
   contact.shape = std::make_shared<Ball>(0.01);
-  contact.shape_position = {0.015, 0.0, -0.004};
+  contact.X_BS.p = {0.015, 0.0, -0.004};
   contact.wire_radius = 0.001;
   contact.friction = {0.3, 0.1, 0.01, 1.0};
   motion.contacts.push_back(contact);
@@ -153,7 +154,7 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
   motion.bodies[0].start.position = {0.08, 0.003 - 0.05, 0.0};
   motion.bodies[0].start.velocity = {0.1, 0.0, 0.0};
   motion.contacts[0].shape = std::make_shared<EndlessCylinder>(0.002);
-  motion.contacts[0].shape_position = {0.0, 0.05, 0.0};
+  motion.contacts[0].X_BS.p = {0.0, 0.05, 0.0};
   motion.contacts[0].friction = {};
   MotionOptions options;
   options.duration = 60.0;
@@ -180,7 +181,8 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
 std::vector<double> numbers(const MotionSample& s) {
   std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated, s.energy.integrator};
   for (const auto& b : s.bodies) {
-    for (int k = 0; k < 3; ++k) list.insert(list.end(), {b.position[k], b.velocity[k], b.spin[k], b.orientation.vec()[k]});
+    for (int k = 0; k < 3; ++k)
+      list.insert(list.end(), {b.position[k], b.velocity[k], b.spin[k], b.orientation.vec()[k]});
   }
   for (const auto& c : s.contacts) list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.x(), c.force.y()});
   for (const auto& w : s.wires) list.insert(list.end(), w.data(), w.data() + w.size());
@@ -280,7 +282,8 @@ TEST(MotionState, AFailureKeepsWhatWasReached) {
   EXPECT_NEAR(written, result.report.time, options.output_interval);
   EXPECT_EQ(result.last.time, result.report.time);
   EXPECT_TRUE(result.last.unknowns.allFinite());
-  EXPECT_THAT(result.report.message, testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact point 1 normal force")));
+  EXPECT_THAT(result.report.message,
+              testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact point 1 normal force")));
 }
 
 TEST(MotionState, OfAnotherMotionIsRefused) {

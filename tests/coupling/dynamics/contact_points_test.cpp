@@ -1,10 +1,10 @@
 // Several points of contact, shapes of every kind in motion, and touches that no step may pass by.
 
-#include "coupling/contact/complementarity.hpp"
 #include "coupling/dynamics/contact_points.hpp"
+#include "base/errors.hpp"
+#include "coupling/contact/complementarity.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_shape.hpp"
-#include "base/errors.hpp"
 #include "tests/support/mesh_files.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -68,17 +68,18 @@ TEST(ComplementaryImpulses, AreTheOneThatEveryChoiceOfContactsConfirms) {
   EXPECT_LT((shared - VectorXd::Constant(2, 1.5)).norm(), 1e-12);
 }
 
-TEST(WireCurve, BoxesHoldTheCurveAndMinimaAreThoseOfASampledWire) {
+TEST(BezierWire, BoxesHoldTheCurveAndMinimaAreThoseOfASampledWire) {
   wire::RodInMotion constants = soft_wire(12);
   constants.grading = 1.0;
   Motion motion = body_below(constants, std::make_shared<Ball>(0.01), {0.07, -0.012, 0.002}, 0.0, 1.0);
   // A wire in waves dips towards a long capsule below it more than once.
   motion.contacts[0].shape = std::make_shared<Capsule>(0.003, 0.2);
-  motion.contacts[0].shape_rotation = along_the_wire();
-  motion.contacts[0].shape_position = {0.03, 0.0, 0.0};
+  motion.contacts[0].X_BS.R = along_the_wire();
+  motion.contacts[0].X_BS.p = {0.03, 0.0, 0.0};
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  for (Eigen::Index i = 1; i < 12; ++i) motion.wires[0].positions.col(i) += 4e-3 * Vector3d(unit(random), unit(random), unit(random));
+  for (Eigen::Index i = 1; i < 12; ++i)
+    motion.wires[0].positions.col(i) += 4e-3 * Vector3d(unit(random), unit(random), unit(random));
   const MotionOptions options;
   wire::RodPart rod("wire", constants, {});
   BodyPart body(motion.bodies[0], Vector3d::Zero(), options);
@@ -125,7 +126,7 @@ TEST(WireCurve, BoxesHoldTheCurveAndMinimaAreThoseOfASampledWire) {
 /// Peak force and impulse of 50 g at 0.3 m/s.
 MotionResult impact(std::shared_ptr<const ContactShape> shape, const Matrix3d& turn, double reach) {
   Motion motion = body_below(soft_wire(16), std::move(shape), {0.0937, -reach - 0.0011, 0.0}, 0.3, 0.05);
-  motion.contacts[0].shape_rotation = turn;
+  motion.contacts[0].X_BS.R = turn;
   MotionOptions options;
   options.duration = 0.06;
   return simulate(motion, options);
@@ -138,12 +139,13 @@ TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
   // where the cylinder would, which turns the force by so much and shortens its part along the push by half the square, 0.4 %.
   constexpr double share = 0.01;
   const MotionResult cylinder = impact(finite_cylinder(radius, 0.04), Matrix3d::Identity(), radius);
-  const MotionResult cylinder_mesh = impact(
-      std::make_shared<MeshShape>(test::revolved_mesh({{0.0, -0.02}, {radius, -0.02}, {radius, 0.02}, {0.0, 0.02}}, around)),
-      Matrix3d::Identity(), radius);
+  const MotionResult cylinder_mesh = impact(std::make_shared<MeshShape>(test::revolved_mesh(
+                                                {{0.0, -0.02}, {radius, -0.02}, {radius, 0.02}, {0.0, 0.02}}, around)),
+                                            Matrix3d::Identity(), radius);
   const MotionResult ball = impact(std::make_shared<Ball>(radius), Matrix3d::Identity(), radius);
   const MotionResult ball_mesh =
-      impact(std::make_shared<MeshShape>(test::revolved_mesh(test::half_circle(radius, around / 2), around)), Matrix3d::Identity(), radius);
+      impact(std::make_shared<MeshShape>(test::revolved_mesh(test::half_circle(radius, around / 2), around)),
+             Matrix3d::Identity(), radius);
   for (const auto& [exact, mesh] : {std::pair{&cylinder, &cylinder_mesh}, std::pair{&ball, &ball_mesh}}) {
     ASSERT_TRUE(exact->report.usable()) << exact->report.message;
     ASSERT_TRUE(mesh->report.usable()) << mesh->report.message;
@@ -157,9 +159,10 @@ TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
 TEST(MotionPoints, TwoRimsBearHalfEach) {
   // An hourglass along the wire: its two rims touch at once.
   const auto hourglass = std::make_shared<RevolvedShape>(
-      -0.02, std::vector<ProfilePiece>{{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}});
+      -0.02,
+      std::vector<ProfilePiece>{{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}});
   Motion motion = body_below(soft_wire(20), hourglass, {0.1, -0.012, 0.0}, 0.3, 0.05);
-  motion.contacts[0].shape_rotation = along_the_wire();
+  motion.contacts[0].X_BS.R = along_the_wire();
   MotionOptions options;
   options.duration = 0.01;
   options.relative_tolerance = 1e-7;
@@ -282,7 +285,8 @@ TEST(MotionPoints, AnOverlapAtTheStartIsRefused) {
 /// First touch of a pin that is moved across the wire; the run stops there.
 MotionResult touch_of(double radius, double speed, double swing, double max_step) {
   wire::RodInMotion rod = soft_wire(12);
-  Motion motion = body_below(rod, std::make_shared<Capsule>(radius, 0.05), {0.0937, -radius - 1e-4 - 0.001, 0.0}, speed, 1.0);
+  Motion motion =
+      body_below(rod, std::make_shared<Capsule>(radius, 0.05), {0.0937, -radius - 1e-4 - 0.001, 0.0}, speed, 1.0);
   motion.bodies[0].driven = true;
   motion.contacts[0].wire_radius = 1e-4;
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd::Zero(3, 13);

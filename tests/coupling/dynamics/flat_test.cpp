@@ -1,7 +1,7 @@
 // Wires that lie on flat faces and over their edges.
 
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/contact/mesh_shape.hpp"
+#include "coupling/dynamics/simulate.hpp"
 #include "tests/support/mesh_files.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -73,8 +73,8 @@ TEST_P(FlatFace, TakesAStraightWireInAllOfItsVerticesAtOnce) {
   EXPECT_EQ(r.events.back().kind, MotionEvent::Kind::lift_off);
   EXPECT_GT(seen.most_points, 1u);
   EXPECT_LT(r.events.size(), 600u);
-  EXPECT_LT(seen.largest_spin, 0.05);   // one edge alone would give 5 rad/s
-  EXPECT_GT(seen.least_force, -0.03);   // twice the tolerance of the forces, and what a step adds
+  EXPECT_LT(seen.largest_spin, 0.05);  // one edge alone would give 5 rad/s
+  EXPECT_GT(seen.least_force, -0.03);  // twice the tolerance of the forces, and what a step adds
   EXPECT_LT(r.largest_penetration, 1e-6);
   EXPECT_LT(seen.deepest_vertex, 1e-6);
   EXPECT_LT(std::abs(r.energy.integrator), 1e-3 * 0.5 * 0.2 * 0.05 * 0.05);

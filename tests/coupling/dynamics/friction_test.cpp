@@ -1,12 +1,14 @@
 // Stick and slip with events: derivatives, frames, energy, directions. Closed forms: validation/friction_checks.
 
-#include "coupling/dynamics/motion.hpp"
+#include "base/errors.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/contact_points.hpp"
-#include "base/errors.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/soft_wire.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,9 +31,8 @@ MotionFriction papers_friction() {
 TEST(MotionFriction, ForceHasExactDerivatives) {
   MotionFriction smooth = papers_friction();
   smooth.law = ContactFriction::smooth;
-  const std::pair<MotionFriction, FrictionMode> cases[] = {{papers_friction(), FrictionMode::stick},
-                                                           {papers_friction(), FrictionMode::slip},
-                                                           {smooth, FrictionMode::stick}};
+  const std::pair<MotionFriction, FrictionMode> cases[] = {
+      {papers_friction(), FrictionMode::stick}, {papers_friction(), FrictionMode::slip}, {smooth, FrictionMode::stick}};
   for (const auto& [friction, mode] : cases) {
     for (const double speed : {0.004, 0.3, 2.0}) {
       // Of order one: z in micrometres, w in units of its size.
@@ -107,7 +108,7 @@ struct Touching {
   static MotionContact touch(const MotionFriction& friction) {
     MotionContact c;
     c.shape = std::make_shared<Ball>(0.01);
-    c.shape_position = {0.015, 0.0, -0.004};
+    c.X_BS.p = {0.015, 0.0, -0.004};
     c.wire_radius = 0.001;
     c.friction = friction;
     return c;
@@ -228,11 +229,9 @@ Motion block_on_arch() {
   w.poisson_ratio = 0.29;
   w.density = 7930.0;
   w.length = elements * 2.0 * radius * std::sin(half / elements);
-  wire::RodInMotion rod = rod_in_motion(w, 0.0, elements);
+  wire::RodInMotion rod = wire::rod_in_motion(w, 0.0, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-4;
-  const auto place = [&](double a) -> Vector3d {
-    return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0);
-  };
+  const auto place = [&](double a) -> Vector3d { return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0); };
   const auto along = [](double a) { return Vector3d(std::cos(a), -std::sin(a), 0.0); };
   rod.properties.natural_curvature = {-1.0 / radius, 0.0};
   for (const double side : {-1.0, 1.0}) {
@@ -313,10 +312,8 @@ TEST(MotionFriction, WrongNumbersAreNamed) {
               HasSubstr("contact.friction.dynamic_coefficient = -0.1, must be >= 0"));
   EXPECT_THAT(message([](MotionFriction& f) { f.bristle_displacement = 0.0; }),
               HasSubstr("contact.friction.bristle_displacement = 0, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }),
-              HasSubstr("bristle_time = -1, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }),
-              HasSubstr("and < dynamic_speed, or both 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }), HasSubstr("bristle_time = -1, must be > 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }), HasSubstr("and < dynamic_speed, or both 0"));
   EXPECT_THAT(message([](MotionFriction& f) {
                 f.law = ContactFriction::smooth;
                 f.static_speed = f.dynamic_speed = 0.0;

@@ -1,9 +1,10 @@
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 
+#include "base/errors.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/contact_search.hpp"
-#include "base/errors.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -39,7 +40,7 @@ Motion ball_below(const wire::RodInMotion& rod, double speed) {
   motion.bodies.push_back(body);
   MotionContact contact;
   contact.shape = std::make_shared<Ball>(0.01);
-  contact.shape_position = {0.015, 0.0, -0.004};
+  contact.X_BS.p = {0.015, 0.0, -0.004};
   contact.wire_radius = 0.001;
   motion.contacts.push_back(contact);
   return motion;
@@ -220,10 +221,9 @@ TEST(Motion, WrongNumbersAreNamedAllAtOnce) {
     (void)simulate(motion, {});
     FAIL() << "accepted";
   } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(),
-                testing::AllOf(testing::HasSubstr("wire.length = -1, must be > 0"),
-                               testing::HasSubstr("body.mass = 0, must be > 0"),
-                               testing::HasSubstr("contact.wire = 3, must be the index of a wire")));
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("wire.length = -1, must be > 0"),
+                                             testing::HasSubstr("body.mass = 0, must be > 0"),
+                                             testing::HasSubstr("contact.wire = 3, must be the index of a wire")));
   }
 }
 

@@ -1,10 +1,12 @@
 // Bodies of every shape that meet a loose steel wire anyhow.
 
 #include "base/units.hpp"
-#include "coupling/dynamics/motion.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_shape.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "tests/support/mesh_files.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,20 +29,31 @@ constexpr double wire_radius = 0.75 * mm;
 
 std::shared_ptr<const ContactShape> random_shape(int kind, const std::function<double(double, double)>& between) {
   switch (kind) {
-    case 0: return std::make_shared<Ball>(between(2.0, 15.0) * mm);
-    case 1: return std::make_shared<Capsule>(between(1.0, 8.0) * mm, between(10.0, 60.0) * mm);
-    case 2: return finite_cylinder(between(2.0, 10.0) * mm, between(10.0, 60.0) * mm);
-    case 3: return truncated_cone(between(1.0, 10.0) * mm, between(3.0, 12.0) * mm, between(10.0, 40.0) * mm);
-    case 4: return grapple_shaft({});
-    case 5: return std::make_shared<Capsule>(0.0, between(10.0, 60.0) * mm);
-    default: return std::make_shared<MeshShape>(test::cuboid(between(5.0, 40.0) * mm, between(5.0, 40.0) * mm, 10.0 * mm));
+    case 0:
+      return std::make_shared<Ball>(between(2.0, 15.0) * mm);
+    case 1:
+      return std::make_shared<Capsule>(between(1.0, 8.0) * mm, between(10.0, 60.0) * mm);
+    case 2:
+      return finite_cylinder(between(2.0, 10.0) * mm, between(10.0, 60.0) * mm);
+    case 3:
+      return truncated_cone(between(1.0, 10.0) * mm, between(3.0, 12.0) * mm, between(10.0, 40.0) * mm);
+    case 4:
+      return grapple_shaft({});
+    case 5:
+      return std::make_shared<Capsule>(0.0, between(10.0, 60.0) * mm);
+    default:
+      return std::make_shared<MeshShape>(test::cuboid(between(5.0, 40.0) * mm, between(5.0, 40.0) * mm, 10.0 * mm));
   }
 }
 
 TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
   std::mt19937 random(2);
-  const auto between = [&random](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  const auto one_of = [&](const std::vector<double>& list) { return list[static_cast<std::size_t>(between(0.0, 0.999) * static_cast<double>(list.size()))]; };
+  const auto between = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto one_of = [&](const std::vector<double>& list) {
+    return list[static_cast<std::size_t>(between(0.0, 0.999) * static_cast<double>(list.size()))];
+  };
   wire::WireSpecification specification;
   specification.diameter = 2.0 * wire_radius;
   specification.youngs_modulus = 193e9;
@@ -50,7 +63,7 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
   for (int k = 0; k < 14; ++k) {
     SCOPED_TRACE(k);
     specification.length = between(175.5, 182.0) * mm;
-    wire::RodInMotion rod = rod_in_motion(specification, 175.0 * mm, static_cast<int>(one_of({30, 47, 60})));
+    wire::RodInMotion rod = wire::rod_in_motion(specification, 175.0 * mm, static_cast<int>(one_of({30, 47, 60})));
     rod.damping.bending_time = one_of({1e-6, 1e-5, 1e-4});
     rod.damping.axial_time = 1e-5;
     Motion motion;
@@ -60,7 +73,8 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
     body.properties.inertia = Vector3d(0.01, 0.012, 0.009).asDiagonal();
     const double speed = one_of({0.02, 0.1, 0.5});
     body.start.position = Vector3d(between(40.0, 135.0), -between(70.0, 90.0), between(-5.0, 5.0)) * mm;
-    body.start.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(between(-3.0, 3.0), Vector3d(between(-1, 1), between(-1, 1), 1.0).normalized()));
+    body.start.orientation = Eigen::Quaterniond(
+        Eigen::AngleAxisd(between(-3.0, 3.0), Vector3d(between(-1, 1), between(-1, 1), 1.0).normalized()));
     body.start.velocity = speed * Vector3d(between(-0.3, 0.3), 1.0, between(-0.1, 0.1));
     body.start.spin = 5.0 * speed * Vector3d(between(-1, 1), between(-1, 1), between(-1, 1));
     motion.bodies.push_back(body);

@@ -1,7 +1,8 @@
 // Friction between the strands of a wire in motion: derivatives, energy, decay.
 
-#include "coupling/dynamics/motion.hpp"
 #include "base/errors.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -143,9 +144,8 @@ TEST(MotionStrands, WrongNumbersAreNamed) {
     (void)simulate(motion, {});
     FAIL() << "accepted";
   } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(),
-                testing::AllOf(testing::HasSubstr("wire.strands.slip_curvature = 0, must be > 0"),
-                               testing::HasSubstr("wire.strands.time = -1, must be > 0")));
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("wire.strands.slip_curvature = 0, must be > 0"),
+                                             testing::HasSubstr("wire.strands.time = -1, must be > 0")));
   }
 }
 

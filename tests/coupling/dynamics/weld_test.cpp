@@ -1,10 +1,11 @@
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
 
-#include "coupling/dynamics/contact_part.hpp"
+#include "base/errors.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
+#include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/mount_part.hpp"
 #include "multibody/arm/arm_run.hpp"
-#include "base/errors.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -34,10 +35,9 @@ multibody::ElasticArm small_arm(bool floating, double stiffness, double damping)
   }
   for (int i = 0; i < 2; ++i) {
     const multibody::Pose X{Eigen::Matrix3d::Identity(), Vector3d(i == 0 ? 0.0 : 1.0, 0.0, 0.0)};
-    frame = arm.tree.add_moving(frame, "link" + std::to_string(i), multibody::JointKind::revolute,
-                                Vector3d::Unit(2 - i), X,
-                                multibody::SpatialInertia::about_centre(
-                                    10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
+    frame = arm.tree.add_moving(
+        frame, "link" + std::to_string(i), multibody::JointKind::revolute, Vector3d::Unit(2 - i), X,
+        multibody::SpatialInertia::about_centre(10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
     multibody::ElasticJoint joint;
     joint.name = "joint" + std::to_string(i);
     joint.body = arm.tree.size() - 1;
@@ -112,8 +112,8 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
     const MotionBody held = block(3.0, {0.3, 0.4, 0.5}, Vector3d::Zero()),
                      other = block(2.0, {0.2, 0.3, 0.4}, Vector3d::Zero());
     BodyPart body(held, Vector3d::Zero(), options), second(other, Vector3d::Zero(), options);
-    const multibody::Pose X_BF{
-        Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(), {0.9, 0.1, -0.2}};
+    const multibody::Pose X_BF{Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(),
+                               {0.9, 0.1, -0.2}};
     WeldPart weld("weld", {arm, model.tree.size() - 1, X_BF}, body, {}, options);
     WeldPart next("next", {body, X_BF}, second, {}, options);
     numerics::DaeSystem system({&body, &second, &arm, &weld, &next});
@@ -131,7 +131,7 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
 }
 
 TEST(MotionLink, MountJacobianMatchesDifferences) {
-  for (const bool right : {false, true}) {
+  for (const wire::End end : wire::ends) {
     for (const bool driven : {false, true}) {
       const MotionOptions options;
       wire::RodPart rod("wire", test::soft_wire(6), {});
@@ -139,8 +139,8 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
       frame.driven = driven;
       BodyPart body(frame, Vector3d::Zero(), options);
       multibody::Pose X_BM;
-      X_BM.p = right ? Vector3d(0.2, 0.0, 0.0) : Vector3d::Zero();
-      MountPart mount("mount", {body, X_BM}, rod, right, options);
+      X_BM.p = end == wire::End::left ? Vector3d::Zero() : Vector3d(0.2, 0.0, 0.0);
+      MountPart mount("mount", {body, X_BM}, rod, end, options);
       numerics::DaeSystem system({&rod, &body, &mount});
       std::mt19937 random(3);
       std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -164,8 +164,7 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
 
 TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
   // Free flight of two welded blocks beside that of the composite body, by the same tolerances.
-  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}),
-             b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
+  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}), b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
   a.start.orientation = Eigen::AngleAxisd(0.7, Vector3d(1.0, -1.0, 0.5).normalized());
   const Vector3d spin(0.9, -1.1, 0.6), velocity(0.2, 0.1, -0.3);
   a.start.velocity = velocity + spin.cross(a.start.position);
@@ -234,8 +233,7 @@ TEST(MotionLink, ABodyOnAnArmIsPartOfItsLastLink) {
   weld.carrier = {MotionCarrier::Kind::arm, 0, tip_of(standing_arm)};
   welded.welds = {weld};
   MotionArm loaded = standing_arm;
-  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}},
-                            inertia);
+  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}}, inertia);
   whole.arms = {loaded};
   MotionSample a, b;
   const MotionOptions options = fine(2.0);
@@ -272,9 +270,9 @@ TEST(MotionLink, AWireBetweenMountsThatMoveTogetherIsTheFixedWire) {
   carrier.driven = true;
   carrier.start.velocity = speed;
   moving.bodies = {carrier};
-  for (const bool right : {false, true}) {
+  for (const wire::End end : wire::ends) {
     MotionMount mount;
-    mount.right = right;
+    mount.end = end;
     mount.carrier = {MotionCarrier::Kind::body, 0, 0};
     moving.mounts.push_back(mount);
   }
@@ -317,9 +315,9 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   MotionBody carrier = block(1e4, Vector3d::Constant(1e4), {0.1, 0.0, 0.0});
   carrier.start.spin = {0.0, 0.0, spin};
   motion.bodies = {carrier};
-  for (const bool right : {false, true}) {
+  for (const wire::End end : wire::ends) {
     MotionMount mount;
-    mount.right = right;
+    mount.end = end;
     mount.carrier = {MotionCarrier::Kind::body, 0, 0};
     motion.mounts.push_back(mount);
   }
@@ -338,8 +336,7 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   EXPECT_NEAR(last.mount_forces[0].dot(along), -end, 2e-2 * std::abs(end));
   // In the carrier's frame the wire rests on its chord.
   for (int i = 0; i <= 20; ++i) {
-    const Vector3d x =
-        last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
     EXPECT_LT(x.tail<2>().norm(), 1e-6);
   }
   EXPECT_LT(result.largest_drift, 1e-9);
@@ -358,11 +355,10 @@ TEST(MotionLink, MomentumAndEnergyOfAWireOnAFloatingArmStay) {
   rod.properties.right.position = {2.1, 0.1, 0.1};
   rod.properties.left.direction = rod.properties.right.direction = Vector3d::UnitZ();
   rod.properties.left.director = rod.properties.right.director = Vector3d::UnitX();
-  motion.wires = {
-      {"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
-  for (const bool right : {false, true}) {
+  motion.wires = {{"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
+  for (const wire::End end : wire::ends) {
     MotionMount mount;
-    mount.right = right;
+    mount.end = end;
     mount.carrier = {MotionCarrier::Kind::body, 0, 0};
     motion.mounts.push_back(mount);
   }
@@ -409,8 +405,7 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   MotionOptions options = fine(1.0);
   double before = 0.0, after = 0.0;
   const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
-    (s.time < 0.499 ? before : after) =
-        std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
+    (s.time < 0.499 ? before : after) = std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
     return false;
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -434,8 +429,7 @@ MotionArm restless_arm() {
   limp.time = 1.0;
   limp.drives = {Drive::limp(), Drive::locked()};
   part.switches = {limp};
-  part.loads = {
-      {tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
+  part.loads = {{tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
   return part;
 }
 
@@ -512,10 +506,10 @@ TEST(MotionLink, AnArmGoesOnFromACheckpointToTheSameBits) {
 
 TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
   Motion motion;
-  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()),
-                   block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
+  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()), block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
   motion.bodies[1].driven = true;
-  motion.wires = {{"wire", test::soft_wire(8), straight_wire(test::soft_wire(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};
+  motion.wires = {
+      {"wire", test::soft_wire(8), straight_wire(test::soft_wire(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};
   MotionWeld first, second, third;
   first.carrier = {MotionCarrier::Kind::arm, 0, 0};
   second.carrier = {MotionCarrier::Kind::body, 1, 0};
@@ -529,11 +523,10 @@ TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
     static_cast<void>(simulate(motion, {}));
     FAIL() << "accepted";
   } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(),
-                testing::AllOf(testing::HasSubstr("weld.carrier = 0, must be the index of an arm"),
-                               testing::HasSubstr("weld.body = 0, must not be held by two welds"),
-                               testing::HasSubstr("other.body = 1, must not be driven"),
-                               testing::HasSubstr("mount.wire = 2, must be the index of a wire")));
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("weld.carrier = 0, must be the index of an arm"),
+                                             testing::HasSubstr("weld.body = 0, must not be held by two welds"),
+                                             testing::HasSubstr("other.body = 1, must not be driven"),
+                                             testing::HasSubstr("mount.wire = 2, must be the index of a wire")));
   }
 }
 

@@ -1,6 +1,6 @@
 // Wires that heavy balls drag along until they wrap them.
 
-#include "coupling/dynamics/motion.hpp"
+#include "coupling/dynamics/simulate.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,9 @@ struct Drag {
   int elements;
   double mass;
 };
-void PrintTo(const Drag& drag, std::ostream* out) { *out << drag.name; }
+void PrintTo(const Drag& drag, std::ostream* out) {
+  *out << drag.name;
+}
 
 class WrappedBall : public testing::TestWithParam<Drag> {};
 
@@ -28,8 +30,8 @@ TEST_P(WrappedBall, IsTouchedAtSeveralPointsThatDoNotRattle) {
   const Drag& drag = GetParam();
   constexpr double wire_radius = 0.001;
   const auto ball = std::make_shared<Ball>(drag.radius);
-  Motion motion = test::body_below(test::soft_wire(drag.elements), ball, {drag.place, -drag.radius - 2.0 * wire_radius, 0.0},
-                                   drag.speed, drag.mass);
+  Motion motion = test::body_below(test::soft_wire(drag.elements), ball,
+                                   {drag.place, -drag.radius - 2.0 * wire_radius, 0.0}, drag.speed, drag.mass);
   motion.contacts[0].points = 20;
   MotionOptions options;
   options.duration = drag.duration;

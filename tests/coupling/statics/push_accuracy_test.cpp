@@ -14,7 +14,9 @@ using test::declared_wire;
 using test::mesh;
 using test::mm;
 
-double last_force(const PushCurve& curve) { return curve.points.empty() ? std::nan("") : curve.points.back().force; }
+double last_force(const PushCurve& curve) {
+  return curve.points.empty() ? std::nan("") : curve.points.back().force;
+}
 
 TEST(PushAccuracy, ForceConvergesAtSecondOrder) {
   for (const double radius : {0.0, 6.0 * mm}) {
@@ -40,15 +42,18 @@ TEST(PushAccuracy, ExtrapolatedForceMeetsTheContinuousWire) {
       PushProblem test = declared_wire(position, radius);
       test.travel = {1.0 * mm, 3.0 * mm};
       const ExtrapolatedCurve result = solve_push_extrapolated(test, PushOptions{});
-      const std::vector<validation::ElasticaState> reference = validation::push_path(test::elastica_of(test), test.travel);
+      const std::vector<validation::ElasticaState> reference =
+          validation::push_path(test::elastica_of(test), test.travel);
       for (std::size_t i = 0; i < test.travel.size(); ++i) {
         ASSERT_TRUE(reference[i].report.usable());
         // Ten times what was measured (1e-6) at the default mesh.
         EXPECT_NEAR(result.curve.points[i].force / reference[i].force, 1.0, 1e-5);
-        EXPECT_NEAR(result.curve.points[i].tension_left, reference[i].tension_left, 1e-5 * std::abs(reference[i].tension_left) + 1e-4);
+        EXPECT_NEAR(result.curve.points[i].tension_left, reference[i].tension_left,
+                    1e-5 * std::abs(reference[i].tension_left) + 1e-4);
         EXPECT_NEAR(result.curve.points[i].contact_coordinate, reference[i].contact_begin, 1e-7);
         // It is an estimate, not a bound: right within a factor of two here, where both are below 1e-6 of the force.
-        EXPECT_LE(std::abs(result.curve.points[i].force - reference[i].force), 2.0 * result.discretisation_error[i] + 1e-6);
+        EXPECT_LE(std::abs(result.curve.points[i].force - reference[i].force),
+                  2.0 * result.discretisation_error[i] + 1e-6);
       }
     }
   }
@@ -96,8 +101,9 @@ TEST(PushAccuracy, CurveOverACylinderIsSmooth) {
     PushProblem test;
     double to;
   };
-  for (const Case& c : {Case{declared_wire(40.0 * mm, 6.0 * mm), 4.0 * mm}, Case{declared_wire(65.0 * mm, 6.0 * mm), 4.0 * mm},
-                        Case{declared_wire(90.0 * mm, 6.0 * mm), 4.0 * mm}, Case{test::soft_wire(65.0 * mm, 6.0 * mm), 6.0 * mm}}) {
+  for (const Case& c :
+       {Case{declared_wire(40.0 * mm, 6.0 * mm), 4.0 * mm}, Case{declared_wire(65.0 * mm, 6.0 * mm), 4.0 * mm},
+        Case{declared_wire(90.0 * mm, 6.0 * mm), 4.0 * mm}, Case{test::soft_wire(65.0 * mm, 6.0 * mm), 6.0 * mm}}) {
     PushProblem test = c.test;
     constexpr int n = 400;
     test.travel = test::travel_to(c.to, n);
@@ -110,7 +116,8 @@ TEST(PushAccuracy, CurveOverACylinderIsSmooth) {
     // Chatter: what a second difference departs from the mean of its neighbours.
     const double range = curve.points.back().force;
     for (std::size_t i = 1; i + 1 < second.size(); ++i) {
-      EXPECT_LE(std::abs(second[i] - 0.5 * (second[i - 1] + second[i + 1])), 1e-4 * range) << "at " << curve.points[i + 1].travel;
+      EXPECT_LE(std::abs(second[i] - 0.5 * (second[i - 1] + second[i + 1])), 1e-4 * range)
+          << "at " << curve.points[i + 1].travel;
     }
   }
 }
@@ -131,7 +138,15 @@ TEST(PushAccuracy, NaturalCurvatureDoesNothingBetweenRigidClamps) {
   // The turning angles between rigid clamps sum to zero, and so does the work of a uniform moment, but for the third
   // order of 2 tan(phi/2) in phi.
   EXPECT_NEAR(last_force(solve_push(test, mesh(64))), straight, 1e-3 * straight);
-  EXPECT_NEAR(last_force(solve_push(test, mesh(256))), last_force(solve_push([&] { PushProblem t = test; t.wire.natural_curvature = 0.0; return t; }(), mesh(256))), 6e-5 * straight);
+  EXPECT_NEAR(last_force(solve_push(test, mesh(256))),
+              last_force(solve_push(
+                  [&] {
+                    PushProblem t = test;
+                    t.wire.natural_curvature = 0.0;
+                    return t;
+                  }(),
+                  mesh(256))),
+              6e-5 * straight);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ using test::mm;
 double loop_area(const PushCurve& curve) {
   double area = 0.0;
   for (std::size_t i = 1; i < curve.points.size(); ++i) {
-    area += 0.5 * (curve.points[i].force + curve.points[i - 1].force) * (curve.points[i].travel - curve.points[i - 1].travel);
+    area += 0.5 * (curve.points[i].force + curve.points[i - 1].force) *
+            (curve.points[i].travel - curve.points[i - 1].travel);
   }
   return area;
 }
@@ -38,7 +39,8 @@ TEST(PushFriction, LoopClosesAndDissipatesItsArea) {
   EXPECT_NEAR(loop.points.back().dissipated, area, 0.01 * area);
   EXPECT_NEAR(loop.points.back().force, 0.0, 1e-6);  // closed: first touch again without force
   EXPECT_NEAR(loop.points.back().energy, loop.points.front().energy, 1e-9);
-  for (std::size_t i = 1; i < loop.points.size(); ++i) EXPECT_GE(loop.points[i].dissipated, loop.points[i - 1].dissipated);
+  for (std::size_t i = 1; i < loop.points.size(); ++i)
+    EXPECT_GE(loop.points[i].dissipated, loop.points[i - 1].dissipated);
   EXPECT_TRUE(has(loop, PushEvent::Kind::slip_begins));
   EXPECT_TRUE(has(loop, PushEvent::Kind::slip_ends));
 }
@@ -106,7 +108,9 @@ TEST(SlowPushFriction, CapstanOnAWrappedPin) {
   ASSERT_TRUE(curve.points.back().slipping) << "the whole arc must slide for the law to hold";
   const PushShape& shape = curve.shapes.back();
   // Angle between the straight runs on both sides; the wire is so soft that they are straight but for 0.1 mm.
-  const auto angle = [&](std::size_t i) { return std::atan2(shape.y[i + 1] - shape.y[i], shape.x[i + 1] - shape.x[i]); };
+  const auto angle = [&](std::size_t i) {
+    return std::atan2(shape.y[i + 1] - shape.y[i], shape.x[i + 1] - shape.x[i]);
+  };
   const std::size_t last = shape.x.size() - 1;
   const double wrap = std::abs(angle(last - 40) - angle(40));
   const double ratio = shape.tension[40] / shape.tension[last - 40];
@@ -158,7 +162,8 @@ TEST(Supports, ThreePointBendingOfAStiffWire) {
   test.wire.length = 60.0 * mm;
   test.travel = {1e-3 * mm};
   const double expected =
-      validation::three_point_stiffness(test.wire.bending_stiffness(), test.mount.span, test.contact_position) * 1e-3 * mm;
+      validation::three_point_stiffness(test.wire.bending_stiffness(), test.mount.span, test.contact_position) * 1e-3 *
+      mm;
   // Round supports shift the contact by R slope, 1e-4 of the span here.
   EXPECT_NEAR(solve_push_extrapolated(test, PushOptions{}).curve.points.back().force, expected, 1e-3 * expected);
   test.travel = test::travel_to(5.0 * mm, 10);

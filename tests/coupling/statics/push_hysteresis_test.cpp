@@ -76,6 +76,7 @@ TEST(PushHysteresis, TautWireYieldsAndStaysLonger) {
   EXPECT_LT(yielding.points[60].force, 0.5 * yielding.points[20].force);  // longer now: slack on the way back
 }
 
+// theory.md (C.12): at the travel that is longer by C F the force is that of a stiff machine.
 TEST(PushHysteresis, MachineThatGivesIsASpringInSeries) {
   PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
   test.travel = {1.0 * mm, 2.0 * mm};

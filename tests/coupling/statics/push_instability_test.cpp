@@ -135,10 +135,13 @@ TEST(Progress, InterruptedRunKeepsItsPoints) {
 // Random admissible tests: never a crash, a hang or a NaN; a run that stops says why.
 void random_runs(int count, unsigned seed) {
   std::mt19937 random(seed);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   int finished = 0;
   for (int k = 0; k < count; ++k) {
-    PushProblem test = declared_wire(175.0 * mm * uniform(0.1, 0.9), uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.5, 15.0) * mm);
+    PushProblem test =
+        declared_wire(175.0 * mm * uniform(0.1, 0.9), uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.5, 15.0) * mm);
     test.wire.length = 175.0 * mm * (1.0 + uniform(-0.002, 0.08));
     test.wire.bending_stiffness_override = test.wire.bending_stiffness() * std::pow(10.0, uniform(-2.5, 0.3));
     test.wire.axial_stiffness_override = test.wire.axial_stiffness() * std::pow(10.0, uniform(-1.0, 0.3));
@@ -172,8 +175,12 @@ void random_runs(int count, unsigned seed) {
   EXPECT_GE(finished, count * 8 / 10) << finished << " of " << count;
 }
 
-TEST(RandomRuns, NeverCrashAndMostlyFinish) { random_runs(60, 1); }
-TEST(SlowRandomRuns, NeverCrashAndMostlyFinish) { random_runs(1000, 2); }
+TEST(RandomRuns, NeverCrashAndMostlyFinish) {
+  random_runs(60, 1);
+}
+TEST(SlowRandomRuns, NeverCrashAndMostlyFinish) {
+  random_runs(1000, 2);
+}
 
 }  // namespace
 }  // namespace snare::coupling

@@ -22,7 +22,9 @@ std::vector<Number> numbers(const PushProblem& test) {
   const double ei = test.wire.bending_stiffness();
   const double ea = test.wire.axial_stiffness();
   std::vector<Number> all{
-      {"EI", {[ei](PushProblem& t, double a) { t.wire.bending_stiffness_override = ei + a; }, 1e-3 * ei, 0.0}, 1e-3 * ei},
+      {"EI",
+       {[ei](PushProblem& t, double a) { t.wire.bending_stiffness_override = ei + a; }, 1e-3 * ei, 0.0},
+       1e-3 * ei},
       {"EA", {[ea](PushProblem& t, double a) { t.wire.axial_stiffness_override = ea + a; }, 1e-3 * ea, 0.0}, 1e-3 * ea},
       {"length", {[](PushProblem& t, double a) { t.wire.length += a; }, 1e-7, 0.0}, 1e-6},
       {"span", {[](PushProblem& t, double a) { t.mount.span += a; }, 1e-7, 0.0}, 1e-6},
@@ -30,7 +32,12 @@ std::vector<Number> numbers(const PushProblem& test) {
       {"radius", {[](PushProblem& t, double a) { t.pusher.radius += a; }, 1e-7, 0.0}, 1e-5},
       {"misalignment", {[](PushProblem& t, double a) { t.pusher.misalignment += a; }, 1e-6, 0.0}, 1e-3},
       {"gravity", {[](PushProblem& t, double a) { t.gravity[1] += a; }, 1e-2, 0.0}, 1.0},
-      {"zero of travel", {[](PushProblem& t, double a) { for (double& d : t.travel) d -= a; }, 1e-7, -1.0}, 1e-6}};
+      {"zero of travel",
+       {[](PushProblem& t, double a) {
+          for (double& d : t.travel) d -= a;
+        },
+        1e-7, -1.0},
+       1e-6}};
   return all;
 }
 
@@ -62,8 +69,7 @@ void expect_derivatives(const PushProblem& test, const std::vector<Number>& all,
     double worst = 0.0;
     double worst_travel = 0.0;
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
-      const double difference =
-          (sides[1].points.at(i).force - sides[0].points.at(i).force) / (2.0 * all[k].difference);
+      const double difference = (sides[1].points.at(i).force - sides[0].points.at(i).force) / (2.0 * all[k].difference);
       largest = std::max(largest, std::abs(difference));
       const double error = std::abs(curve.points[i].force_by.at(k) - difference);
       if (error > worst) {
@@ -129,8 +135,10 @@ TEST(PushSensitivity, GoAlongWithSlidersOfTheSections) {
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
   all.push_back({"yield", {[](PushProblem& t, double a) { t.wire.yielding->yield_stress += a; }, 1e3, 0.0}, 1e4});
-  all.push_back({"extra", {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
-  all.push_back({"slip", {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
+  all.push_back(
+      {"extra", {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
+  all.push_back(
+      {"slip", {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
   // Vertex by vertex the sliders switch between two curves of the differences.
   for (Number& n : all) n.difference *= 0.1;
   expect_derivatives(test, all, 1e-3);

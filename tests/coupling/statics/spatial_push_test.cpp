@@ -1,7 +1,7 @@
 // The tilted pusher, against the planar push, energy, symmetry.
 
 #include "base/units.hpp"
-#include "coupling/statics/spatial_push.hpp"
+#include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
 #include "wire/loose_wire.hpp"
 
@@ -13,8 +13,8 @@
 namespace snare::coupling {
 namespace {
 
-using base::mm;
 using base::degree;
+using base::mm;
 
 using validation::declared_wire;
 
@@ -101,8 +101,8 @@ TEST(SpatialPush, FrictionLoopDissipatesItsArea) {
   ASSERT_TRUE(loop.report.usable()) << loop.report.message;
   double area = 0.0;
   for (std::size_t i = 1; i < loop.points.size(); ++i) {
-    area += 0.5 * (loop.points[i].force + loop.points[i - 1].force) *
-            (loop.points[i].travel - loop.points[i - 1].travel);
+    area +=
+        0.5 * (loop.points[i].force + loop.points[i - 1].force) * (loop.points[i].travel - loop.points[i - 1].travel);
     EXPECT_GE(loop.points[i].dissipated, loop.points[i - 1].dissipated);
   }
   // One step of 100 lies across the reversal: 1/100 of the jump's share, and the mesh's own 1e-3.

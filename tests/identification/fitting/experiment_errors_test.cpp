@@ -1,7 +1,8 @@
 // Wrong experiment files, each with its whole message. The CSV files' own table is in csv_test.cpp.
 
-#include "identification/fitting/experiment.hpp"
 #include "base/errors.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/fitting/experiment.hpp"
 #include "tests/identification/valid_experiment.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ namespace {
 
 std::string message_of(const std::string& text) {
   try {
-    static_cast<void>(parse_experiment("x.toml", text));
+    static_cast<void>(parse_experiment("x.toml", text, parameters()));
   } catch (const base::InputError& error) {
     return error.what();
   }
@@ -50,18 +51,15 @@ const WrongFile wrong_files[] = {
     {"title = \"a loose wire\"", "title = 7", "x.toml:2: title = 7, must be a text in quotes"},
     {"length_mm = 180.0", "length_mm = \"180\"",
      "x.toml:7: wire.length_mm = \"180\", must be a number > 0 and <= 100000"},
-    {"length_mm = 180.0", "length_mm = true",
-     "x.toml:7: wire.length_mm = true, must be a number > 0 and <= 100000"},
+    {"length_mm = 180.0", "length_mm = true", "x.toml:7: wire.length_mm = true, must be a number > 0 and <= 100000"},
     {"length_mm = 180.0", "length_mm = [180.0]",
      "x.toml:7: wire.length_mm = [180.0], must be a number > 0 and <= 100000"},
     {"length_mm = 180.0", "length_mm = 2026-01-02",
      "x.toml:7: wire.length_mm = 2026-01-02, must be a number > 0 and <= 100000"},
     {"kind = \"clamped\"", "kind = \"glued\"",
      "x.toml:13: mount.kind = \"glued\", must be \"clamped\", \"pinned\" or \"supports\""},
-    {"kind = \"clamped\"", "kind = 1",
-     "x.toml:13: mount.kind = 1, must be \"clamped\", \"pinned\" or \"supports\""},
-    {"points = 21", "points = 21.5",
-     "x.toml:26: series[s40].points = 21.5, must be an integer >= 2 and <= 1000000"},
+    {"kind = \"clamped\"", "kind = 1", "x.toml:13: mount.kind = 1, must be \"clamped\", \"pinned\" or \"supports\""},
+    {"points = 21", "points = 21.5", "x.toml:26: series[s40].points = 21.5, must be an integer >= 2 and <= 1000000"},
     {"[wire]", "[[wire]]", "x.toml:4: wire, must be a table"},
     {"law = { A_N_m2 = 878089.0, B_N_m = -1086.0, C_N = 0.2115, R2 = 0.998, to_mm = 4.0 }", "law = 878089.0",
      "x.toml:31: series[s65].law = 878089.0, must be a table"},
@@ -78,8 +76,7 @@ const WrongFile wrong_files[] = {
     {"length_mm = 180.0", "length_mm = 1e300", "x.toml:7: wire.length_mm = 1e300, must be > 0 and <= 100000"},
     {"length_mm = 180.0", "length_mm = 173.0",
      "x.toml:7: wire.length_mm = 173.0, must be >= 173.25, 99 % of the span of 175 mm"},
-    {"poisson_ratio = 0.29", "poisson_ratio = 0.51",
-     "x.toml:9: wire.poisson_ratio = 0.51, must be > -1 and <= 0.5"},
+    {"poisson_ratio = 0.29", "poisson_ratio = 0.51", "x.toml:9: wire.poisson_ratio = 0.51, must be > -1 and <= 0.5"},
     {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\naxial_stiffness_N = 0.0",
      "x.toml:11: wire.axial_stiffness_N = 0.0, must be > 0 and <= 1e+15"},
     {"friction = 0.0", "friction = 2.5", "x.toml:19: pusher.friction = 2.5, must be >= 0 and <= 2"},
@@ -93,8 +90,7 @@ const WrongFile wrong_files[] = {
     {"contact_position_mm = 40.0", "contact_position_mm = 40.0\nforce_sigma_N = 0.0",
      "x.toml:25: series[s40].force_sigma_N = 0.0, must be > 0 and <= 1e+09"},
     {"travel_mm = 2.0", "travel_mm = 0.0", "x.toml:25: series[s40].travel_mm = 0.0, must be > 0 and <= 1000"},
-    {"points = 21", "points = 1",
-     "x.toml:26: series[s40].points = 1, must be an integer >= 2 and <= 1000000"},
+    {"points = 21", "points = 1", "x.toml:26: series[s40].points = 1, must be an integer >= 2 and <= 1000000"},
     {"travel_mm = 2.0", "path_mm = [0, 2.0, 2.0]",
      "x.toml:25: series[s40].path_mm = [0, 2.0, 2.0], neighbouring turning points must differ"},
     {"travel_mm = 2.0", "path_mm = [0, \"2.0\"]",
@@ -153,8 +149,7 @@ const WrongFile wrong_files[] = {
      "x.toml:35: fit.heldout[1] = \"s66\", must be the name of a series; did you mean s65?"},
     {"heldout = [\"s65\"]", "heldout = [\"s65\", \"s40\"]",
      "x.toml:35: fit.heldout = [\"s65\", \"s40\"], must leave at least one series to fit"},
-    {"heldout = [\"s65\"]", "heldout = [\"s65\", \"s65\"]",
-     "x.toml:35: fit.heldout[2] = \"s65\", is there twice"},
+    {"heldout = [\"s65\"]", "heldout = [\"s65\", \"s65\"]", "x.toml:35: fit.heldout[2] = \"s65\", is there twice"},
     {"heldout = [\"s65\"]", "heldout = \"s65\"",
      "x.toml:35: fit.heldout = \"s65\", must be an array of texts in quotes"},
     {"\"reading.force_gain\"", "\"wire.construction\"",

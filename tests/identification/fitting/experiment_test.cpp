@@ -1,4 +1,5 @@
 #include "identification/fitting/experiment.hpp"
+#include "identification/effects/catalogue.hpp"
 
 #include "base/errors.hpp"
 #include "base/files.hpp"
@@ -25,8 +26,8 @@ class ExperimentFiles : public testing::Test {
  protected:
   ExperimentFiles() {
     const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("snare_experiment_" + test + "_" + std::to_string(::getpid()));
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / ("snare_experiment_" + test + "_" + std::to_string(::getpid()));
     write_text(folder_ / "x.toml", edited("travel_mm = 2.0\npoints = 21", "file = \"s40.csv\""));
   }
   ~ExperimentFiles() override {
@@ -43,7 +44,7 @@ class ExperimentFiles : public testing::Test {
   }
   [[nodiscard]] std::string message(const std::vector<Override>& overrides = {}) const {
     try {
-      static_cast<void>(read_experiment(path("x.toml"), overrides));
+      static_cast<void>(read_experiment(path("x.toml"), parameters(), overrides));
     } catch (const InputError& error) {
       std::string text = error.what();
       const std::string prefix = folder_.string() + "/";
@@ -58,7 +59,7 @@ class ExperimentFiles : public testing::Test {
 };
 
 TEST(Experiment, ValidFileIsReadInSi) {
-  const Experiment experiment = parse_experiment("x.toml", valid_experiment);
+  const Experiment experiment = parse_experiment("x.toml", valid_experiment, parameters());
   EXPECT_EQ(experiment.file, "x.toml");
   EXPECT_EQ(experiment.title, "a loose wire");
   EXPECT_EQ(experiment.source, "");
@@ -80,8 +81,7 @@ TEST(Experiment, ValidFileIsReadInSi) {
                test.wire.torsional_stiffness_override);
   EXPECT_EQ(test.mount.kind, wire::MountKind::clamped);
   EXPECT_EQ(test.mount.span, 0.175);
-  EXPECT_FALSE(test.mount.translational_stiffness || test.mount.rotational_stiffness ||
-               test.mount.slip_tension);
+  EXPECT_FALSE(test.mount.translational_stiffness || test.mount.rotational_stiffness || test.mount.slip_tension);
   EXPECT_EQ(test.pusher.radius, 0.006);
   EXPECT_EQ(test.pusher.friction, 0.0);
   EXPECT_EQ(test.pusher.direction, coupling::PushDirection::outward);
@@ -120,7 +120,7 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
       "2\nmisalignment_deg = -1\n"
       "[[series]]\nname = 'a'\ncontact_position_mm = 90\nforce_sigma_N = 0.05\npath_mm = [0, 2, 1]\npoints = "
       "3\n";
-  const Experiment experiment = parse_experiment("x.toml", text);
+  const Experiment experiment = parse_experiment("x.toml", text, parameters());
   const coupling::PushProblem& test = experiment.series.at(0).test;
   EXPECT_EQ(test.gravity, (std::array<double, 3>{0.0, -9.81, 1.0}));
   EXPECT_EQ(test.bulge.mode, 2);
@@ -146,10 +146,12 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
 }
 
 TEST(Experiment, SeriesOverridesTheFile) {
-  const Experiment experiment = parse_experiment(
-      "x.toml", edited("points = 21",
-                       "points = 21\nmount.span_mm = 174\nwire.length_mm = 173\npusher.direction = 'inward'\n"
-                       "bulge.mode = 2\ngravity.vector_m_s2 = [0, 0, -9.81]"));
+  const Experiment experiment =
+      parse_experiment("x.toml",
+                       edited("points = 21",
+                              "points = 21\nmount.span_mm = 174\nwire.length_mm = 173\npusher.direction = 'inward'\n"
+                              "bulge.mode = 2\ngravity.vector_m_s2 = [0, 0, -9.81]"),
+                       parameters());
   EXPECT_EQ(experiment.series[0].test.mount.span, 0.174);
   EXPECT_EQ(experiment.series[0].test.wire.length, 0.173);  // less than 1 % shorter than its own span
   EXPECT_EQ(experiment.series[0].test.pusher.direction, coupling::PushDirection::inward);
@@ -162,22 +164,21 @@ TEST(Experiment, SeriesOverridesTheFile) {
 
 TEST(Experiment, KeyThatEverySeriesGivesMayBeAbsentFromTheFile) {
   std::string text = edited("span_mm = 175.0\n", "");
-  EXPECT_THROW(static_cast<void>(parse_experiment("x.toml", text)), InputError);
-  const std::vector<Override> spans{{"series[s40].mount.span_mm", "174"},
-                                    {"series[s65].mount.span_mm", "175"}};
-  EXPECT_EQ(parse_experiment("x.toml", text, spans).series[1].test.mount.span, 0.175);
+  EXPECT_THROW(static_cast<void>(parse_experiment("x.toml", text, parameters())), InputError);
+  const std::vector<Override> spans{{"series[s40].mount.span_mm", "174"}, {"series[s65].mount.span_mm", "175"}};
+  EXPECT_EQ(parse_experiment("x.toml", text, parameters(), spans).series[1].test.mount.span, 0.175);
 }
 
 TEST(Experiment, OverridesOfTheCommandAreCheckedAndNamed) {
   const auto message = [](const std::string& key, const std::string& value) -> std::string {
     try {
-      static_cast<void>(parse_experiment("x.toml", valid_experiment, {{key, value}}));
+      static_cast<void>(parse_experiment("x.toml", valid_experiment, parameters(), {{key, value}}));
     } catch (const InputError& error) {
       return error.what();
     }
     return "accepted";
   };
-  const Experiment changed = parse_experiment("x.toml", valid_experiment,
+  const Experiment changed = parse_experiment("x.toml", valid_experiment, parameters(),
                                               {{"wire.length_mm", "181"},
                                                {"series[s40].contact_position_mm", "41"},
                                                {"mount.kind", "pinned"},
@@ -188,14 +189,11 @@ TEST(Experiment, OverridesOfTheCommandAreCheckedAndNamed) {
   EXPECT_EQ(changed.series[1].test.mount.kind, wire::MountKind::pinned);
   EXPECT_EQ(changed.solver.elements, 32);
   EXPECT_EQ(message("wire.length_mm", "-1"), "--set: wire.length_mm = -1, must be > 0 and <= 100000");
-  EXPECT_EQ(message("wire.length_mm", "long"),
-            "--set: wire.length_mm = long, must be a number > 0 and <= 100000");
+  EXPECT_EQ(message("wire.length_mm", "long"), "--set: wire.length_mm = long, must be a number > 0 and <= 100000");
   EXPECT_EQ(message("wire.length_mm", "170"),
             "--set: wire.length_mm = 170, must be >= 173.25, 99 % of the span of 175 mm");
-  EXPECT_EQ(message("wire.lenght_mm", "181"),
-            "--set: wire.lenght_mm = 181, unknown key; did you mean length_mm?");
-  EXPECT_EQ(message("series[s90].points", "5"),
-            "--set: series[s90].points = 5, no such series; there are: s40, s65");
+  EXPECT_EQ(message("wire.lenght_mm", "181"), "--set: wire.lenght_mm = 181, unknown key; did you mean length_mm?");
+  EXPECT_EQ(message("series[s90].points", "5"), "--set: series[s90].points = 5, no such series; there are: s40, s65");
   EXPECT_EQ(message("mount.span_mm", "186"),
             "x.toml:7: wire.length_mm = 180.0, must be >= 184.14, 99 % of the span of 186 mm");
 }
@@ -204,7 +202,7 @@ TEST_F(ExperimentFiles, ReadingsAreReadInTheOrderInWhichTheyWereTaken) {
   write_text(path("s40.csv"),
              "\xEF\xBB\xBF# machine 3\r\ntime_s,force_N,channel_7,displacement_mm\r\n"
              "0,0.01,a,0\r\n1,2.5,b,1.5\r\n2,1.25,c,0.5 # unloading\r\n");
-  const Series series = read_experiment(path("x.toml")).series[0];
+  const Series series = read_experiment(path("x.toml"), parameters()).series[0];
   ASSERT_TRUE(series.readings.has_value());
   EXPECT_EQ(series.readings->displacement, (std::vector<double>{0.0, 0.0015, 0.0005}));
   EXPECT_EQ(series.readings->force, (std::vector<double>{0.01, 2.5, 1.25}));
@@ -218,23 +216,20 @@ TEST_F(ExperimentFiles, WrongReadingsHaveTheirMessage) {
   EXPECT_EQ(message_of_csv(""),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is empty, must have a header that names the "
             "columns");
-  EXPECT_EQ(message_of_csv(header),
-            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has a header but no rows");
+  EXPECT_EQ(message_of_csv(header), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has a header but no rows");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,1\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has 2 rows, must have at least 3");
   EXPECT_EQ(message_of_csv(header + "1,0\n1,1\n1,2\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: displacement_mm is the same in every row");
   EXPECT_EQ(message_of_csv("displacement_mm\n1\n2\n3\n"), "s40.csv:1: force_N, no such column");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,one\n2,2\n"), "s40.csv:3: force_N = one, must be a number");
-  EXPECT_EQ(message_of_csv(header + "0,0\n1,NaN\n2,2\n"),
-            "s40.csv:3: force_N = NaN, must be a finite number");
+  EXPECT_EQ(message_of_csv(header + "0,0\n1,NaN\n2,2\n"), "s40.csv:3: force_N = NaN, must be a finite number");
   EXPECT_EQ(message_of_csv(header + "0,0\n1001,1\n2,2\n"),
             "s40.csv:3: displacement_mm = 1001, must be >= -1000 and <= 1000");
   EXPECT_EQ(message_of_csv("time_s," + header + "0,0,0\n2,1,1\n1,2,2\n"),
             "s40.csv:4: time_s = 1, must be >= 2, the value of the row before");
   EXPECT_EQ(message_of_csv(header + "0,0\n\xFE,1\n2,2\n"), "s40.csv:3: byte 0xfe is not UTF-8");
-  EXPECT_EQ(message({{"series[s40].file", "gone.csv"}}),
-            "--set: series[s40].file = gone.csv, gone.csv: no such file");
+  EXPECT_EQ(message({{"series[s40].file", "gone.csv"}}), "--set: series[s40].file = gone.csv, gone.csv: no such file");
   std::filesystem::remove(path("s40.csv"));
   std::filesystem::create_directory(path("s40.csv"));
   EXPECT_EQ(message(), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is a directory, must be a file");
@@ -278,7 +273,7 @@ TEST(QuadraticLaw, ScatterIsThatOfReadingsWithThisR2) {
 TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
   // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last
   // digit.
-  const wire::WireSpecification wire = parse_experiment("x.toml", valid_experiment).series[0].test.wire;
+  const wire::WireSpecification wire = parse_experiment("x.toml", valid_experiment, parameters()).series[0].test.wire;
   EXPECT_NEAR(wire.bending_stiffness(), 0.04796, 0.5e-5);
   EXPECT_NEAR(wire.axial_stiffness(), 341.06e3, 5.0);
   // G J with G = E / (2 (1 + nu)) and J = pi d^4 / 32, 1e-12: roundings only.
@@ -290,7 +285,7 @@ TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
 
 TEST(PublishedExperiment, IsValid) {
   const Experiment experiment =
-      read_experiment(std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml");
+      read_experiment(std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml", parameters());
   ASSERT_EQ(experiment.series.size(), 3u);
   const double positions[] = {0.040, 0.065, 0.090};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,7 +1,8 @@
 // Predictions and fits against curves of the continuous wire, which share no code with the rod.
 
-#include "identification/fitting/least_squares.hpp"
 #include "base/errors.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/fitting/least_squares.hpp"
 #include "tests/support/declared_wire.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ TEST(Prediction, SameBitsForAnyNumberOfThreads) {
     series.push_back(series_of(test::declared_wire(position * mm, 6.0 * mm), 0.0, 0.0, 1));
   }
   const Model model(series, few_edges());
-  const std::vector<const Parameter*> by{&parameter("wire.length_mm")};
+  const std::vector<const Parameter*> by{&parameters().at("wire.length_mm")};
   base::set_thread_count(1);
   const Evaluation one = model.evaluate({}, by);
   base::set_thread_count(2);
@@ -109,27 +110,29 @@ TEST(Model, SettingsMoveEverySeriesFromItsOwnDeclaration) {
   series[1].test.wire.length = 179.0 * mm;
   series[1].test.wire.axial_stiffness_override = 1e5;
   const Model model(series, few_edges());
-  const Model::Applied applied = model.apply({{&parameter("wire.length_mm"), 1e-3},
-                                              {&parameter("wire.axial_stiffness_N"), std::log(2.0)},
-                                              {&parameter("contact_position.shift_mm"), -2e-3},
-                                              {&parameter("series[b].reading.displacement_offset_mm"), 5e-4}});
+  const Model::Applied applied = model.apply({{&parameters().at("wire.length_mm"), 1e-3},
+                                              {&parameters().at("wire.axial_stiffness_N"), std::log(2.0)},
+                                              {&parameters().at("contact_position.shift_mm"), -2e-3},
+                                              {&parameters().at("series[b].reading.displacement_offset_mm"), 5e-4}});
   EXPECT_NEAR(applied.series[0].test.wire.length, 181.0 * mm, 1e-15);
   EXPECT_NEAR(applied.series[1].test.wire.length, 180.0 * mm, 1e-15);
   EXPECT_NEAR(applied.series[1].test.wire.axial_stiffness(), 2e5, 1e-9);
   EXPECT_NEAR(applied.series[1].test.contact_position, 88.0 * mm, 1e-15);
   EXPECT_EQ(applied.reading[0].displacement_offset, 0.0);
   EXPECT_EQ(applied.reading[1].displacement_offset, 5e-4);
-  EXPECT_EQ(find_parameter("series[a].nothing"), nullptr);
+  EXPECT_EQ(parameters().find("series[a].nothing"), nullptr);
 }
 
-// Numbers of the record, whose derivatives are written by hand; those of the test are compared in tests/coupling.
+// Numbers of the record, whose derivatives are written by hand; those of the test are compared in
+// tests/coupling.
 TEST(Model, DerivativesOfTheRecordMatchDifferences) {
   Series s = series_of(test::declared_wire(65.0 * mm, 6.0 * mm), 0.0, 0.0, 1);
-  for (std::size_t i = 0; i < s.readings->displacement.size(); ++i) s.readings->time.push_back(0.1 * static_cast<double>(i * i));
+  for (std::size_t i = 0; i < s.readings->displacement.size(); ++i)
+    s.readings->time.push_back(0.1 * static_cast<double>(i * i));
   const Model model({s}, few_edges());
-  const std::vector<Setting> at{{&parameter("reading.force_gain"), 0.1},
-                                {&parameter("reading.force_offset_N"), 0.3},
-                                {&parameter("rate_viscosity.relaxation_time_s"), 1e-3}};
+  const std::vector<Setting> at{{&parameters().at("reading.force_gain"), 0.1},
+                                {&parameters().at("reading.force_offset_N"), 0.3},
+                                {&parameters().at("rate_viscosity.relaxation_time_s"), 1e-3}};
   std::vector<const Parameter*> by;
   for (const Setting& one : at) by.push_back(one.parameter);
   const Evaluation here = model.evaluate(at, by);
@@ -140,7 +143,8 @@ TEST(Model, DerivativesOfTheRecordMatchDifferences) {
     up[k].coordinate += h;
     down[k].coordinate -= h;
     const Eigen::VectorXd difference = (model.evaluate(up).force[0] - model.evaluate(down).force[0]) / (2.0 * h);
-    EXPECT_LT((here.by[0].col(static_cast<Eigen::Index>(k)) - difference).norm(), 1e-6 * difference.norm()) << by[k]->key;
+    EXPECT_LT((here.by[0].col(static_cast<Eigen::Index>(k)) - difference).norm(), 1e-6 * difference.norm())
+        << by[k]->key;
   }
 }
 
@@ -162,7 +166,8 @@ Hidden hidden_wire(double sigma, unsigned seed) {
     s.test.wire.axial_stiffness_override.reset();
     s.test.wire.length = 180.0 * mm;
     h.data.series.push_back(h.series.size());
-    h.data.measured.emplace_back(Eigen::Map<const Eigen::VectorXd>(s.readings->force.data(), static_cast<Eigen::Index>(s.readings->force.size())));
+    h.data.measured.emplace_back(Eigen::Map<const Eigen::VectorXd>(
+        s.readings->force.data(), static_cast<Eigen::Index>(s.readings->force.size())));
     h.data.noise.sigma.push_back(sigma);
     h.series.push_back(std::move(s));
   }
@@ -175,16 +180,18 @@ TEST(LeastSquares, RecoverTheWireFromIndependentCurves) {
   SolverSettings solver;
   solver.elements = 128;
   const Model model(h.series, solver);
-  const Fit f = fit(model, h.data, {{&parameter("wire.axial_stiffness_N"), 0.0},
-                                    {&parameter("wire.length_mm"), 0.0},
-                                    {&parameter("reading.displacement_offset_mm"), 0.0}});
+  const Fit f = fit(model, h.data,
+                    {{&parameters().at("wire.axial_stiffness_N"), 0.0},
+                     {&parameters().at("wire.length_mm"), 0.0},
+                     {&parameters().at("reading.displacement_offset_mm"), 0.0}});
   ASSERT_TRUE(f.report.usable()) << f.report.message;
   const double expected[] = {h.axial, 179.5, 0.2};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const double deviation = std::sqrt(f.covariance(i, i));
     const Parameter& p = *f.settings[k].parameter;
-    const double truth = k == 0 ? std::log(h.axial / model.declared(p)) : expected[k] * p.unit_size - (k == 1 ? 0.18 : 0.0);
+    const double truth =
+        k == 0 ? std::log(h.axial / model.declared(p)) : expected[k] * p.unit_size - (k == 1 ? 0.18 : 0.0);
     EXPECT_NEAR(f.settings[k].coordinate, truth, 4.0 * deviation) << p.key;
     EXPECT_GT(deviation, 0.0);
   }
@@ -195,9 +202,10 @@ TEST(LeastSquares, RecoverTheWireFromIndependentCurves) {
 TEST(LeastSquares, ProfileOfANearlyLinearNumberIsItsStandardError) {
   const Hidden h = hidden_wire(0.05, 4);
   const Model model(h.series, few_edges());
-  const Fit f = fit(model, h.data, {{&parameter("wire.length_mm"), -5e-4},
-                                    {&parameter("wire.axial_stiffness_N"), -0.2},
-                                    {&parameter("reading.displacement_offset_mm"), 2e-4}});
+  const Fit f = fit(model, h.data,
+                    {{&parameters().at("wire.length_mm"), -5e-4},
+                     {&parameters().at("wire.axial_stiffness_N"), -0.2},
+                     {&parameters().at("reading.displacement_offset_mm"), 2e-4}});
   ASSERT_TRUE(f.report.usable());
   const ProfileInterval interval = profile_interval(model, h.data, f, 0, 3.84);
   ASSERT_TRUE(interval.lower && interval.upper);
@@ -208,7 +216,9 @@ TEST(LeastSquares, ProfileOfANearlyLinearNumberIsItsStandardError) {
 TEST(LeastSquares, ANumberThatNothingDependsOnHasNoStandardError) {
   const Hidden h = hidden_wire(0.05, 4);
   const Model model(h.series, few_edges());
-  const Fit f = fit(model, h.data, {{&parameter("wire.axial_stiffness_N"), -0.2}, {&parameter("mount.support_radius_mm"), 0.0}});
+  const Fit f =
+      fit(model, h.data,
+          {{&parameters().at("wire.axial_stiffness_N"), -0.2}, {&parameters().at("mount.support_radius_mm"), 0.0}});
   ASSERT_TRUE(f.report.usable()) << f.report.message;
   EXPECT_TRUE(f.covariance.allFinite());
   EXPECT_EQ(f.jacobian.col(1).norm(), 0.0);

@@ -1,9 +1,11 @@
 // Damping from free vibrations: data by closed forms with noise, and by the full wire; wrong files.
 
-#include "identification/ring_down/ring_down_file.hpp"
+#include "identification/ring_down/mode_match.hpp"
 
-#include "coupling/dynamics/motion.hpp"
 #include "base/errors.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
+#include "wire/rod_constants.hpp"
 #include "wire/rod_modes.hpp"
 
 #include <gmock/gmock.h>
@@ -26,8 +28,7 @@ struct TrueMode {
 };
 
 /// x = sum A exp(-s t) cos(2 pi f t + phase) and normal noise.
-RingDown modal_sum(const std::vector<TrueMode>& modes, double duration, int readings, double noise,
-                   unsigned seed) {
+RingDown modal_sum(const std::vector<TrueMode>& modes, double duration, int readings, double noise, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   RingDown data;
@@ -130,8 +131,8 @@ TEST(RingDown, OneFrequencyDoesNotSeparate) {
 
 TEST(RingDown, SaysWhenTheLawDoesNotFit) {
   // A decay that rises with w, not with w^2.
-  const DampingSplit split = split_damping(std::vector<DecayOfMode>{
-      {100.0, 1.0, {1.0, 0.02}}, {300.0, 1.0, {3.0, 0.02}}, {900.0, 1.0, {9.0, 0.02}}});
+  const DampingSplit split = split_damping(
+      std::vector<DecayOfMode>{{100.0, 1.0, {1.0, 0.02}}, {300.0, 1.0, {3.0, 0.02}}, {900.0, 1.0, {9.0, 0.02}}});
   EXPECT_TRUE(split.separated);
   EXPECT_LT(split.misfit_p, 1e-3);
   EXPECT_THAT(split.statement, HasSubstr("do not lie on one line"));
@@ -170,12 +171,11 @@ RingDown full_wire(wire::RodInMotion rod, const Eigen::Matrix3Xd& velocities, in
   options.max_order = 5;
   std::vector<double> t;
   std::vector<double> x;
-  const coupling::MotionResult result =
-      coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
-        t.push_back(s.time);
-        x.push_back(s.wires[0](1, vertex));
-        return false;
-      });
+  const coupling::MotionResult result = coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
+    t.push_back(s.time);
+    x.push_back(s.wires[0](1, vertex));
+    return false;
+  });
   EXPECT_TRUE(result.report.usable()) << result.report.message;
   RingDown data;
   data.time = Eigen::Map<Eigen::VectorXd>(t.data(), static_cast<Eigen::Index>(t.size()));
@@ -188,7 +188,7 @@ RingDown full_wire(wire::RodInMotion rod, const Eigen::Matrix3Xd& velocities, in
 TEST(RingDown, RecoversTheDampingOfTheFullWire) {
   const double time = 2e-5;
   const double rate = 8.0;
-  wire::RodInMotion rod = coupling::rod_in_motion(steel_wire(0.175), 0.175, 24);
+  wire::RodInMotion rod = wire::rod_in_motion(steel_wire(0.175), 0.175, 24);
   rod.damping = {time, 1e-6, rate};
   Eigen::Matrix3Xd v = Eigen::Matrix3Xd::Zero(3, rod.elements + 1);
   for (int i = 1; i < rod.elements; ++i) {
@@ -211,11 +211,12 @@ TEST(RingDown, RecoversTheDampingOfTheFullWire) {
   EXPECT_NEAR(split.mass_rate.value, rate, 0.05 * rate);
 }
 
-// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the damping back.
+// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the
+// damping back.
 TEST(RingDown, RecoversTheDampingOfALooseWire) {
   const double time = 2e-5;
   const double rate = 8.0;
-  wire::RodInMotion rod = coupling::rod_in_motion(steel_wire(0.180), 0.175, 60);
+  wire::RodInMotion rod = wire::rod_in_motion(steel_wire(0.180), 0.175, 60);
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
   std::vector<wire::RodMode> inside;  // of the plane
   for (const wire::RodMode& m : wire::rod_modes(rod, rest, 12)) {
@@ -243,8 +244,7 @@ TEST(RingDown, RecoversTheDampingOfALooseWire) {
 class RingDownFileTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::temp_directory_path() / testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
     const RingDown data = modal_sum({{20.0, 1.0, 1e-3, 0.0}}, 1.0, 100, 1e-5, 2);
     std::ofstream csv(folder_ / "good.csv");
@@ -277,8 +277,7 @@ class RingDownFileTest : public testing::Test {
 TEST_F(RingDownFileTest, IsReadAndChecked) {
   const std::string head = "schema = \"snare-ringdown/1\"\ntitle = \"t\"\n";
   const std::string series = head + "[[series]]\nname = \"a\"\n";
-  EXPECT_EQ(message_of(series +
-                       "file = \"good.csv\"\nmodes = 1\nbending_share = [0.9]\nfrom_s = 3.0\nto_s = 3.9\n"),
+  EXPECT_EQ(message_of(series + "file = \"good.csv\"\nmodes = 1\nbending_share = [0.9]\nfrom_s = 3.0\nto_s = 3.9\n"),
             "accepted");
   const std::pair<std::string, const char*> wrong[] = {
       {"title = \"t\"\n", "schema, missing"},
@@ -299,8 +298,7 @@ TEST_F(RingDownFileTest, IsReadAndChecked) {
       {series + "file = \"good.csv\"\n[wire]\nlength_mm = 1.0\n", "wire.diameter_mm, missing"},
       {series + "file = \"good.csv\"\n[mount]\nkind = \"supports\"\n", "must be \"clamped\" or \"pinned\""},
       {series + "file = \"good.csv\"\nfrequncy = 1\n", "frequncy"},
-      {series + "file = \"good.csv\"\n[[series]]\nname = \"a\"\nfile = \"good.csv\"\n",
-       "is taken by another series"},
+      {series + "file = \"good.csv\"\n[[series]]\nname = \"a\"\nfile = \"good.csv\"\n", "is taken by another series"},
   };
   for (const auto& [text, message] : wrong) EXPECT_THAT(message_of(text), HasSubstr(message)) << text;
 }

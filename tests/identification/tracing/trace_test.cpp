@@ -70,14 +70,20 @@ TEST(TraceInput, SeriesWithoutReadingsAreRefused) {
   expect_refused(e, "series[b], must have readings or a law");
 }
 
-TEST(TraceInput, AnUnknownNumberIsNamed) {
+TEST(TraceInput, AnUnknownNumberIsNamedBesideThoseThatThereAre) {
   Experiment e = experiment_of(10, [](int i) { return 1.0 * i; });
   e.free = {"wire.colour"};
   try {
     (void)trace(e);
     FAIL();
   } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("wire.colour"), std::string::npos);
+    const std::string text = error.what();
+    const std::string begin =
+        "fit.free = \"wire.colour\", must be one of wire.bending_stiffness_Nm2, wire.axial_stiffness_N, "
+        "wire.length_mm, wire.diameter_mm, wire.youngs_modulus_GPa, wire.density_kg_m3, "
+        "wire.natural_curvature_1_m, mount.span_mm, ";
+    EXPECT_NE(text.find(begin), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with("reading.force_gain, rate_viscosity.relaxation_time_s")) << text;
   }
 }
 
@@ -115,7 +121,8 @@ TEST(SlowTrace, NamesAnEffectAndGivesTheSameBitsForAnyNumberOfThreads) {
   ASSERT_TRUE(offset.lower && offset.upper);
   EXPECT_NEAR(std::abs(offset.value), 5.0 * set.amount, 5.0 * *offset.standard_error);
   EXPECT_EQ(one.final.rmse, two.final.rmse);
-  for (std::size_t k = 0; k < one.final.numbers.size(); ++k) EXPECT_EQ(one.final.numbers[k].value, two.final.numbers[k].value);
+  for (std::size_t k = 0; k < one.final.numbers.size(); ++k)
+    EXPECT_EQ(one.final.numbers[k].value, two.final.numbers[k].value);
   ASSERT_EQ(one.rounds.size(), two.rounds.size());
   for (std::size_t k = 0; k < one.rounds.front().candidates.size(); ++k) {
     EXPECT_EQ(one.rounds.front().candidates[k].score.z, two.rounds.front().candidates[k].score.z);

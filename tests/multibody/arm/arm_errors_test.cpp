@@ -1,7 +1,7 @@
 // Wrong descriptions and arm files, each with its whole message.
 
-#include "multibody/arm/arm_file.hpp"
 #include "base/errors.hpp"
+#include "multibody/arm/arm_file.hpp"
 #include "tests/multibody/valid_arm.hpp"
 
 #include <gtest/gtest.h>
@@ -36,15 +36,13 @@ class WrongArm : public testing::TestWithParam<WrongFile> {};
 
 TEST_P(WrongUrdf, HasItsMessage) {
   const std::string text = test::edited(test::valid_urdf, GetParam().from, GetParam().to);
-  EXPECT_EQ(message_of([&] { static_cast<void>(multibody::parse_urdf("x.urdf", text)); }),
-            GetParam().message);
+  EXPECT_EQ(message_of([&] { static_cast<void>(multibody::parse_urdf("x.urdf", text)); }), GetParam().message);
 }
 
 TEST_P(WrongArm, HasItsMessage) {
   // Other files are looked for beside the file; messages name it as it was given.
   const auto before = std::filesystem::current_path();
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("snare_wrong_arm_" + std::to_string(::getpid()));
+  const auto folder = std::filesystem::temp_directory_path() / ("snare_wrong_arm_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::filesystem::current_path(folder);
   std::ofstream("two_links.urdf") << test::valid_urdf;
@@ -58,8 +56,7 @@ const WrongFile wrong_urdfs[] = {
     {"<?xml version=\"1.0\"?>\n<robot name=\"two_links\">", "<robot name=\"two_links\"",
      "x.urdf:2: is no XML: Error reading Attributes"},
     {"</robot>", "", "x.urdf:36: is no XML: Error reading end tag"},
-    {"<robot name=\"two_links\">", "<machine name=\"two_links\">",
-     "x.urdf:35: is no XML: Error reading end tag"},
+    {"<robot name=\"two_links\">", "<machine name=\"two_links\">", "x.urdf:35: is no XML: Error reading end tag"},
     {"<robot name=\"two_links\">", "<robot>", "x.urdf:2: robot.name, must be given"},
     {"  <link name=\"base\"/>\n", "  <link/>\n",
      "x.urdf:3: link.name, must be given\nx.urdf:19: joint[shoulder].parent = \"base\", must be a link of "
@@ -68,8 +65,7 @@ const WrongFile wrong_urdfs[] = {
      "x.urdf:17: link[upper], must not be given twice; the first is in line 4\nx.urdf:32: joint[tool].child "
      "= \"tip\", must be a link of this file"},
     {"<mass value=\"10\"/>", "", "x.urdf:5: link[upper].inertial, must have a <mass>"},
-    {"<mass value=\"10\"/>", "<mass value=\"-10\"/>",
-     "x.urdf:7: link[upper].inertial.mass = -10, must be > 0 kg"},
+    {"<mass value=\"10\"/>", "<mass value=\"-10\"/>", "x.urdf:7: link[upper].inertial.mass = -10, must be > 0 kg"},
     {"<mass value=\"10\"/>", "<mass value=\"ten\"/>",
      "x.urdf:7: link[upper].inertial.mass = \"ten\", must be a number"},
     {"<mass value=\"10\"/>", "<mass value=\"1e9\"/>",
@@ -87,8 +83,7 @@ const WrongFile wrong_urdfs[] = {
      "inequality: none larger than the sum of the others"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"nan\" ixz=\"0\" iyy=\"0.9\"",
      "x.urdf:8: link[upper].inertial.inertia.ixy = \"nan\", must be a number"},
-    {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0\"",
-     "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0\", must be 3 numbers"},
+    {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0\"", "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0\", must be 3 numbers"},
     {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0 0mm\"",
      "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0 0mm\", must be 3 numbers"},
     {"<origin xyz=\"1 0 0\" rpy=\"0 0 0\"/>", "<origin xyz=\"1000.5 0 0\" rpy=\"0 0 0\"/>",
@@ -113,8 +108,7 @@ const WrongFile wrong_urdfs[] = {
      "already"},
     {"<parent link=\"base\"/>", "<parent link=\"tip\"/>",
      "x.urdf:11: link[lower], must not be in a closed loop of joints"},
-    {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>",
-     "x.urdf:28: joint[elbow].axis = \"0 0 0\", must not be zero"},
+    {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>", "x.urdf:28: joint[elbow].axis = \"0 0 0\", must not be zero"},
     {"<limit lower=\"-3\" upper=\"3\" effort=\"100\" velocity=\"1\"/>", "",
      "x.urdf:18: joint[shoulder], must have a <limit>; a continuous joint needs none"},
     {"lower=\"-3\" upper=\"3\"", "lower=\"3\" upper=\"-3\"",
@@ -137,8 +131,7 @@ const WrongFile wrong_arms[] = {
      "x.toml:1: schema = \"snare-arm/2\", must be \"snare-arm/1\""},
     {"urdf   = \"two_links.urdf\"", "urdf   = \"three_links.urdf\"", "three_links.urdf: cannot be read"},
     {"urdf   = \"two_links.urdf\"\n", "", "x.toml: urdf, missing, must name a URDF file"},
-    {"tip    = \"tip\"", "tip    = \"tipp\"",
-     "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
+    {"tip    = \"tip\"", "tip    = \"tipp\"", "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
     {"[joint.elbow]", "[joint.elbwo]", "x.toml:17: joint.elbwo, unknown key; did you mean elbow?"},
     {"rotor_inertia_kg_m2 = 1e-3", "rotor_inertia_kg_m2 = 0.0",
      "x.toml:8: every_joint.rotor_inertia_kg_m2 = 0.0, must be > 0"},
@@ -174,8 +167,7 @@ const WrongFile wrong_arms[] = {
      "x.toml:17: every_joint.breakaway_Nm = 3.0, must not be smaller than coulomb_Nm"},
     {"drive               = \"servo\"", "drive               = \"held\"",
      "x.toml:13: every_joint.drive = \"held\", must be \"locked\", \"servo\" or \"limp\""},
-    {"proportional_Nm_rad = 500.0\n", "",
-     "x.toml:7: every_joint.proportional_Nm_rad, missing, must be a number > 0"},
+    {"proportional_Nm_rad = 500.0\n", "", "x.toml:7: every_joint.proportional_Nm_rad, missing, must be a number > 0"},
     {"angles_deg = [30.0, -60.0]", "angles_deg = [30.0]",
      "x.toml:25: pose[bent].angles_deg = [30.0], must be an array of 2 numbers"},
     {"angles_deg = [30.0, -60.0]", "angles_deg = [300.0, -60.0]",
@@ -195,8 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Table, WrongArm, testing::ValuesIn(wrong_arms));
 }  // namespace
 
 TEST(ArmErrors, TheFilesThatAreBrokenAreRightBefore) {
-  EXPECT_EQ(message_of([] { static_cast<void>(multibody::parse_urdf("x.urdf", test::valid_urdf)); }),
-            "accepted");
+  EXPECT_EQ(message_of([] { static_cast<void>(multibody::parse_urdf("x.urdf", test::valid_urdf)); }), "accepted");
 }
 
 }  // namespace snare

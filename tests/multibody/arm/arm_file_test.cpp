@@ -69,7 +69,8 @@ TEST(ArmFile, VisitorsAtTheTipLowerTheFirstFrequency) {
     const auto arm = shipped(name);
     return multibody::natural_modes(arm.arm, arm.coordinates(arm.poses[0].angles), locked)[0].frequency;
   };
-  const double bare = first("ssrms_like.toml"), visitor = first("ssrms_with_visitor.toml"), htv = first("ssrms_with_htv.toml");
+  const double bare = first("ssrms_like.toml"), visitor = first("ssrms_with_visitor.toml"),
+               htv = first("ssrms_with_htv.toml");
   EXPECT_LT(visitor, bare);
   EXPECT_LT(htv, visitor);
   EXPECT_LT(visitor / htv, std::sqrt(16000.0 / 1300.0) * 1.2);

@@ -1,0 +1,235 @@
+#include "app/motion_history.hpp"
+
+#include "base/csv.hpp"
+#include "base/index.hpp"
+#include "base/units.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace snare::app {
+
+namespace {
+
+using base::at;
+using base::degree;
+using coupling::ContactSample;
+using coupling::MotionSample;
+using Eigen::Vector3d;
+using multibody::ArmSample;
+using multibody::RigidBodyState;
+
+constexpr double mm_per_m = 1e3;
+
+/// Columns of a history, each a number of every sample.
+template <class Sample>
+class Columns {
+ public:
+  using Number = std::function<double(const Sample&)>;
+
+  void add(std::string name, Number number) { columns_.push_back({std::move(name), std::move(number), false}); }
+  void add_count(std::string name, Number number) { columns_.push_back({std::move(name), std::move(number), true}); }
+  /// Columns BEFORExAFTER, BEFOREyAFTER and, of three, BEFOREzAFTER.
+  void add_vector(const std::string& before, const std::string& after,
+                  const std::function<Vector3d(const Sample&)>& vector, int count = 3) {
+    for (int k = 0; k < count; ++k)
+      add(before + "xyz"[k] + after, [vector, k](const Sample& s) { return vector(s)[k]; });
+  }
+
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const Column& column : columns_) names.push_back(column.name);
+    return names;
+  }
+  void append(const Sample& sample, std::vector<base::CsvCell>& row) const {
+    for (const Column& column : columns_) {
+      const double number = column.number(sample);
+      row.push_back(column.count ? base::CsvCell(static_cast<long long>(number)) : base::CsvCell(number));
+    }
+  }
+
+ private:
+  struct Column {
+    std::string name;
+    Number number;
+    bool count;  // written as a whole number
+  };
+  std::vector<Column> columns_;
+};
+
+void add_energies(Columns<MotionSample>& columns) {
+  using Energy = double coupling::EnergyBalance::*;
+  static constexpr std::pair<const char*, Energy> energies[] = {
+      {"kinetic_J", &coupling::EnergyBalance::kinetic},      {"strain_J", &coupling::EnergyBalance::strain},
+      {"potential_J", &coupling::EnergyBalance::potential},  {"dissipated_J", &coupling::EnergyBalance::dissipated},
+      {"impacts_J", &coupling::EnergyBalance::impacts},      {"work_J", &coupling::EnergyBalance::work},
+      {"integrator_J", &coupling::EnergyBalance::integrator}};
+  for (const auto& [name, energy] : energies)
+    columns.add(name, [energy = energy](const MotionSample& s) { return s.energy.*energy; });
+}
+
+const RigidBodyState& body(const MotionSample& s) {
+  return s.bodies.front();
+}
+
+/// Angle about z [rad] of a body that turns mainly about it.
+double angle(const RigidBodyState& s) {
+  const Eigen::Quaterniond& q = s.orientation;
+  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+}
+
+void add_only_contact(Columns<MotionSample>& columns) {
+  columns.add("force_N", [](const MotionSample& s) { return s.contacts.front().normal_force; });
+  columns.add("penetration_mm", [](const MotionSample& s) { return -mm_per_m * s.contacts.front().gap; });
+  columns.add("contact_arc_mm", [](const MotionSample& s) { return mm_per_m * s.contacts.front().arc; });
+}
+
+/// Force on the left or the right mount's end of the first wire [N]; zero where a law stands for it.
+Vector3d mount_force(const MotionSample& s, std::size_t mount) {
+  return s.mount_forces.empty() ? Vector3d::Zero() : s.mount_forces[mount];
+}
+
+/// One body that meets one wire: what happens in the plane of the push.
+Columns<MotionSample> body_on_wire() {
+  Columns<MotionSample> columns;
+  add_only_contact(columns);
+  columns.add_vector(
+      "body_", "_mm", [](const MotionSample& s) { return Vector3d(mm_per_m * body(s).position); }, 2);
+  columns.add("body_angle_deg", [](const MotionSample& s) { return angle(body(s)) * 180.0 / std::numbers::pi; });
+  columns.add_vector(
+      "body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; }, 2);
+  columns.add("body_spin_rad_s", [](const MotionSample& s) { return body(s).spin.z(); });
+  columns.add_vector(
+      "mount_left_", "_N", [](const MotionSample& s) { return mount_force(s, 0); }, 2);
+  columns.add_vector(
+      "mount_right_", "_N", [](const MotionSample& s) { return mount_force(s, 1); }, 2);
+  add_energies(columns);
+  columns.add("slip_speed_m_s", [](const MotionSample& s) { return s.contacts.front().slip_speed; });
+  columns.add_count("sticking", [](const MotionSample& s) { return s.contacts.front().sticking ? 1.0 : 0.0; });
+  return columns;
+}
+
+/// Force of the arm on what it carries, world axes [N].
+Vector3d carried_force(const coupling::Motion& motion, const MotionSample& s) {
+  if (!s.welds.empty()) return s.welds.front().force;
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = 0; k < motion.mounts.size(); ++k) sum += s.mount_forces[k];
+  return sum;
+}
+
+/// The same with an arm.
+Columns<MotionSample> body_on_wire_with_arm(const coupling::Motion& motion) {
+  Columns<MotionSample> columns;
+  add_only_contact(columns);
+  columns.add_vector("body_", "_mm", [](const MotionSample& s) { return Vector3d(mm_per_m * body(s).position); });
+  columns.add_vector("body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; });
+  columns.add_vector("body_spin_", "_rad_s", [](const MotionSample& s) { return body(s).spin; });
+  columns.add_vector("carried_", "_N", [&motion](const MotionSample& s) { return carried_force(motion, s); });
+  const multibody::ElasticArm& arm = motion.arms.front().arm;
+  for (int j = 0; j < arm.motors(); ++j) {
+    const std::string& name = arm.joints[at(j)].name;
+    columns.add(name + "_motor_deg", [j](const MotionSample& s) { return s.arms.front().state.motor[j] / degree; });
+    columns.add(name + "_deflection_deg",
+                [&motion, j](const MotionSample& s) { return joint_deflection(motion, s, j) / degree; });
+    columns.add(name + "_torque_Nm", [j](const MotionSample& s) { return s.arms.front().joint_torque[j]; });
+  }
+  add_energies(columns);
+  return columns;
+}
+
+/// Lists of bodies and contacts.
+Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
+  Columns<MotionSample> columns;
+  for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
+    const std::string name = motion.bodies[k].name + " ";
+    columns.add_vector(name, "_mm", [k](const MotionSample& s) { return Vector3d(mm_per_m * s.bodies[k].position); });
+    columns.add(name + "qw", [k](const MotionSample& s) { return s.bodies[k].orientation.w(); });
+    columns.add_vector(name + "q", "", [k](const MotionSample& s) { return Vector3d(s.bodies[k].orientation.vec()); });
+    columns.add_vector(name + "v", "_m_s", [k](const MotionSample& s) { return s.bodies[k].velocity; });
+    columns.add_vector(name + "w", "_rad_s", [k](const MotionSample& s) { return s.bodies[k].spin; });
+  }
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    const std::string name = motion.contacts[k].name + " ";
+    columns.add(name + "points",
+                [k](const MotionSample& s) { return static_cast<double>(s.contacts[k].points.size()); });
+    columns.add(name + "gap_mm", [k](const MotionSample& s) { return mm_per_m * s.contacts[k].gap; });
+    columns.add(name + "arc_mm", [k](const MotionSample& s) { return mm_per_m * s.contacts[k].arc; });
+    columns.add(name + "normal_N", [k](const MotionSample& s) { return s.contacts[k].normal_force; });
+    columns.add_vector(name + "f", "_N", [k](const MotionSample& s) { return s.contacts[k].force; });
+  }
+  add_energies(columns);
+  return columns;
+}
+
+Columns<MotionSample> columns_of(const scenario::WireMotions& motions) {
+  if (!motions.probe) return bodies_among_wires(motions.runs.front().motion);
+  const bool with_arm = !motions.runs.empty() && !motions.runs.front().motion.arms.empty();
+  return with_arm ? body_on_wire_with_arm(motions.runs.front().motion) : body_on_wire();
+}
+
+Columns<ArmSample> columns_of(const multibody::ElasticArm& arm) {
+  Columns<ArmSample> columns;
+  for (int j = 0; j < arm.motors(); ++j) {
+    const std::string& name = arm.joints[at(j)].name;
+    columns.add(name + "_motor_deg", [j](const ArmSample& s) { return s.state.motor[j] / degree; });
+    columns.add(name + "_deflection_deg", [j](const ArmSample& s) { return s.deflection[j] / degree; });
+    columns.add(name + "_joint_torque_Nm", [j](const ArmSample& s) { return s.joint_torque[j]; });
+    columns.add(name + "_drive_torque_Nm", [j](const ArmSample& s) { return s.drive_torque[j]; });
+  }
+  columns.add("energy_J", [](const ArmSample& s) { return s.energy; });
+  columns.add("work_drives_J", [](const ArmSample& s) { return s.work.motors; });
+  columns.add("work_loads_J", [](const ArmSample& s) { return s.work.loads; });
+  columns.add("lost_J", [](const ArmSample& s) { return s.work.lost; });
+  columns.add_vector("momentum_", "_Ns", [](const ArmSample& s) { return s.momentum.force; });
+  return columns;
+}
+
+/// Samples of one run; unnamed: the only one.
+template <class Sample>
+struct Run {
+  std::string_view name;
+  const std::vector<Sample>& samples;
+};
+
+enum class Runs { named, only };
+
+template <class Sample>
+void write(const std::filesystem::path& file, const Columns<Sample>& columns, const std::vector<Run<Sample>>& runs,
+           Runs kind) {
+  std::vector<std::string> names;
+  if (kind == Runs::named) names.emplace_back("model");
+  names.emplace_back("time_s");
+  for (std::string& name : columns.names()) names.push_back(std::move(name));
+  base::CsvWriter csv(file, names);
+  for (const Run<Sample>& run : runs) {
+    for (const Sample& s : run.samples) {
+      std::vector<base::CsvCell> row;
+      if (kind == Runs::named) row.emplace_back(run.name);
+      row.emplace_back(s.time);
+      columns.append(s, row);
+      csv.row(row);
+    }
+  }
+  csv.commit();
+}
+
+}  // namespace
+
+void write_history(const std::filesystem::path& file, const scenario::WireMotions& motions,
+                   const std::vector<FinishedMotion>& finished) {
+  std::vector<Run<MotionSample>> runs;
+  for (const FinishedMotion& run : finished) runs.push_back({run.asked.name, run.samples});
+  write(file, columns_of(motions), runs, motions.probe ? Runs::named : Runs::only);
+}
+
+void write_history(const std::filesystem::path& file, const multibody::ElasticArm& arm,
+                   const multibody::ArmHistory& history) {
+  write<ArmSample>(file, columns_of(arm), {{"", history.samples}}, Runs::only);
+}
+
+}  // namespace snare::app

@@ -1,0 +1,208 @@
+#include "app/motion_summary.hpp"
+
+#include "app/commands.hpp"
+#include "base/index.hpp"
+#include "base/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::app {
+
+using nlohmann::json;
+
+namespace {
+
+using base::at;
+using base::degree;
+using coupling::MotionEvent;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using multibody::RigidBodyState;
+
+json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json time_json(const std::optional<double>& time) {
+  return time ? json(*time) : json();
+}
+
+json ending(const numerics::IdaReport& report, const numerics::IdaStatistics& n) {
+  return {{"finished", report.usable()},
+          {"message", report.usable() ? json() : json(report.message)},
+          {"steps", n.steps},
+          {"residuals", n.residuals},
+          {"jacobians", n.jacobians},
+          {"factorizations", n.factorizations},
+          {"restarts", n.restarts}};
+}
+
+/// Ending, energies, errors of the balances, drifts and cost of a motion.
+json result_json(const MotionResult& r) {
+  json object = ending(r.report, r.statistics);
+  object.update({{"time_s", r.report.time},
+                 {"energy_J",
+                  {{"kinetic", r.energy.kinetic},
+                   {"strain", r.energy.strain},
+                   {"potential", r.energy.potential},
+                   {"dissipated", r.energy.dissipated},
+                   {"impacts", r.energy.impacts},
+                   {"work", r.energy.work},
+                   {"integrator", r.energy.integrator}}},
+                 {"momentum_error_Ns", vector_json(r.momentum_error)},
+                 {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
+                 {"largest_penetration_m", r.largest_penetration},
+                 {"largest_gap_m", r.largest_gap},
+                 {"largest_drift", r.largest_drift},
+                 {"analyses", r.statistics.analyses},
+                 {"wall_s", r.wall_seconds},
+                 {"real_time_factor", real_time_factor(r)}});
+  return object;
+}
+
+/// Velocities of a body before and after.
+json velocities_json(const RigidBodyState& before, const RigidBodyState& after) {
+  return {{"velocity_before_m_s", vector_json(before.velocity)},
+          {"velocity_after_m_s", vector_json(after.velocity)},
+          {"spin_before_rad_s", vector_json(before.spin)},
+          {"spin_after_rad_s", vector_json(after.spin)}};
+}
+
+/// What a contact has seen, whatever the kind of scenario.
+json contact_json(const FinishedMotion& run, std::size_t contact) {
+  return {{"peak_force_N", run.result.peak_force[contact]},
+          {"impulse_Ns", vector_json(run.result.impulse[contact])},
+          {"touches", touches_of(run.result, contact).count},
+          {"in_contact_at_the_end", run.samples.back().contacts[contact].closed}};
+}
+
+json contact_times_json(const FinishedMotion& run, std::size_t contact) {
+  const Touches touches = touches_of(run.result, contact);
+  return {{"first_touch_s", time_json(touches.first)}, {"last_lift_off_s", time_json(touches.last_lift_off)}};
+}
+
+/// Largest travel of the probe from where it would touch [m].
+double deepest(const FinishedMotion& run, const scenario::Probe& probe) {
+  const auto y = [&probe](const MotionSample& s) {
+    const RigidBodyState& b = s.bodies.front();
+    return (b.position + b.orientation * probe.place).y();
+  };
+  const double touch = y(run.samples.front()) + probe.side * probe.distance;
+  double deepest = 0.0;
+  for (const MotionSample& s : run.samples) deepest = std::max(deepest, probe.side * (y(s) - touch));
+  return deepest;
+}
+
+json largest_deflections(const FinishedMotion& run) {
+  const multibody::ElasticArm& arm = run.asked.motion.arms.front().arm;
+  json deflections = json::object();
+  for (int j = 0; j < arm.motors(); ++j) {
+    double largest = 0.0;
+    for (const MotionSample& s : run.samples)
+      largest = std::max(largest, std::abs(joint_deflection(run.asked.motion, s, j)));
+    deflections[arm.joints[at(j)].name] = largest / degree;
+  }
+  return deflections;
+}
+
+/// One body that meets one wire, with one of the wire's models.
+json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
+  json summary{{"model", run.asked.name}, {"events", json::array()}};
+  for (const MotionEvent& e : run.result.events)
+    summary["events"].push_back({{"time_s", e.time}, {"what", coupling::to_string(e.kind)}});
+  summary.update(contact_json(run, 0));
+  summary.update(velocities_json(run.samples.front().bodies.front(), run.samples.back().bodies.front()));
+  summary.update(result_json(run.result));
+  if (!run.asked.motion.arms.empty()) {
+    summary["largest_deflection_deg"] = largest_deflections(run);
+    return summary;
+  }
+  summary["kind"] = run.asked.model;
+  summary["deepest_mm"] = 1e3 * deepest(run, probe);
+  summary.update(contact_times_json(run, 0));
+  return summary;
+}
+
+json listed_contact_json(const FinishedMotion& run, std::size_t k) {
+  const coupling::Motion& motion = run.asked.motion;
+  const coupling::MotionContact& c = motion.contacts[k];
+  json contact = contact_json(run, k);
+  contact.update(contact_times_json(run, k));
+  contact["contact"] = c.name;
+  contact["body"] = motion.bodies[at(c.body)].name;
+  contact["wire"] = motion.wires[at(c.wire)].name;
+  contact["most_points"] = most_points(run, k);
+  return contact;
+}
+
+/// Lists of bodies and contacts.
+json lists_json(const FinishedMotion& run) {
+  const coupling::Motion& motion = run.asked.motion;
+  json summary = result_json(run.result);
+  summary.update({{"bodies", json::array()}, {"contacts", json::array()}, {"events", json::array()}});
+  for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
+    const RigidBodyState& after = run.samples.back().bodies[k];
+    json body = velocities_json(run.samples.front().bodies[k], after);
+    body["body"] = motion.bodies[k].name;
+    body["position_after_mm"] = vector_json(1e3 * after.position);
+    summary["bodies"].push_back(body);
+  }
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) summary["contacts"].push_back(listed_contact_json(run, k));
+  for (const MotionEvent& e : run.result.events) {
+    json event{{"time_s", e.time},
+               {"what", coupling::to_string(e.kind)},
+               {"contact", motion.contacts[at(e.contact)].name},
+               {"point", e.point + 1},
+               {"arc_mm", 1e3 * e.arc}};
+    if (e.kind == MotionEvent::Kind::touch) event["approach_m_s"] = e.approach_speed;
+    summary["events"].push_back(event);
+  }
+  return summary;
+}
+
+json head(const scenario::Scenario& asked) {
+  return {{"schema", "snare-summary/1"},
+          {"kind", asked.kind},
+          {"title", asked.title},
+          {"source", asked.source},
+          {"version", version()}};
+}
+
+}  // namespace
+
+json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions& motions,
+                    const std::vector<FinishedMotion>& finished) {
+  json summary = head(asked);
+  summary["duration_s"] = motions.duration;
+  if (!motions.probe) {
+    summary.update(lists_json(finished.front()));
+    return summary;
+  }
+  summary["models"] = json::array();
+  for (const FinishedMotion& run : finished) summary["models"].push_back(model_json(run, *motions.probe));
+  return summary;
+}
+
+json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const ArmRecord& record) {
+  const multibody::ArmHistory& history = record.history;
+  json summary = head(asked);
+  summary.update(ending(history.report, history.statistics));
+  summary.update({{"time_s", record.time()},
+                  {"energy_error", history.energy_error},
+                  {"wall_s", record.wall_seconds},
+                  {"real_time_factor", record.real_time_factor()},
+                  {"events", json::array()},
+                  {"swings", json::array()}});
+  for (const multibody::ArmEvent& e : history.events) {
+    const json joint = e.joint < 0 ? json() : json(motion.scenario.arm.joints[at(e.joint)].name);
+    summary["events"].push_back({{"time_s", e.time}, {"joint", joint}, {"what", e.what}});
+  }
+  for (const scenario::Swing& s : record.swings) {
+    summary["swings"].push_back(
+        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", s.peak / degree}, {"frequency_Hz", s.frequency()}});
+  }
+  return summary;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/report/motion_record.hpp"
+#include "scenario/world.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace snare::app {
+
+/// summary.json of motions with wires.                                                        docs/summary_json.md
+[[nodiscard]] nlohmann::json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions& motions,
+                                            const std::vector<FinishedMotion>& finished);
+
+/// summary.json of an arm alone.
+[[nodiscard]] nlohmann::json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& motion,
+                                         const ArmRecord& record);
+
+}  // namespace snare::app

@@ -1,0 +1,267 @@
+#include "app/report/motion_page.hpp"
+
+#include "app/report/motion_pictures.hpp"
+#include "app/report/report_page.hpp"
+#include "base/index.hpp"
+#include "base/units.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+
+namespace snare::app {
+
+namespace {
+
+using base::at;
+using base::degree;
+using coupling::MotionSample;
+using multibody::ArmSample;
+
+/// A page up to its summary.
+ReportPage open_page(const scenario::Scenario& asked) {
+  ReportPage page(asked.title, asked.source);
+  page.heading("Summary");
+  return page;
+}
+
+std::string close_page(ReportPage& page, const std::string& version) {
+  page.footer(
+      fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version));
+  return page.html();
+}
+
+/// A number of every sample over time.
+template <class Sample, class Number>
+Curve time_curve(const std::string& name, int colour, const std::vector<Sample>& samples, const Number& number) {
+  Curve curve{name, {}, {}, CurveStyle::line, colour};
+  for (const Sample& s : samples) {
+    curve.x.push_back(s.time);
+    curve.y.push_back(number(s));
+  }
+  return curve;
+}
+
+/// The outcome of every model in one table, and what stopped early.
+void add_models(const std::vector<FinishedMotion>& finished, ReportPage& page) {
+  Table table{"",
+              {{"Model", ColumnKind::code},
+               {"Peak force [N]", ColumnKind::number},
+               {"Impulse along y [N s]", ColumnKind::number},
+               {"Velocity after, y [m/s]", ColumnKind::number},
+               {"Spin after, z [rad/s]", ColumnKind::number},
+               {"Touches", ColumnKind::number},
+               {"Integrator's energy [J]", ColumnKind::number},
+               {"Steps", ColumnKind::number},
+               {"Real-time factor", ColumnKind::number}},
+              {}};
+  for (const FinishedMotion& run : finished) {
+    const coupling::MotionResult& r = run.result;
+    const multibody::RigidBodyState& after = run.samples.back().bodies.front();
+    table.rows.push_back({run.asked.name, format_significant(r.peak_force.front()),
+                          format_significant(r.impulse.front().y()), format_significant(after.velocity.y()),
+                          format_significant(after.spin.z()), std::to_string(touches_of(r, 0).count),
+                          format_significant(r.energy.integrator, 2), std::to_string(r.statistics.steps),
+                          format_significant(real_time_factor(r))});
+    if (!r.report.usable()) page.callout(run.asked.name + ": " + r.report.message, Tone::bad);
+  }
+  page.table(table);
+}
+
+/// Balance, penetration and cost of the only motion.
+void add_balance(const coupling::MotionResult& r, ReportPage& page) {
+  if (!r.report.usable()) page.callout(r.report.message, Tone::bad);
+  page.key_figures({{"Energy of the integrator", format_significant(r.energy.integrator, 2) + " J",
+                     "what the balance misses, all losses counted"},
+                    {"Largest penetration", format_significant(r.largest_penetration, 2) + " m", ""},
+                    {"Steps", std::to_string(r.statistics.steps), ""},
+                    {"Real-time factor", format_significant(real_time_factor(r), 2), ""}});
+}
+
+void add_contacts(const FinishedMotion& run, ReportPage& page) {
+  Table table{"",
+              {{"Contact", ColumnKind::code},
+               {"Peak force [N]", ColumnKind::number},
+               {"First touch [s]", ColumnKind::number},
+               {"Touches", ColumnKind::number},
+               {"Points at a time", ColumnKind::number}},
+              {}};
+  for (std::size_t k = 0; k < run.asked.motion.contacts.size(); ++k) {
+    const Touches touches = touches_of(run.result, k);
+    table.rows.push_back({run.asked.motion.contacts[k].name, format_significant(run.result.peak_force[k]),
+                          touches.first ? format_significant(*touches.first, 6) : "never",
+                          std::to_string(touches.count), std::to_string(most_points(run, k))});
+  }
+  page.table(table);
+}
+
+struct ModelPlot {
+  const char* title;
+  Axis y;
+  double (*value)(const MotionSample&);
+};
+
+double contact_force(const MotionSample& s) {
+  return s.contacts.front().normal_force;
+}
+double velocity_along_push(const MotionSample& s) {
+  return s.bodies.front().velocity.y();
+}
+
+const std::vector<ModelPlot>& plots_without_arm() {
+  static const std::vector<ModelPlot> plots{
+      {"Contact force", {"force", "N"}, contact_force},
+      {"Velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
+      {"Spin", {"spin z", "rad/s"}, [](const MotionSample& s) { return s.bodies.front().spin.z(); }},
+      {"Place of the centre of mass",
+       {"y", "mm"},
+       [](const MotionSample& s) { return 1e3 * s.bodies.front().position.y(); }},
+      {"Velocity along the wire",
+       {"velocity x", "m/s"},
+       [](const MotionSample& s) { return s.bodies.front().velocity.x(); }},
+      {"Kinetic energy", {"energy", "J"}, [](const MotionSample& s) { return s.energy.kinetic; }},
+  };
+  return plots;
+}
+
+const std::vector<ModelPlot>& plots_with_arm() {
+  static const std::vector<ModelPlot> plots{
+      {"Contact force", {"force", "N"}, contact_force},
+      {"Body's velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
+  };
+  return plots;
+}
+
+/// Every model in every plot.
+void add_model_plots(const std::vector<ModelPlot>& plots, const std::vector<FinishedMotion>& finished,
+                     ReportPage& page) {
+  for (const ModelPlot& plot : plots) {
+    PlotSpecification specification{plot.title, {"time", "s"}, plot.y};
+    int colour = 0;
+    for (const FinishedMotion& run : finished)
+      specification.curves.push_back(time_curve(run.asked.name, colour++, run.samples, plot.value));
+    page.line_plot(specification);
+  }
+}
+
+void add_joint_plots(const FinishedMotion& run, ReportPage& page) {
+  const coupling::Motion& motion = run.asked.motion;
+  const multibody::ElasticArm& arm = motion.arms.front().arm;
+  PlotSpecification joints{"Deflection of the joints: " + run.asked.name, {"time", "s"}, {"deflection", "deg"}};
+  PlotSpecification motors{"Motors: " + run.asked.name, {"time", "s"}, {"angle from the start", "deg"}};
+  for (int j = 0; j < arm.motors(); ++j) {
+    const std::string& name = arm.joints[at(j)].name;
+    joints.curves.push_back(time_curve(
+        name, j, run.samples, [&motion, j](const MotionSample& s) { return joint_deflection(motion, s, j) / degree; }));
+    const double start = run.samples.front().arms.front().state.motor[j];
+    motors.curves.push_back(time_curve(name, j, run.samples, [j, start](const MotionSample& s) {
+      return (s.arms.front().state.motor[j] - start) / degree;
+    }));
+  }
+  page.line_plot(joints);
+  page.line_plot(motors);
+}
+
+void add_list_plots(const FinishedMotion& run, ReportPage& page) {
+  const coupling::Motion& motion = run.asked.motion;
+  PlotSpecification forces{"Contact forces", {"time", "s"}, {"force", "N"}};
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    forces.curves.push_back(time_curve(motion.contacts[k].name, static_cast<int>(k), run.samples,
+                                       [k](const MotionSample& s) { return s.contacts[k].normal_force; }));
+  }
+  page.line_plot(forces);
+  PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
+  for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
+    speeds.curves.push_back(time_curve(motion.bodies[k].name, static_cast<int>(k), run.samples,
+                                       [k](const MotionSample& s) { return s.bodies[k].velocity.norm(); }));
+  }
+  page.line_plot(speeds);
+}
+
+void add_views(const FinishedMotion& run, ReportPage& page) {
+  for (const View view : {View::along_z, View::along_x})
+    page.animation(animation_of(run.asked.motion, run.samples, view));
+}
+
+/// Bodies, wires and shapes in lists.
+void add_lists(const FinishedMotion& run, ReportPage& page) {
+  add_balance(run.result, page);
+  add_contacts(run, page);
+  page.heading("Time histories");
+  add_list_plots(run, page);
+  page.heading("The motion");
+  add_views(run, page);
+}
+
+/// One body that meets one wire, with an arm or without.
+void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedMotion>& finished, ReportPage& page) {
+  const bool with_arm = !finished.empty() && !finished.front().asked.motion.arms.empty();
+  add_models(finished, page);
+  page.heading("Time histories");
+  add_model_plots(with_arm ? plots_with_arm() : plots_without_arm(), finished, page);
+  if (with_arm) {
+    for (const FinishedMotion& run : finished) add_joint_plots(run, page);
+  }
+  page.heading("The contact");
+  for (const FinishedMotion& run : finished) {
+    page.animation(animation_of(probe, run.asked.name, run.samples));
+    if (with_arm) add_views(run, page);
+  }
+}
+
+void add_swings(const std::vector<scenario::Swing>& swings, ReportPage& page) {
+  Table table{
+      "Swings of the joint, from zero to zero of its deflection",
+      {{"Begin [s]", ColumnKind::number}, {"Peak [deg]", ColumnKind::number}, {"Frequency [Hz]", ColumnKind::number}},
+      {}};
+  for (const scenario::Swing& s : swings) {
+    table.rows.push_back(
+        {format_significant(s.begin, 4), format_significant(s.peak / degree), format_significant(s.frequency(), 4)});
+  }
+  page.table(table);
+}
+
+}  // namespace
+
+std::string motion_page(const scenario::Scenario& asked, const scenario::WireMotions& motions,
+                        const std::vector<FinishedMotion>& finished, const std::string& version) {
+  ReportPage page = open_page(asked);
+  if (motions.probe)
+    add_probe_on_wire(*motions.probe, finished, page);
+  else
+    add_lists(finished.front(), page);
+  return close_page(page, version);
+}
+
+std::string arm_page(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const ArmRecord& record,
+                     const std::string& version) {
+  const multibody::ArmHistory& history = record.history;
+  ReportPage page = open_page(asked);
+  if (!history.report.usable()) page.callout(history.report.message, Tone::bad);
+  page.key_figures(
+      {{"Steps", std::to_string(history.statistics.steps), fmt::format("{} events", history.events.size())},
+       {"Energy balance", format_significant(history.energy_error, 2), "largest error over the largest energy"},
+       {"Real-time factor", format_significant(record.real_time_factor()), ""}});
+  if (!record.swings.empty()) add_swings(record.swings, page);
+  page.heading("Time histories");
+  PlotSpecification deflection{"Deflection of the joints", {"time", "s"}, {"deflection", "deg"}};
+  PlotSpecification torque{"Torque of the joints", {"time", "s"}, {"torque", "N m"}};
+  PlotSpecification motor{"Motors", {"time", "s"}, {"angle", "deg"}};
+  PlotSpecification energy{"Energy", {"time", "s"}, {"energy", "J"}};
+  const auto curve = [&history](const std::string& name, int colour,
+                                const std::function<double(const ArmSample&)>& value) {
+    return time_curve(name, colour, history.samples, value);
+  };
+  for (int j = 0; j < motion.scenario.arm.motors(); ++j) {
+    const std::string& name = motion.scenario.arm.joints[at(j)].name;
+    deflection.curves.push_back(curve(name, j, [j](const ArmSample& s) { return s.deflection[j] / degree; }));
+    torque.curves.push_back(curve(name, j, [j](const ArmSample& s) { return s.joint_torque[j]; }));
+    motor.curves.push_back(curve(name, j, [j](const ArmSample& s) { return s.state.motor[j] / degree; }));
+  }
+  energy.curves = {curve("kinetic, potential and elastic", 0, [](const ArmSample& s) { return s.energy; }),
+                   curve("lost", 1, [](const ArmSample& s) { return s.work.lost; })};
+  for (const PlotSpecification* plot : {&deflection, &torque, &motor, &energy}) page.line_plot(*plot);
+  return close_page(page, version);
+}
+
+}  // namespace snare::app

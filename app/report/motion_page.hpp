@@ -1,0 +1,19 @@
+#pragma once
+
+#include "app/report/motion_record.hpp"
+#include "scenario/world.hpp"
+
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// The report on motions with wires, as HTML. version: of the command.
+[[nodiscard]] std::string motion_page(const scenario::Scenario& asked, const scenario::WireMotions& motions,
+                                      const std::vector<FinishedMotion>& finished, const std::string& version);
+
+/// The report on an arm alone, as HTML.
+[[nodiscard]] std::string arm_page(const scenario::Scenario& asked, const scenario::ArmMotion& motion,
+                                   const ArmRecord& record, const std::string& version);
+
+}  // namespace snare::app

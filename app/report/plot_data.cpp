@@ -1,0 +1,146 @@
+#include "app/report/plot_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace snare::app {
+namespace {
+
+using nlohmann::json;
+
+/// Digits of a value in the page: finer than any screen or printer shows.
+constexpr int plotted_digits = 6;
+
+double rounded(double value) {
+  return std::strtod(fmt::format("{:.{}g}", value, plotted_digits).c_str(), nullptr);
+}
+
+/// All values have to be finite, those that are thinned out as well.
+json plotted_values(const std::vector<double>& values, const std::vector<std::size_t>& picked,
+                    const std::string& what) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      throw std::invalid_argument(fmt::format("{}[{}] = {}, must be finite", what, i, values[i]));
+    }
+  }
+  json result = json::array();
+  for (const std::size_t i : picked) result.push_back(rounded(values[i]));
+  return result;
+}
+
+void require_length(std::size_t actual, std::size_t expected, const std::string& what) {
+  if (actual != expected) {
+    throw std::invalid_argument(fmt::format("{} has {} values, x has {}", what, actual, expected));
+  }
+}
+
+/// Indices to draw: all, or of each of max/2 equal stretches the lowest and the highest point.
+std::vector<std::size_t> thinned_indices(const std::vector<double>& values, std::size_t max_points) {
+  std::vector<std::size_t> indices;
+  if (values.size() <= max_points) {
+    for (std::size_t i = 0; i < values.size(); ++i) indices.push_back(i);
+    return indices;
+  }
+  const std::size_t stretches = max_points / 2;
+  for (std::size_t k = 0; k < stretches; ++k) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(k * values.size() / stretches);
+    const auto last = values.begin() + static_cast<std::ptrdiff_t>((k + 1) * values.size() / stretches);
+    const auto [low, high] = std::minmax_element(first, last);
+    const auto ordered = std::minmax(low, high);
+    indices.push_back(static_cast<std::size_t>(ordered.first - values.begin()));
+    if (ordered.first != ordered.second) indices.push_back(static_cast<std::size_t>(ordered.second - values.begin()));
+  }
+  return indices;
+}
+
+const char* style_name(CurveStyle style) {
+  switch (style) {
+    case CurveStyle::line:
+      return "line";
+    case CurveStyle::dashes:
+      return "dashes";
+    case CurveStyle::points:
+      return "points";
+  }
+  throw std::logic_error("unknown curve style");
+}
+
+json curve_data(const Curve& curve, const std::string& plot_title) {
+  const std::string what = fmt::format("plot '{}', curve '{}': ", plot_title, curve.name);
+  if (curve.colour < 0) throw std::invalid_argument(fmt::format("{}colour = {}, must be >= 0", what, curve.colour));
+  require_length(curve.y.size(), curve.x.size(), what + "y");
+  const auto picked = thinned_indices(curve.y, max_points_per_curve);
+  json data = {{"name", curve.name},
+               {"style", style_name(curve.style)},
+               {"colour", curve.colour},
+               {"x", plotted_values(curve.x, picked, what + "x")},
+               {"y", plotted_values(curve.y, picked, what + "y")}};
+  if (curve.band) {
+    require_length(curve.band->lower.size(), curve.x.size(), what + "lower");
+    require_length(curve.band->upper.size(), curve.x.size(), what + "upper");
+    data["lower"] = plotted_values(curve.band->lower, picked, what + "lower");
+    data["upper"] = plotted_values(curve.band->upper, picked, what + "upper");
+  }
+  return data;
+}
+
+}  // namespace
+
+json plot_data(const PlotSpecification& plot) {
+  const auto axis = [](const Axis& a) { return json{{"label", a.label}, {"unit", a.unit}}; };
+  json data = {{"x", axis(plot.x)},
+               {"y", axis(plot.y)},
+               {"equal", plot.scale == AxesScale::equal},
+               {"palette", plot.palette == Palette::sequential ? "sequential" : "categorical"},
+               {"curves", json::array()}};
+  for (const Curve& curve : plot.curves) data["curves"].push_back(curve_data(curve, plot.title));
+  if (plot.y_window) {
+    const auto [lower, upper] = *plot.y_window;
+    data["window"] = plotted_values({lower, upper}, {0, 1}, fmt::format("plot '{}': y_window", plot.title));
+    if (lower >= upper) {
+      throw std::invalid_argument(fmt::format("plot '{}': y_window [{}, {}] is empty", plot.title, lower, upper));
+    }
+  }
+  return data;
+}
+
+json animation_data(const AnimationSpecification& animation) {
+  double low[2] = {1e300, 1e300};
+  double high[2] = {-1e300, -1e300};
+  json frames = json::array();
+  for (const AnimationFrame& frame : animation.frames) {
+    if (frame.outlines.size() != animation.names.size()) {
+      throw std::invalid_argument(fmt::format("animation \"{}\": {} outlines, must be {}", animation.title,
+                                              frame.outlines.size(), animation.names.size()));
+    }
+    json outlines = json::array();
+    for (const std::vector<AnimationFrame::Line>& outline : frame.outlines) {
+      json lines = json::array();
+      for (const AnimationFrame::Line& line : outline) {
+        json shortened = json::array();
+        for (std::size_t i = 0; i < line.size(); ++i) {
+          if (!std::isfinite(line[i])) {
+            throw std::invalid_argument(fmt::format("animation \"{}\": a coordinate is {}", animation.title, line[i]));
+          }
+          low[i % 2] = std::min(low[i % 2], line[i]);
+          high[i % 2] = std::max(high[i % 2], line[i]);
+          shortened.push_back(rounded(line[i]));
+        }
+        lines.push_back(shortened);
+      }
+      outlines.push_back(lines);
+    }
+    frames.push_back({{"label", frame.label}, {"outlines", outlines}});
+  }
+  const double margin = 0.05 * std::max({high[0] - low[0], high[1] - low[1], 1e-9});
+  return {{"names", animation.names},
+          {"box", {low[0] - margin, low[1] - margin, high[0] - low[0] + 2.0 * margin, high[1] - low[1] + 2.0 * margin}},
+          {"frames", frames}};
+}
+
+}  // namespace snare::app

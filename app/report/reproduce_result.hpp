@@ -1,0 +1,87 @@
+#pragma once
+
+#include "identification/tracing/trace.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// A number of a model in its unit.
+struct ReproducedNumber {
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< none: declared or held
+  std::string unit;
+};
+
+/// A model of the wire beside the published curves.
+struct ReproducedModel {
+  std::string name;                                     ///< "declared", "best_fit" or "traced"
+  std::string label;                                    ///< in words, lower case
+  std::string description;                              ///< one sentence
+  std::map<std::string, ReproducedNumber> numbers;      ///< by key of the experiment file
+  int free = 0;                                         ///< how many of them were fitted
+  std::vector<identification::Prediction> predictions;  ///< one a series; fewer when it was not computed at all
+
+  /// Null where the model was not computed.
+  [[nodiscard]] const identification::Prediction* at(std::size_t series) const;
+  /// Over all readings of the experiment that were reached; none without any prediction.
+  [[nodiscard]] std::optional<identification::Misfit> misfit(const identification::Experiment& experiment) const;
+  /// Computed at every position to the end of the push.
+  [[nodiscard]] bool complete(const identification::Experiment& experiment) const;
+};
+
+/// What is said when the unprinted range of the published fits is taken to be another one.
+struct RangeVerdict {
+  struct Fit {
+    double rmse = 0.0;     ///< of the fitted wire against the published curve [N]
+    double scatter = 0.0;  ///< of the readings about that curve [N]
+  };
+  struct Tracing {
+    std::vector<std::string> selected;
+    bool explained = false;
+    double base_chi2_dof = 0.0;
+    double final_chi2_dof = 0.0;
+  };
+  double to = 0.0;                 ///< the range [m]
+  std::map<std::string, Fit> fit;  ///< by series
+  std::size_t numbers = 0;         ///< fitted
+  bool within_scatter = false;     ///< every series is
+  std::string verdict;             ///< of the tracing, in words
+  std::optional<Tracing> tracing;  ///< none where it could not be computed
+};
+
+/// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, fewer verdicts.
+struct Reproduction {
+  identification::Experiment experiment;
+  std::vector<std::string> assumptions;
+  std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
+  std::optional<identification::Trace> trace;
+  std::vector<RangeVerdict> verdicts;
+
+  /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
+  /// no model has one.
+  [[nodiscard]] const ReproducedModel* best_model() const;
+};
+
+/// Why a prediction ended early; empty when it did not.
+[[nodiscard]] std::string reason_stopped(const identification::Prediction& prediction);
+
+/// Scatter of the readings about the published curve [N]: of the law, or as declared.
+[[nodiscard]] std::optional<double> published_scatter(const identification::Series& series);
+
+/// dF/dd [N/mm] of a curve by central differences, one-sided at its ends. displacement [m], force [N].
+[[nodiscard]] std::vector<double> tangent_stiffness(const std::vector<double>& displacement,
+                                                    const std::vector<double>& force);
+
+/// The same of the published curve: 2 A d + B of a law, else by differences.
+[[nodiscard]] std::vector<double> published_stiffness(const identification::Series& series);
+
+/// Largest computed force [N], >= 0.
+[[nodiscard]] double largest_force(const identification::Prediction& prediction);
+
+[[nodiscard]] std::vector<double> in_mm(std::vector<double> metres);
+
+}  // namespace snare::app

@@ -1,0 +1,133 @@
+#include "app/reproduce_json.hpp"
+
+#include "app/commands.hpp"
+#include "app/report/trace_findings.hpp"
+#include "app/trace_json.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace snare::app {
+
+namespace {
+
+using identification::Prediction;
+using identification::Series;
+using nlohmann::json;
+
+json shape_json(const coupling::PushShape& shape, double offset, double pusher_radius) {
+  return {{"displacement_mm", 1e3 * (shape.travel + offset)},
+          {"x_mm", in_mm(shape.x)},
+          {"y_mm", in_mm(shape.y)},
+          {"arc_mm", in_mm(shape.arc)},
+          {"tension_N", shape.tension},
+          {"moment_Nm", shape.moment},
+          {"pusher_x_mm", 1e3 * shape.pusher_centre.x()},
+          {"pusher_y_mm", 1e3 * shape.pusher_centre.y()},
+          {"pusher_radius_mm", 1e3 * pusher_radius}};
+}
+
+json curve_json(const Series& series, const Prediction& prediction) {
+  const identification::Misfit misfit =
+      identification::misfit(identification::measured_force(series), prediction.force);
+  json shapes = json::array();
+  for (const coupling::PushShape& shape : prediction.curve.curve.shapes) {
+    shapes.push_back(shape_json(shape, prediction.reading.displacement_offset, series.test.pusher.radius));
+  }
+  json result{{"force_N", prediction.force},
+              {"stiffness_N_mm", tangent_stiffness(identification::measured_displacement(series), prediction.force)},
+              {"rmse_N", misfit.rmse},
+              {"nrmse", misfit.nrmse},
+              {"max_N", largest_force(prediction)},
+              {"shapes", shapes}};
+  const numerics::SolveReport& report = prediction.curve.curve.report;
+  if (!report.usable()) result["stopped"] = report.message;
+  return result;
+}
+
+json series_json(const Reproduction& reproduction, std::size_t k) {
+  const Series& series = reproduction.experiment.series[k];
+  const std::vector<double>& displacement = identification::measured_displacement(series);
+  json result{{"name", series.name},
+              {"contact_position_mm", 1e3 * series.test.contact_position},
+              {"range_mm", 1e3 * *std::max_element(displacement.begin(), displacement.end())},
+              {"displacement_mm", in_mm(displacement)},
+              {"published_N", identification::measured_force(series)},
+              {"published_stiffness_N_mm", published_stiffness(series)}};
+  if (const auto sigma = published_scatter(series)) result["published"]["sigma_N"] = *sigma;
+  if (series.law) {
+    result["published"].update(
+        {{"A_N_m2", series.law->a}, {"B_N_m", series.law->b}, {"C_N", series.law->c}, {"R2", series.law->r_squared}});
+  }
+  for (const ReproducedModel& model : reproduction.models) {
+    if (model.at(k) != nullptr) result["models"][model.name] = curve_json(series, *model.at(k));
+  }
+  return result;
+}
+
+json model_json(const identification::Experiment& experiment, const ReproducedModel& model) {
+  json parameters = json::object();
+  for (const auto& [key, n] : model.numbers) {
+    parameters[key] = {
+        {"value", n.value}, {"stderr", n.standard_error ? json(*n.standard_error) : json()}, {"unit", n.unit}};
+  }
+  const auto misfit = model.misfit(experiment);
+  return {{"name", model.name},
+          {"label", model.label},
+          {"description", model.description},
+          {"parameters", parameters},
+          {"rmse_N", misfit ? json(misfit->rmse) : json()},
+          {"nrmse", misfit ? json(misfit->nrmse) : json()},
+          {"free", model.free}};
+}
+
+json verdict_json(const RangeVerdict& v) {
+  json fit = json::object();
+  for (const auto& [name, one] : v.fit) fit[name] = {{"rmse_N", one.rmse}, {"scatter_N", one.scatter}};
+  json result{{"to_mm", 1e3 * v.to},
+              {"fit", fit},
+              {"numbers", v.numbers},
+              {"within_scatter", v.within_scatter},
+              {"verdict", v.verdict}};
+  if (v.tracing) {
+    result["selected"] = v.tracing->selected;
+    result["explained"] = v.tracing->explained;
+    result["chi2_dof"] = {{"base", v.tracing->base_chi2_dof}, {"final", v.tracing->final_chi2_dof}};
+  }
+  return result;
+}
+
+}  // namespace
+
+json reproduce_json(const Reproduction& reproduction) {
+  const identification::Experiment& experiment = reproduction.experiment;
+  const coupling::PushProblem& test = experiment.series.front().test;
+  json result{{"schema", "snare-reproduce/1"},
+              {"title", experiment.title},
+              {"source", experiment.source},
+              {"version", version()},
+              {"assumptions", reproduction.assumptions},
+              {"wire",
+               {{"diameter_mm", 1e3 * test.wire.diameter},
+                {"length_mm", 1e3 * test.wire.length},
+                {"span_mm", 1e3 * test.mount.span},
+                {"bending_stiffness_Nm2", test.wire.bending_stiffness()},
+                {"axial_stiffness_N", test.wire.axial_stiffness()}}},
+              {"trace", nullptr},
+              {"verdicts", json::array()},
+              {"models", json::array()},
+              {"series", json::array()}};
+  if (reproduction.trace) {
+    result["trace"] = trace_json(experiment, *reproduction.trace);
+    result["trace"].erase("series");
+  }
+  for (const RangeVerdict& v : reproduction.verdicts) result["verdicts"].push_back(verdict_json(v));
+  for (const ReproducedModel& model : reproduction.models) result["models"].push_back(model_json(experiment, model));
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    result["series"].push_back(series_json(reproduction, k));
+  }
+  return result;
+}
+
+}  // namespace snare::app

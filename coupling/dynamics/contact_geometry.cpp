@@ -1,0 +1,77 @@
+#include "coupling/dynamics/contact_geometry.hpp"
+
+namespace snare::coupling {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using numerics::VectorView;
+
+ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode, const CurvePoint& curve,
+                                 const BodyPart& body, const VectorView& y, double normal_force,
+                                 const Vector2d& bristle) {
+  ContactGeometry g;
+  static_cast<CurvePoint&>(g) = curve;
+  // The shape: distance, normal and Hessian in S, at R_WS^T (r - R_WB p_BS).
+  const Vector4d q = y.segment<4>(body.quaternion());
+  g.R_WB = multibody::rotation(q);
+  g.arm = g.x - y.segment<3>(body.position());
+  const Matrix3d R_WS = g.R_WB * contact.X_BS.R;
+  const Vector3d in_shape = R_WS.transpose() * (g.arm - g.R_WB * contact.X_BS.p);
+  const DistanceField field = contact.shape->at(in_shape);
+  g.gap = field.distance - contact.wire_radius;
+  g.normal = R_WS * field.normal;
+  g.hessian = R_WS * field.hessian * R_WS.transpose();
+  // Velocity of the wire against the body.
+  g.omega = g.R_WB * y.segment<3>(body.spin());
+  g.body_velocity = y.segment<3>(body.velocity());
+  g.relative = g.v - g.body_velocity - g.omega.cross(g.arm);
+  g.gap_rate = g.normal.dot(g.relative);
+  // Tangent plane and forces.
+  const Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
+  g.run = level.norm();
+  g.along = level / g.run;
+  g.across = g.normal.cross(g.along);
+  g.state.sliding = {g.along.dot(g.relative), g.across.dot(g.relative)};
+  g.state.normal = normal_force;
+  g.state.bristle = bristle;
+  g.friction = tangent_force(contact.friction, mode, g.state);
+  g.force = g.state.normal * g.normal - g.in_world(g.friction.force);
+  return g;
+}
+
+// Against the turned body the wire's point moves by rho = dX - dp - phi x r; then dg = n.rho and dn = H rho + phi x n.
+ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g, const ContactDirection& d) {
+  ContactChange c;
+  const Vector3d dx = d.x + g.slope * d.zeta;
+  const Vector3d dslope = d.slope + g.bend * d.zeta;
+  const Vector3d darm = dx - d.p;
+  const Vector3d rho = darm - d.turn.cross(g.arm);
+  c.normal = g.hessian * rho + d.turn.cross(g.normal);
+  c.gap = g.normal.dot(rho);
+  c.tangency = g.slope.dot(c.normal) + g.normal.dot(dslope);
+  // dw = dv - dv_B - domega x r - omega x dr,  domega = phi x omega + R dspin;  d(dg/dt) = w.dn + n.dw
+  const Vector3d domega = d.turn.cross(g.omega) + g.R_WB * d.spin;
+  const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
+  c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
+  c.force = d.lambda * g.normal + g.state.normal * c.normal;
+  if (friction.acts()) {
+    // The axes turn with X' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n x da.
+    const Vector3d du =
+        dslope - (c.normal.dot(g.slope) + g.normal.dot(dslope)) * g.normal - g.normal.dot(g.slope) * c.normal;
+    const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
+    const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
+    c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};
+    c.friction =
+        g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * d.lambda;
+    c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
+  }
+  // Torque on the body, in the body: m = R^T (r x -f), dm = R^T (d(r x -f) - phi x (r x -f)).
+  const Vector3d moment = -g.arm.cross(g.force);
+  const Vector3d dmoment = -darm.cross(g.force) - g.arm.cross(c.force);
+  c.torque = g.R_WB.transpose() * (dmoment - d.turn.cross(moment));
+  return c;
+}
+
+}  // namespace snare::coupling

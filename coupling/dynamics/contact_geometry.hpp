@@ -1,0 +1,77 @@
+#pragma once
+
+#include "coupling/dynamics/body_part.hpp"
+#include "coupling/dynamics/model.hpp"
+
+#include <Eigen/Core>
+
+namespace snare::coupling {
+
+/// The wire's curve at a material coordinate zeta, and how it moves.                         theory.md (M.6)
+struct CurvePoint {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();        ///< X [m]
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();    ///< X' [-]
+  Eigen::Vector3d bend = Eigen::Vector3d::Zero();     ///< X'' [1/m]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();        ///< sum N v [m/s], zeta kept
+  Eigen::Vector3d slope_v = Eigen::Vector3d::Zero();  ///< sum N' v [1/s]
+};
+
+/// One point of contact between a wire and a body's shape at one state, in the axes of the world unless said.
+///                                                                                   theory.md (M.7)-(M.9)
+///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
+///   u = X' - (n.X') n,  a = u/|u|,  b = n x a: axes of the tangent plane
+///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
+///   force on the wire: f = lambda n - (friction on the body, in a and b)
+struct ContactGeometry : CurvePoint {
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();                                      ///< r [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();                                   ///< n
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();                                  ///< H [1/m]
+  double gap = 0.0;                                                                   ///< g [m]
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();                                    ///< of the body [rad/s]
+  Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();                            ///< v_B [m/s]
+  Eigen::Vector3d relative = Eigen::Vector3d::Zero();                                 ///< w [m/s]
+  double gap_rate = 0.0;                                                              ///< dg/dt [m/s]
+  Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
+  double run = 0.0;                                                                   ///< |u|
+  BristleState state;  ///< z, the sliding velocity w in a and b, lambda
+  TangentForce friction;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f [N]
+
+  [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
+    return tangent.x() * along + tangent.y() * across;
+  }
+};
+
+/// normal_force: lambda [N]; bristle: z [m], zero without one.
+[[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode, const CurvePoint& curve,
+                                               const BodyPart& body, const numerics::VectorView& y, double normal_force,
+                                               const Eigen::Vector2d& bristle);
+
+/// A direction in the space of what a contact depends on.
+struct ContactDirection {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();      ///< of X by the vertices, zeta kept
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  ///< the same of X'
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();      ///< of sum N v by the vertices' velocities
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();      ///< of p_WB
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< phi: turn of the body, in the world
+  Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< of omega in the body
+  double zeta = 0.0;
+  double lambda = 0.0;
+  Eigen::Vector2d bristle = Eigen::Vector2d::Zero();
+};
+
+/// What changes along a direction.
+struct ContactChange {
+  double gap = 0.0, tangency = 0.0, gap_rate = 0.0;  ///< of g, n.X' and dg/dt
+  Eigen::Vector2d sliding = Eigen::Vector2d::Zero(), friction = Eigen::Vector2d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< on the body about its centre of mass, in the body
+};
+
+[[nodiscard]] ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g,
+                                           const ContactDirection& d);
+
+}  // namespace snare::coupling

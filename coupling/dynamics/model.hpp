@@ -1,0 +1,81 @@
+#pragma once
+
+#include "coupling/contact/contact_law.hpp"
+#include "coupling/contact/friction.hpp"
+#include "coupling/contact/shape.hpp"
+#include "coupling/dynamics/arm.hpp"
+#include "multibody/rigid_body.hpp"
+#include "multibody/spatial.hpp"
+#include "wire/rod_part.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// A wire in motion. The world frame is the wire's own: its mounts are given there.
+struct MotionWire {
+  std::string name = "wire";
+  wire::RodInMotion rod;        ///< constants, mounts, damping and mesh
+  Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
+  Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: at rest
+};
+
+/// A free rigid body.
+struct MotionBody {
+  std::string name = "body";
+  multibody::RigidBodyProperties properties;
+  multibody::RigidBodyState start;
+  /// Constant, in the world frame, at the centre of mass [N].
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double linear_drag = 0.0;   ///< force -c v [N s/m], >= 0
+  double angular_drag = 0.0;  ///< torque -c w [N m s/rad], >= 0
+  /// Moved as prescribed instead of freely: constant start.velocity, or the course, and no rotation (a machine).
+  bool driven = false;
+  /// Of a driven body: velocity [m/s] at a time [s], continuous, and its derivative [m/s^2]. Both or none.
+  std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
+};
+
+/// A shape that belongs to a body and may touch a wire, at several points at a time.
+struct MotionContact {
+  std::string name = "contact";
+  int wire = 0;                               ///< index
+  int body = 0;                               ///< index
+  std::shared_ptr<const ContactShape> shape;  ///< in a frame S fixed to the body
+  multibody::Pose X_BS;                       ///< of the shape's frame in the body's
+  double wire_radius = 0.0;                   ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
+  int points = 4;                             ///< most that are closed at a time, >= 1; more are a failure of the run
+  MotionFriction friction;
+  /// The papers' contact laws in place of the constraint: normal force [N] of penetration [m] and its rate [m/s],
+  /// with the derivatives by both; never negative. Empty: the wire does not penetrate.
+  ContactLaw law;
+};
+
+/// A contact law between a point of a body and a plane fixed in the world, which stands for a whole wire.
+struct PointContactLaw {
+  std::string name = "spring";
+  int body = 0;                                          ///< index
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< p_BP, of the probe [m]
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();      ///< of the probe at first touch [m]
+  double origin_speed = 0.0;                             ///< at which the plane moves along `direction` [m/s]
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< of the push, unit
+  ContactLaw law;                                        ///< of penetration along `direction` and its rate
+};
+
+/// Everything that moves and acts. Indices count within these lists.
+struct Motion {
+  std::vector<MotionWire> wires;
+  std::vector<MotionBody> bodies;
+  std::vector<MotionContact> contacts;
+  std::vector<PointContactLaw> springs;
+  std::vector<MotionArm> arms;
+  std::vector<MotionWeld> welds;                      ///< bodies on arms, on other bodies, on the world
+  std::vector<MotionMount> mounts;                    ///< ends of wires on arms or bodies; the others stand still
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+}  // namespace snare::coupling

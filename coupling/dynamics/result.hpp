@@ -1,0 +1,128 @@
+#pragma once
+
+#include "multibody/arm/arm_part.hpp"
+#include "multibody/rigid_body.hpp"
+#include "multibody/spatial.hpp"
+#include "numerics/ida.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::coupling {
+
+/// What a contact does at one time.
+struct ContactSample {
+  bool closed = false;
+  double gap = 0.0;                                 ///< [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the wire, world frame [N]
+  double normal_force = 0.0;                        ///< [N], >= 0
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the wire's centreline [m]
+  double arc = 0.0;                                 ///< material coordinate [m]
+  double slip_speed = 0.0;                          ///< [m/s]
+  bool sticking = false;                            ///< closed, with a bristle that does not slide
+  /// Of a shape on a wire: its closed points, the one that presses most first. Then the forces above are their sums,
+  /// gap and place those of the first, or of the wire's nearest point while all are open.
+  std::vector<ContactSample> points;
+};
+
+/// Energies [J] of all wires, free bodies and arms.
+struct EnergyBalance {
+  double kinetic = 0.0;
+  double strain = 0.0;  ///< of the wires, and of bristles
+  double potential = 0.0;
+  double dissipated = 0.0;  ///< by damping, drag, friction, contact laws and joints, integrated along the run
+  double impacts = 0.0;     ///< lost when local masses of the wire take on a body's velocity at once
+  double work = 0.0;        ///< done by driven bodies, constant forces, drives and loads of arms
+  /// kinetic + strain + potential + dissipated + impacts - work - the same at the start: what the integrator gained
+  /// (negative: lost).
+  double integrator = 0.0;
+};
+
+/// One line of the history.
+struct MotionSample {
+  double time = 0.0;
+  std::vector<multibody::RigidBodyState> bodies;
+  std::vector<ContactSample> contacts;        ///< then the springs
+  std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
+  std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
+  struct Arm {
+    multibody::ArmState state;
+    multibody::ArmWork work;
+    Eigen::VectorXd joint_torque;  ///< of the springs with their dampers, on the motors [N m]
+  };
+  std::vector<Arm> arms;
+  std::vector<multibody::Wrench> welds;  ///< on the held bodies, about their centres of mass, axes of the world
+  EnergyBalance energy;
+  /// Of wires, free bodies and floating arms [kg m/s].
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+};
+
+/// What happened at a contact.
+struct MotionEvent {
+  /// A touch begins in the stick; where it slides at once, `slip` follows at the same time.
+  enum class Kind { touch, lift_off, stick, slip };
+  double time = 0.0;
+  int contact = 0;   ///< index; springs count on after the contacts
+  int point = 0;     ///< of the contact
+  double arc = 0.0;  ///< material coordinate [m]
+  Kind kind = Kind::touch;
+  double approach_speed = 0.0;  ///< before a touch; of the sliding at `stick` and `slip` [m/s]
+};
+
+/// "touch", "lift_off", "stick", "slip".
+[[nodiscard]] std::string to_string(MotionEvent::Kind kind);
+
+/// What a motion has summed up since its start.
+struct MotionSums {
+  std::vector<MotionEvent> events;
+  std::vector<double> peak_force;    ///< of every contact and spring, at accepted steps [N]
+  double largest_penetration = 0.0;  ///< of closed contacts without law [m]
+  double largest_gap = 0.0;          ///< of the same, to either side: what the constraint drifts [m]
+  double largest_drift = 0.0;        ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  double impacts = 0.0;              ///< energy lost at touches [J]
+  double start_energy = 0.0;         ///< kinetic + strain + potential [J]
+  Eigen::Vector3d start_momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+  Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+  long samples = 0;                                                  ///< given to the observer
+  numerics::IdaStatistics statistics;
+  double wall_seconds = 0.0;
+  double search_seconds = 0.0;
+};
+
+/// All that a motion needs to go on from a time.
+struct MotionState {
+  double time = 0.0;
+  Eigen::VectorXd unknowns;
+  Eigen::VectorXd rates;
+  Eigen::VectorXd integrals;   ///< powers, reactions and contact forces over time
+  std::vector<double> memory;  ///< of the parts beside their unknowns: frames of the wires, states of the contacts
+  MotionSums sums;
+};
+
+struct MotionResult {
+  numerics::IdaReport report;  ///< `message` names time, step and the worst unknowns on failure
+  std::vector<MotionEvent> events;
+  EnergyBalance energy;
+  /// Change of momentum less the impulse of all outer forces [N s].
+  Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
+  /// The same about the origin, less that of all outer moments [N m s].
+  Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
+  std::vector<double> peak_force;        ///< of every contact and spring, at accepted steps [N]
+  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
+  double largest_penetration = 0.0;      ///< of closed contacts without law [m]
+  double largest_gap = 0.0;              ///< of the same, to either side: what the constraint drifts [m]
+  double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  numerics::IdaStatistics statistics;
+  double wall_seconds = 0.0;
+  double search_seconds = 0.0;  ///< of them, in finding touches
+  MotionState last;             ///< to go on from; kept on failure too
+};
+
+/// Called at every output time, in order; true: stop.
+using MotionObserver = std::function<bool(const MotionSample&)>;
+
+}  // namespace snare::coupling

@@ -1,0 +1,47 @@
+#include "coupling/dynamics/simulate.hpp"
+
+#include "coupling/dynamics/check.hpp"
+#include "coupling/dynamics/run.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace snare::coupling {
+
+namespace {
+
+/// The first checkpoint behind a time, or the end when none comes before it.
+double next_stop(const MotionOptions& options, double time) {
+  constexpr double round_off = 1e-9;  // of an interval
+  const double interval = options.checkpoint_interval;
+  if (!std::isfinite(interval)) return options.duration;
+  const double stop = (std::floor(time / interval + round_off) + 1.0) * interval;
+  return stop < options.duration - round_off * interval ? stop : options.duration;
+}
+
+}  // namespace
+
+MotionResult simulate(const Motion& motion, const MotionOptions& options, const MotionObserver& observer,
+                      const MotionState* from, const MotionKeeper& keeper) {
+  require_valid(motion, options);
+  std::optional<MotionState> state;
+  if (from != nullptr) state = *from;
+  // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are those of one
+  // process or of several makes no difference.
+  for (;;) {
+    MotionRun run(motion, options, observer);
+    if (state) {
+      run.resume(*state);
+    } else {
+      run.begin();
+    }
+    const double stop = next_stop(options, state ? state->time : 0.0);
+    MotionResult result = run.go(stop);
+    if (!result.report.usable() || !reached(result.report.time, stop) || stop >= options.duration) return result;
+    state = std::move(result.last);
+    if (keeper) keeper(*state);
+  }
+}
+
+}  // namespace snare::coupling

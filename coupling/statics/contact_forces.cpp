@@ -1,0 +1,111 @@
+#include "coupling/statics/contact_forces.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace snare::coupling {
+
+namespace {
+
+using Eigen::Vector2d;
+
+/// Turned left by a right angle: of a radial, the direction of increasing angle about the pin's centre.
+Vector2d left_of(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+}  // namespace
+
+PinForce resolve(const Vector2d& force, const Vector2d& tangent, double side) {
+  return {side * (-force.x() * tangent.y() + force.y() * tangent.x()), force.dot(tangent)};
+}
+
+double slip_of(const SlidingContact& contact, const VertexTangent& now, double coordinate) {
+  return coordinate - contact.last_coordinate +
+         contact.side * contact.radius * angle_between(contact.last_tangent, now.t);
+}
+
+double friction_work(const PushSystem& system, const numerics::PathPoint& before, const numerics::PathPoint& now) {
+  const wire::PlanarState state = system.state(now);
+  double work = 0.0;
+  for (std::size_t k = 0; k < system.sliding.size(); ++k) {
+    const SlidingContact& contact = system.sliding[k];
+    if (contact.friction == 0.0 || contact.status != ContactStatus::slip || contact.holds_material) continue;
+    const VertexTangent v = system.tangent_at(contact, state);
+    const SlidingRows rows = system.sliding_rows(k);
+    const double last = contact.last_force.dot(contact.last_tangent);
+    const double force = now.border.segment<2>(rows.force).dot(v.t);
+    // The pin drags the wire along +t while material passes it towards larger S.
+    work += 0.5 * std::abs(last + force) * std::abs(slip_of(contact, v, now.border[rows.coordinate]));
+  }
+  const Vector2d centre = system.pusher_centre(now);
+  for (std::size_t k = 0; k < system.wrapped.size(); ++k) {
+    const WrappedContact& contact = system.wrapped[k];
+    if (contact.friction == 0.0 || contact.status != ContactStatus::slip) continue;
+    const Vector2d n = (wire::vertex(state, contact.node) - centre).normalized();
+    const Vector2d& r = contact.last_radial;
+    const double last = contact.last_force.dot(left_of(r));
+    const double force = now.border.segment<2>(system.wrapped_rows(k).force).dot(left_of(n));
+    work += 0.5 * std::abs(last + force) * system.sliding[0].radius * std::abs(angle_between(r, n));
+  }
+  if (system.mount && system.mount->slips && before.border.size() == now.border.size()) {
+    work += system.mount->limit * std::abs(now.border[system.mount_row()] - system.mount->last_coordinate);
+  }
+  return work;
+}
+
+PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+  const SlidingContact& pusher = system.sliding[0];
+  PusherForces sum;
+  if (system.wrapped.empty()) {
+    const Vector2d force = at.border.segment<2>(system.pusher_rows().force);
+    const PinForce p = resolve(force, system.tangent_at(pusher, state).t, pusher.side);
+    sum.slipping = pusher.friction > 0.0 && pusher.status == ContactStatus::slip;
+    sum.normal = p.normal;
+    sum.friction = p.tangential;
+    return sum;
+  }
+  const Vector2d centre = system.pusher_centre(at);
+  sum.slipping = pusher.friction > 0.0;
+  for (std::size_t k = 0; k < system.wrapped.size(); ++k) {
+    const WrappedContact& r = system.wrapped[k];
+    const Vector2d n = (wire::vertex(state, r.node) - centre).normalized();
+    const Vector2d force = at.border.segment<2>(system.wrapped_rows(k).force);
+    sum.normal += force.dot(n);
+    // Along increasing arc length, which runs against the angle about a pin on the right of the wire.
+    sum.friction += -pusher.side * force.dot(left_of(n));
+    sum.slipping = sum.slipping && r.status == ContactStatus::slip;
+  }
+  return sum;
+}
+
+MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+  MountForces result;
+  const wire::PlanarRodProperties& p = system.rod().properties();
+  std::array<Vector2d, 2> reaction = system.mount_reactions();
+  if (p.left.kind == wire::PlanarEnd::Kind::free) {
+    // The supports follow the pusher among the contacts.
+    for (std::size_t k = 1; k < system.sliding.size(); ++k) {
+      reaction[k - 1] = at.border.segment<2>(system.sliding_rows(k).force);
+    }
+    const Eigen::VectorXd tensions = system.rod().tensions(state);
+    result.tension_left = tensions[0];
+    result.tension_right = tensions[tensions.size() - 1];
+  } else {
+    result.tension_left = -reaction[0].dot(p.left.direction);
+    result.tension_right = reaction[1].dot(p.right.direction);
+  }
+  const double length = state.controls[2] - state.controls[0];
+  result.total = reaction[0] + reaction[1] + length * p.weight;
+  return result;
+}
+
+ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& state) {
+  if (system.wrapped.empty()) return {state.controls[1], 0.0};
+  const wire::MaterialMesh& mesh = system.rod().mesh();
+  const double first = mesh.coordinate(system.wrapped.front().node, state.controls);
+  const double last = mesh.coordinate(system.wrapped.back().node, state.controls);
+  return {0.5 * (first + last), last - first};
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "coupling/statics/push_system.hpp"
+
+namespace snare::coupling {
+
+/// A pin's force on the wire.
+struct PinForce {
+  double normal = 0.0;      ///< along the wire's normal, away from the pin [N]; >= 0 presses
+  double tangential = 0.0;  ///< along the wire's tangent [N]
+};
+/// tangent: of the wire, unit; side: of SlidingContact.
+[[nodiscard]] PinForce resolve(const Eigen::Vector2d& force, const Eigen::Vector2d& tangent, double side);
+
+/// Slip of the material over the pin since the last accepted state: dS + side R d angle [m].  theory.md (C.5)
+/// coordinate: S now.
+[[nodiscard]] double slip_of(const SlidingContact& contact, const VertexTangent& now, double coordinate);
+
+/// Friction work between the remembered state and `now` [J], >= 0 (trapezoidal in the force).
+[[nodiscard]] double friction_work(const PushSystem& system, const numerics::PathPoint& before,
+                                   const numerics::PathPoint& now);
+
+/// Sums of the pusher's normal forces and of its friction forces (along the wire's tangent) [N].
+struct PusherForces {
+  double normal = 0.0;
+  double friction = 0.0;
+  bool slipping = false;  ///< every point of contact slides (false without friction)
+};
+[[nodiscard]] PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
+                                         const numerics::PathPoint& at);
+
+struct MountForces {
+  Eigen::Vector2d total = Eigen::Vector2d::Zero();  ///< of mounts, supports and weight on the wire [N]
+  double tension_left = 0.0;                        ///< [N]
+  double tension_right = 0.0;
+};
+/// At the point that the system was assembled at last.
+[[nodiscard]] MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state,
+                                       const numerics::PathPoint& at);
+
+struct ContactExtent {
+  double coordinate = 0.0;  ///< material coordinate of the middle of the contact [m]
+  double length = 0.0;      ///< of wire between the outermost points of contact [m]
+};
+[[nodiscard]] ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& state);
+
+}  // namespace snare::coupling

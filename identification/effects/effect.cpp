@@ -1,0 +1,44 @@
+#include "identification/effects/effect.hpp"
+
+#include <cmath>
+
+namespace snare::identification {
+
+std::string to_string(Channel channel) {
+  switch (channel) {
+    case Channel::wire:
+      return "wire";
+    case Channel::mount:
+      return "mount";
+    case Channel::contact:
+      return "contact";
+    case Channel::pusher:
+      return "pusher";
+    case Channel::sensor:
+      return "sensor";
+    case Channel::geometry:
+      return "geometry";
+  }
+  return "unknown";
+}
+
+std::string needs_mounts(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.test.mount.kind != wire::MountKind::supports) return "";
+  }
+  return "a wire that rests on supports is not held by mounts";
+}
+
+double compliance(const std::optional<double>& stiffness) {
+  return stiffness ? 1.0 / *stiffness : 0.0;
+}
+
+void set_compliance(std::optional<double>& stiffness, double value) {
+  // 1e-11 m/N moves a mount by 10 nm under 1 kN: rigid, and a stiffer spring would only spoil the equations.
+  if (std::abs(value) < 1e-11)
+    stiffness.reset();
+  else
+    stiffness = 1.0 / value;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,72 @@
+#include "identification/ring_down/mode_match.hpp"
+
+#include "coupling/dynamics/start.hpp"
+#include "wire/rod_constants.hpp"
+#include "wire/rod_modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace snare::identification {
+
+namespace {
+
+/// Modes of the declared wire at rest, some more than a record can show.
+std::vector<wire::RodMode> modes_of(const coupling::PushProblem& test) {
+  constexpr int elements = 60;
+  constexpr int count = 24;
+  wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, elements);
+  rod.properties.left.kind = rod.properties.right.kind = test.mount.kind == wire::MountKind::clamped
+                                                             ? wire::SpatialEnd::Kind::clamp
+                                                             : wire::SpatialEnd::Kind::twisting_pin;
+  return wire::rod_modes(rod, coupling::resting_wire(rod), count);
+}
+
+}  // namespace
+
+std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector<RingDownFit>& fits) {
+  std::vector<wire::RodMode> computed;
+  if (file.wire) computed = modes_of(*file.wire);
+  std::vector<MatchedMode> modes;
+  for (std::size_t s = 0; s < fits.size(); ++s) {
+    if (!fits[s].report.usable()) continue;
+    for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
+      const RingDownMode& mode = fits[s].modes[m];
+      if (!mode.significant()) continue;
+      MatchedMode match{s, m, {mode.natural(), 1.0, mode.decay}, 0.0};
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const wire::RodMode& candidate : computed) {
+        const double distance = std::abs(std::log(candidate.natural / mode.natural()));
+        if (distance >= nearest) continue;
+        nearest = distance;
+        match.computed = candidate.natural;
+        match.decay.bending_share = candidate.bending_share + candidate.axial_share;
+      }
+      const std::vector<double>& given = file.series[s].bending_share;
+      if (!given.empty()) match.decay.bending_share = m < given.size() ? given[m] : 1.0;
+      modes.push_back(match);
+    }
+  }
+  return modes;
+}
+
+DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
+  constexpr double far_off = 1.2;
+  std::vector<DecayOfMode> decays;
+  std::string strangers;
+  for (const MatchedMode& m : modes) {
+    decays.push_back(m.decay);
+    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
+    strangers += fmt::format("; {:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
+                             0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed);
+  }
+  DampingSplit split = split_damping(decays);
+  split.statement += strangers;
+  return split;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,68 @@
+#include "identification/tracing/base_fit.hpp"
+
+#include "base/errors.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/tracing/trace_input.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace snare::identification {
+
+using base::InputError;
+
+Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model, Data& data,
+             Progress& progress) {
+  std::vector<std::string> keys = free;
+  if (keys.empty()) keys = experiment.free;
+  if (keys.empty()) keys = default_free(experiment);
+  std::vector<Setting> start;
+  bool length = false;
+  for (const std::string& key : keys) {
+    const Parameter& p = parameters().at(key);
+    const double declared = model.declared(p);
+    if (!std::isfinite(declared)) {
+      throw InputError({experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
+                        "is a threshold that the declared model does not have: declare a value to start from"});
+    }
+    start.push_back({&p, p.coordinate(declared, declared)});
+    length = length || key == "wire.length_mm";
+  }
+  if (data.rows() < static_cast<Eigen::Index>(keys.size()) + 3) {
+    throw InputError({experiment.file.string(), 0, "fit.free", std::to_string(keys.size()) + " keys",
+                      fmt::format("must leave at least 3 of the {} readings over", data.rows())});
+  }
+  if (data.noise.sigma.empty()) data.noise.sigma.assign(model.series().size(), 1.0);
+  FitOptions fitting;
+  fitting.progress = [&progress](int iteration, double) {
+    return progress.go_on(fmt::format("base model: iteration {}", iteration));
+  };
+  Fit best = fit(model, data, start, {}, fitting);
+  if (length) {
+    // A loose wire that is nearly straight lies in a valley of its own.
+    for (Setting& s : start) {
+      if (s.parameter->key == "wire.bending_stiffness_Nm2") s.coordinate = std::log(0.05);
+      if (s.parameter->key == "wire.axial_stiffness_N") s.coordinate = std::log(0.3);
+      if (s.parameter->key == "wire.length_mm") {
+        s.coordinate =
+            s.parameter->coordinate(model.declared(*s.parameter), 1.002 * model.series().front().test.mount.span);
+      }
+    }
+    const Fit other = fit(model, data, start, {}, fitting);
+    if (other.report.usable() && (!best.report.usable() || other.chi2 < best.chi2)) best = other;
+  }
+  return best;
+}
+
+void settle_noise(const Model& model, Data& data, Fit& base) {
+  if (!data.noise.source.empty()) return;
+  std::vector<Eigen::VectorXd> residuals;
+  for (std::size_t k = 0; k < data.measured.size(); ++k) {
+    residuals.push_back(data.measured[k] - base.evaluation.force[k]);
+  }
+  data.noise = noise_from_residuals(model.series(), residuals);
+  base = fit(model, data, base.fitted());
+}
+
+}  // namespace snare::identification

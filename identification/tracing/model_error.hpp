@@ -1,0 +1,62 @@
+#pragma once
+
+#include "identification/fitting/least_squares.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// A number of a fitted model, in its unit.
+struct FittedNumber {
+  std::string key;
+  std::string unit;
+  double declared = 0.0;
+  double value = 0.0;
+  std::optional<double> standard_error;
+  std::optional<double> lower;  ///< of the 95 % interval: profile likelihood, or 1.96 standard errors
+  std::optional<double> upper;
+  bool profiled = false;
+};
+
+/// Errors of a model over the fitted series.
+struct ModelError {
+  double rmse = 0.0;   ///< [N]
+  double nrmse = 0.0;  ///< over the range of the measured force [-]
+  double chi2_dof = 0.0;
+  std::vector<double> series_rmse;  ///< one a series of the experiment, held-out ones too [N]
+  std::vector<FittedNumber> numbers;
+};
+
+/// The fitted numbers of a model with their standard errors and 1.96 of them either way.
+[[nodiscard]] std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit);
+
+/// all: every series; heldout: one a series; predictions: of the fitted model, one a series; model: of the
+/// fitted series.
+[[nodiscard]] ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& heldout,
+                                     const std::vector<Prediction>& predictions, const Model& model, const Fit& fit);
+
+/// Root mean square of measured less computed forces over the fitted readings [N].
+[[nodiscard]] double fitted_rmse(const Data& data, const Evaluation& evaluation);
+
+/// The same of every series predicted by a fit to the others, to first order.           theory.md (I.5)
+[[nodiscard]] double left_out_rmse(const Model& model, const Data& data, const Fit& fit);
+
+/// Series that are never fitted, with their readings.
+class HeldOut {
+ public:
+  HeldOut(const std::vector<Series>& series, const SolverSettings& solver);
+  [[nodiscard]] bool empty() const { return !model_; }
+  /// Of the model with these settings [N]; absent without such series and where a curve ends early.
+  [[nodiscard]] std::optional<double> rmse(const std::vector<Setting>& settings) const;
+
+ private:
+  std::optional<Model> model_;
+  std::vector<Eigen::VectorXd> measured_;
+};
+
+/// Forces of a series' readings [N].
+[[nodiscard]] Eigen::VectorXd forces_of(const Series& series);
+
+}  // namespace snare::identification

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace snare::identification {
+
+/// Removes from columns their components in the span of a Jacobian.
+class Projection {
+ public:
+  explicit Projection(const Eigen::MatrixXd& jacobian);
+  [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const;
+
+ private:
+  Eigen::MatrixXd basis_;
+};
+
+}  // namespace snare::identification

@@ -1,0 +1,239 @@
+#include "identification/tracing/round.hpp"
+
+#include "identification/effects/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr double collinear = 0.95;         // |cos| above which effects are one class
+constexpr double indistinct_bic = 6.0;     // difference of BIC below which the likelihood does not decide (Kass and
+                                           // Raftery 1995)
+constexpr double out_of_class_bic = 30.0;  // well beyond it
+constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
+constexpr std::size_t most_refits = 6;
+// A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this
+// share of the best gain cannot lead and are not refitted.
+constexpr double refit_share = 0.4;
+constexpr double near_significance = 0.05;
+
+/// The model with an effect added, from each of its starts; not usable where none of them gives a fit.
+Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival) {
+  Fit best;
+  best.chi2 = std::numeric_limits<double>::max();
+  best.free = current.free;
+  best.report.termination = numerics::Termination::step_too_small;
+  for (const std::vector<double>& coordinates : score.starts) {
+    std::vector<Setting> start = current.fitted();
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+      const EffectNumber& number = score.effect->numbers[k];
+      if (number.optional && coordinates[k] == 0.0) continue;
+      start.push_back({&number.parameter, coordinates[k]});
+    }
+    FitOptions fitting;
+    fitting.max_iterations = 30;
+    fitting.tolerance = 1e-4;
+    fitting.rival = rival;
+    Fit one = fit(model, data, start, {}, fitting);
+    if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
+  }
+  return best;
+}
+
+/// Whether the refitted numbers of an effect make sense: inside their plausible ranges, and not driven to a
+/// bound.
+void judge_plausibility(const Model& model, const Fit& current, const Fit& refitted, Candidate& candidate) {
+  const Effect& effect = *candidate.score.effect;
+  for (std::size_t k = 0; k < candidate.numbers.size(); ++k) {
+    const FittedNumber& n = candidate.numbers[k];
+    const EffectNumber& range = *std::find_if(effect.numbers.begin(), effect.numbers.end(),
+                                              [&n](const EffectNumber& e) { return e.parameter.key == n.key; });
+    const Parameter& p = range.parameter;
+    const double coordinate = refitted.settings[current.free + k].coordinate;
+    const double width = model.upper(p) - model.lower(p);
+    const bool at_lower = coordinate - model.lower(p) < 1e-6 * width;
+    const bool at_bound = at_lower || model.upper(p) - coordinate < 1e-6 * width;
+    if (n.value < range.plausible_lower || n.value > range.plausible_upper) {
+      candidate.plausible = false;
+      candidate.why_implausible = fmt::format("{} = {:.4g} {}, plausible is {:g} to {:g}", n.key, n.value, n.unit,
+                                              range.plausible_lower, range.plausible_upper);
+    } else if (at_bound && !(effect.one_sided && at_lower)) {
+      candidate.plausible = false;
+      candidate.why_implausible = fmt::format("{} = {:.4g} {} is at the end of what it may be", n.key, n.value, n.unit);
+    }
+  }
+}
+
+/// What a refit says of an effect: BIC, plausibility, and whether held-out series gain by it.
+void judge(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+           std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) {
+  candidate.refitted = refitted.report.usable();
+  if (!candidate.refitted) return;
+  candidate.rmse = fitted_rmse(data, refitted.evaluation);
+  candidate.delta_bic = refitted.bic() - current.bic();
+  const std::vector<FittedNumber> all = numbers_of(model, refitted);
+  candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
+  judge_plausibility(model, current, refitted, candidate);
+  if (heldout.empty()) return;
+  const std::optional<double> after = heldout.rmse(refitted.settings);
+  // At the noise already it need not improve any more.
+  const double sigma = data.noise.mean_sigma(model.series());
+  candidate.heldout_improves = heldout_before && after && (*after < *heldout_before || *after < 1.1 * sigma);
+}
+
+/// Classes: the leading effect with all that the data cannot tell from it (those within 6 of its BIC), then
+/// the others by their directions, |cos| > 0.95, or as what the base model's numbers do already.
+void classify(const Fit& current, Round& round, const std::vector<Fit>& fits) {
+  std::vector<Candidate>& all = round.candidates;
+  std::vector<bool> placed(all.size(), false);
+  const auto alike = [&](const Candidate& a, const Candidate& b) {
+    if (a.score.direction.size() == 0 || b.score.direction.size() == 0) return false;
+    return std::abs(a.score.direction.dot(b.score.direction)) > collinear;
+  };
+  const auto absorbed = [](const Candidate& c) { return c.score.absorbed; };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (placed[i]) continue;
+    std::vector<std::string> names;
+    const bool with_base = absorbed(all[i]);
+    if (with_base) {
+      for (std::size_t k = 0; k < current.free; ++k) {
+        for (const Effect& e : catalogue()) {
+          if (e.numbers.front().parameter.key == current.settings[k].parameter->key) names.push_back(e.name);
+        }
+      }
+    }
+    for (std::size_t j = i; j < all.size(); ++j) {
+      if (placed[j]) continue;
+      const bool leads = i == 0 && all[i].refitted && all[j].refitted && all[j].plausible && j < fits.size() &&
+                         all[j].delta_bic - all[i].delta_bic < indistinct_bic && all[i].delta_bic < -worthwhile_bic;
+      const bool same =
+          j == i || (with_base ? absorbed(all[j]) : !absorbed(all[j]) && (leads || alike(all[i], all[j])));
+      if (!same) continue;
+      placed[j] = true;
+      all[j].class_index = round.classes.size();
+      names.push_back(all[j].score.effect->name);
+    }
+    round.classes.push_back(names);
+  }
+}
+
+/// Candidates of the scores, observable ones first, the largest |z| first.
+std::vector<Candidate> by_score(std::vector<Score> scores) {
+  std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) {
+    if (a.unobservable.empty() != b.unobservable.empty()) return a.unobservable.empty();
+    return a.z * a.z > b.z * b.z;
+  });
+  std::vector<Candidate> result;
+  for (Score& s : scores) {
+    Candidate c;
+    c.score = std::move(s);
+    result.push_back(std::move(c));
+  }
+  return result;
+}
+
+/// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there
+/// was none.
+std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+                            std::vector<Candidate>& candidates, const std::string& round, Progress& progress) {
+  std::vector<Fit> fits(candidates.size());
+  const std::optional<double> before = heldout.rmse(current.settings);
+  std::size_t refits = 0;
+  double best_gain = 0.0;
+  for (std::size_t i = 0; i < candidates.size() && refits < most_refits; ++i) {
+    Candidate& c = candidates[i];
+    if (!c.score.unobservable.empty() || c.score.adjusted_p > near_significance) continue;
+    if (refits > 0 && c.score.z * c.score.z < refit_share * best_gain - 10.0) continue;
+    if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
+    // What cannot come near the best so far is not followed to its own bottom.
+    const double rival = best_gain > 0.0 ? current.chi2 - best_gain + out_of_class_bic : 0.0;
+    fits[i] = refit(model, data, current, c.score, rival);
+    judge(model, data, heldout, current, before, c, fits[i]);
+    if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.chi2 - fits[i].chi2);
+    ++refits;
+  }
+  return fits;
+}
+
+/// May be added to the model.
+bool eligible(const Candidate& c, double significance) {
+  return c.refitted && c.plausible && c.score.adjusted_p < significance && c.delta_bic < -worthwhile_bic &&
+         c.heldout_improves.value_or(true);
+}
+
+/// Eligible first, by BIC; then the other refitted ones; then by score as they stand. Fits along with them.
+void rank(std::vector<Candidate>& candidates, std::vector<Fit>& fits, double significance) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const Candidate& x = candidates[a];
+    const Candidate& y = candidates[b];
+    if (eligible(x, significance) != eligible(y, significance)) return eligible(x, significance);
+    if (x.refitted != y.refitted) return x.refitted;
+    return x.refitted && x.delta_bic < y.delta_bic;
+  });
+  std::vector<Candidate> ranked;
+  std::vector<Fit> ranked_fits;
+  for (const std::size_t i : order) {
+    ranked.push_back(std::move(candidates[i]));
+    ranked_fits.push_back(std::move(fits[i]));
+  }
+  candidates = std::move(ranked);
+  fits = std::move(ranked_fits);
+}
+
+/// Adds the first candidate: its refit to the bottom, and its rivals for a next experiment.
+void add_first(const Model& model, const Data& data, const std::vector<Fit>& fits, RoundFits& result) {
+  Round& round = result.round;
+  const Candidate& first = round.candidates.front();
+  round.added = first.score.effect->name;
+  round.reason = fmt::format("its score has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
+                             first.score.adjusted_p, -first.delta_bic);
+  result.better = fits.front();
+  const Fit polished = fit(model, data, result.better.fitted());
+  if (polished.report.usable() && polished.chi2 <= result.better.chi2) result.better = polished;
+  const auto add_rival = [&](std::size_t i) {
+    result.rivals.push_back(fits[i]);
+    result.rival_names.push_back(round.candidates[i].score.effect->name);
+  };
+  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+    const Candidate& c = round.candidates[i];
+    if (c.class_index == first.class_index && c.refitted && c.plausible) add_rival(i);
+  }
+  // Alone in its class: the runner-up is what a next experiment should shut out.
+  if (result.rivals.size() == 1 && round.candidates.size() > 1 && round.candidates[1].refitted) add_rival(1);
+}
+
+}  // namespace
+
+RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+                          std::size_t number, double significance, Progress& progress) {
+  const std::string name = fmt::format("round {}", number);
+  RoundFits result;
+  Round& round = result.round;
+  round.candidates = by_score(score_effects(model, data, current, significance));
+  progress.clock(name + ": scores");
+  std::vector<Fit> fits = refit_best(model, data, heldout, current, round.candidates, name, progress);
+  progress.clock(name + ": refits");
+  rank(round.candidates, fits, significance);
+  classify(current, round, fits);
+  if (!round.candidates.empty() && eligible(round.candidates.front(), significance)) {
+    add_first(model, data, fits, result);
+    return result;
+  }
+  const bool any = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
+    return c.score.unobservable.empty() && c.score.adjusted_p < significance;
+  });
+  round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, held-out series)"
+                     : "no effect of the catalogue is significant";
+  return result;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "identification/tracing/model_error.hpp"
+#include "identification/tracing/progress.hpp"
+#include "identification/tracing/score.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// An effect beside the model of one round.
+struct Candidate {
+  Score score;
+  bool refitted = false;
+  double rmse = 0.0;                  ///< after the refit [N]
+  double delta_bic = 0.0;             ///< of the refit, against the round's model: negative is better
+  std::vector<FittedNumber> numbers;  ///< of the effect after the refit
+  bool plausible = true;
+  std::string why_implausible;
+  std::optional<bool> heldout_improves;
+  std::size_t class_index = 0;
+};
+
+/// One pass over the catalogue.
+struct Round {
+  std::vector<Candidate> candidates;              ///< ranked, best first
+  std::vector<std::vector<std::string>> classes;  ///< effects that these data cannot tell apart
+  std::string added;                              ///< effect that was added, empty for none
+  std::string reason;                             ///< why it was, or why none was
+};
+
+/// A round with the fits behind it.
+struct RoundFits {
+  Round round;
+  Fit better;                            ///< the model with the added effect
+  std::vector<Fit> rivals;               ///< refits of the added effect's class, best first; the runner-up's beside one
+                                         ///< that is alone in its class
+  std::vector<std::string> rival_names;  ///< of their effects
+};
+
+/// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if
+/// any.
+/// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
+[[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
+                                        const Fit& current, std::size_t number, double significance,
+                                        Progress& progress);
+
+}  // namespace snare::identification

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "numerics/ida_statistics.hpp"
+#include "numerics/klu.hpp"
+#include "numerics/sundials.hpp"
+
+#include <sundials/sundials_nonlinearsolver.h>
+
+#include <Eigen/Core>
+
+#include <exception>
+#include <functional>
+#include <memory>
+
+namespace snare::numerics {
+
+/// The numbers of a SUNDIALS vector, where they are.
+[[nodiscard]] inline Eigen::Map<Eigen::VectorXd> map(N_Vector v) {
+  return {N_VGetArrayPointer(v), N_VGetLength(v)};
+}
+
+/// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.
+struct IdaCallbacks {
+  DaeSystem& system;
+  IdaStatistics statistics;
+  std::exception_ptr failure;
+  std::unique_ptr<Klu> klu;
+  int analysed_pattern = 0;
+  std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
+  // Of the Newton iteration: the first correction of this step, and what the last rate of convergence leaves after one.
+  double first_correction = 0.0;
+  double remainder = unknown_remainder;
+
+  static constexpr double unknown_remainder = 20.0;
+
+  double relative_tolerance = 0.0;
+  Eigen::VectorXd tolerance{};  // absolute
+  Eigen::VectorXd scale{};      // of both tolerances: makes IDA's mean over unknowns one over blocks (see Ida)
+};
+
+// What IDA calls; the last argument is the IdaCallbacks. 0: done, positive: try a smaller step, negative: an exception waits.
+extern "C" {
+int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vector rows, void* data);
+/// Of the error test: one over the tolerances.
+int snare_ida_weights(N_Vector y, N_Vector weights, void* data);
+int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector rows, SUNMatrix matrix, void* data,
+                       N_Vector work1, N_Vector work2, N_Vector work3);
+int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype* values, void* data);
+int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vector values, void* data);
+/// NewtonTest::every_unknown.
+int snare_newton_test(SUNNonlinearSolver solver, N_Vector y, N_Vector correction, realtype share, N_Vector weight,
+                      void* data);
+}
+
+/// KLU on the system's matrix. The callbacks stay the caller's and outlive it.
+[[nodiscard]] SunLinearSolver make_linear_solver(IdaCallbacks& callbacks, SUNContext context);
+
+}  // namespace snare::numerics

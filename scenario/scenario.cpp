@@ -1,0 +1,103 @@
+#include "scenario/scenario.hpp"
+
+#include "base/files.hpp"
+#include "base/toml_reader.hpp"
+#include "scenario/arm_contact_scenario.hpp"
+#include "scenario/arm_reader.hpp"
+#include "scenario/bodies_scenario.hpp"
+#include "scenario/contact_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace snare::scenario {
+
+using base::TomlDocument;
+using base::TomlNode;
+
+namespace {
+
+enum class Kind { contact, arm_contact, arm_alone };
+
+constexpr base::Choice<Kind> kinds[] = {{"contact", Kind::contact},
+                                        {"arm_contact", Kind::arm_contact},
+                                        {"joint_step", Kind::arm_alone},
+                                        {"tip_impulse", Kind::arm_alone},
+                                        {"joint_motion", Kind::arm_alone}};
+
+/// The overrides of a scenario, and those of the file that its key `contact` names.
+struct SplitOverrides {
+  std::vector<base::Override> own, contact;
+};
+
+SplitOverrides split(const std::vector<base::Override>& overrides) {
+  constexpr std::string_view prefix = "contact.";
+  SplitOverrides result;
+  for (const base::Override& one : overrides) {
+    if (one.key.starts_with(prefix))
+      result.contact.push_back({one.key.substr(prefix.size()), one.value});
+    else
+      result.own.push_back(one);
+  }
+  return result;
+}
+
+std::string text_of(const TomlNode& root, std::string_view key) {
+  const TomlNode* node = root.find(key);
+  return node != nullptr && node->kind == TomlNode::Kind::text ? node->text : std::string();
+}
+
+/// The kind decides which keys a file may have and for whom overrides are: without it nothing else is worth saying.
+Kind kind_of(const std::filesystem::path& file, const TomlNode& root) {
+  const std::string schema = text_of(root, "schema");
+  if (schema != scenario_schema)
+    throw base::InputError({file.string(), 0, "schema", schema, fmt::format("must be \"{}\"", scenario_schema)});
+  const std::string asked = text_of(root, "kind");
+  std::string known;
+  for (const base::Choice<Kind>& kind : kinds) {
+    if (asked == kind.name) return kind.value;
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", kind.name);
+  }
+  throw base::InputError({file.string(), 0, "kind", fmt::format("\"{}\"", asked), "must be one of " + known});
+}
+
+bool lists_bodies(const TomlNode& root) {
+  return std::any_of(std::begin(list_keys), std::end(list_keys),
+                     [&root](std::string_view key) { return root.find(key) != nullptr; });
+}
+
+}  // namespace
+
+Scenario read_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+  const TomlNode written = base::parse_toml(file.string(), base::read_text(file, TomlDocument::size_limit));
+  const SplitOverrides split_overrides = split(overrides);
+  TomlNode looked_at = written;
+  std::vector<base::InputProblem> ignored;  // the document tells them
+  for (const base::Override& one : split_overrides.own) base::apply_override(looked_at, one, ignored);
+  const Kind kind = kind_of(file, looked_at);
+
+  TomlDocument document(file.string(), written, kind == Kind::arm_contact ? split_overrides.own : overrides);
+  const base::TomlTable root = document.root();
+  Scenario scenario;
+  base::require_schema(root, scenario_schema);
+  scenario.kind = root.text("kind");
+  scenario.title = root.text("title");
+  scenario.source = root.text_or("source", "");
+  const std::filesystem::path folder = file.parent_path();
+  switch (kind) {
+    case Kind::contact:
+      scenario.content = lists_bodies(looked_at) ? read_bodies(document, folder) : motions_of(read_contact(document));
+      break;
+    case Kind::arm_contact:
+      scenario.content = read_arm_contact(document, folder, split_overrides.contact);
+      break;
+    case Kind::arm_alone:
+      scenario.content = read_arm_motion(document, folder);
+  }
+  return scenario;
+}
+
+}  // namespace snare::scenario

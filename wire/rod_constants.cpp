@@ -1,0 +1,76 @@
+#include "wire/rod_constants.hpp"
+
+#include <numbers>
+
+namespace snare::wire {
+
+namespace {
+
+PlanarEnd planar_end(const MountSpecification& mount, double x) {
+  PlanarEnd end;
+  switch (mount.kind) {
+    case MountKind::clamped:
+      end.kind = PlanarEnd::Kind::clamp;
+      break;
+    case MountKind::pinned:
+      end.kind = PlanarEnd::Kind::pin;
+      break;
+    case MountKind::supports:
+      end.kind = PlanarEnd::Kind::free;
+      break;
+  }
+  end.position = {x, 0.0};
+  if (mount.rotational_stiffness) end.rotational_stiffness = *mount.rotational_stiffness;
+  if (mount.translational_stiffness) end.translational_stiffness = *mount.translational_stiffness;
+  return end;
+}
+
+}  // namespace
+
+PlanarRodProperties planar_rod_properties(const WireSpecification& wire, const MountSpecification& mount,
+                                          const Eigen::Vector2d& gravity) {
+  PlanarRodProperties properties;
+  properties.bending_stiffness = wire.bending_stiffness();
+  properties.axial_stiffness = wire.axial_stiffness();
+  // The bulge goes to +y, where a wire running along +x turns right at its top.
+  properties.natural_curvature = -wire.natural_curvature;
+  properties.weight = wire.mass_per_length() * gravity;
+  properties.left = planar_end(mount, 0.0);
+  properties.right = planar_end(mount, mount.span);
+  properties.bending_profile = wire.bending_profile;
+  if (wire.yielding) {
+    const double hardening = wire.yielding->hardening_ratio;
+    // The moduli that give the stiffnesses: E of a solid wire, less for a strand.
+    const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+    const double second_moment = area * wire.diameter * wire.diameter / 16.0;
+    const double stress = wire.yielding->yield_stress;
+    properties.bending_sliders = yielding_section(properties.bending_stiffness, wire.diameter,
+                                                  stress * second_moment / properties.bending_stiffness, hardening);
+    properties.axial_sliders = {
+        {(1.0 - hardening) * properties.axial_stiffness, stress * area / properties.axial_stiffness}};
+    properties.bending_stiffness *= hardening;
+    properties.axial_stiffness *= hardening;
+  }
+  if (wire.strand_friction) {
+    properties.bending_sliders.push_back({wire.strand_friction->extra_stiffness, wire.strand_friction->slip_curvature});
+  }
+  return properties;
+}
+
+RodInMotion rod_in_motion(const WireSpecification& wire, double span, int elements) {
+  RodInMotion rod;
+  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = wire.bending_stiffness();
+  rod.properties.torsional_stiffness = wire.torsional_stiffness();
+  rod.properties.axial_stiffness = wire.axial_stiffness();
+  rod.properties.right.position = {span, 0.0, 0.0};
+  rod.mass_per_length = wire.mass_per_length();
+  if (wire.strand_friction) {
+    rod.strands.extra_stiffness = wire.strand_friction->extra_stiffness;
+    rod.strands.slip_curvature = wire.strand_friction->slip_curvature;
+  }
+  rod.length = wire.length;
+  rod.elements = elements;
+  return rod;
+}
+
+}  // namespace snare::wire

@@ -1,0 +1,91 @@
+#include "wire/rod_damping.hpp"
+
+namespace snare::wire {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using numerics::DaePoint;
+
+namespace {
+
+constexpr int block = RodModel::block;
+
+Vector3d edge_of(const RodInstant& instant, int e) {
+  return vertex(instant.state, e + 1) - vertex(instant.state, e);
+}
+
+}  // namespace
+
+// D = 1/2 tau EA h e'^2 with e' = t.w/h, w = v_{i+1} - v_i: the force f = tau EA e' along t on x_{i+1},
+// against it on x_i.
+void add_axial_damping(const RodModel& model, const RodInstant& instant, const DaePoint& at, Eigen::VectorXd& gradient,
+                       double& power) {
+  for (int e = 0; e < model.edges(); ++e) {
+    const Vector3d t = edge_of(instant, e).normalized();
+    const double rest = model.rest_length(e);
+    const double rate = t.dot(at.y.segment<3>(model.velocity_of(e + 1)) - at.y.segment<3>(model.velocity_of(e))) / rest;
+    const double force = model.damping().axial_time * model.properties().axial_stiffness * rate;
+    gradient.segment<3>(block * e) -= force * t;
+    gradient.segment<3>(block * (e + 1)) += force * t;
+    power += force * rate * rest;
+  }
+}
+
+// f t by the edge d and by w, with P = (I - t t^T)/|d| = dt/dd:
+//   d(f t)/dd = tau EA/h [t (P w)^T + (t.w) P],   d(f t)/dw = tau EA/h t t^T
+void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant, const DaePoint& at,
+                                const RodSlots& slots, std::vector<double>& values) {
+  for (int e = 0; e < model.edges(); ++e) {
+    const Vector3d d = edge_of(instant, e);
+    const double length = d.norm();
+    const Vector3d t = d / length;
+    const Vector3d w = at.y.segment<3>(model.velocity_of(e + 1)) - at.y.segment<3>(model.velocity_of(e));
+    const double factor = model.damping().axial_time * model.properties().axial_stiffness / model.rest_length(e);
+    const Matrix3d across = (Matrix3d::Identity() - t * t.transpose()) / length;
+    const Matrix3d by_edge = factor * (t * (across * w).transpose() + t.dot(w) * across);
+    const Matrix3d by_rate = factor * t * t.transpose();
+    // Rows and columns of x_e and x_{e+1}: the same block, negative where the vertices differ.
+    for (const int row_vertex : {0, 1}) {
+      for (int r = 0; r < 3; ++r) {
+        for (const int column_vertex : {0, 1}) {
+          for (int s = 0; s < 3; ++s) {
+            const double sign = row_vertex == column_vertex ? 1.0 : -1.0;
+            const int row = block * (e + row_vertex) + r;
+            const int column = block * (e + column_vertex) + s;
+            slots.add_place(row, column, sign * by_edge(r, s), values);
+            slots.add_rate(row, column, sign * by_rate(r, s), values);
+          }
+        }
+      }
+    }
+  }
+}
+
+std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell) {
+  const double time = model.damping().bending_time;
+  return {time * model.properties().bending_stiffness / cell.length,
+          time * model.properties().second_bending_stiffness / cell.length};
+}
+
+// D = 1/2 k kappa'^2 with k = tau EI_j/l and kappa' = g.r, g and H the gradient and the Hessian of kappa_j, r
+// the rates of what it depends on. The rows k (g.r) g have the derivatives
+//   by the places  k [(g.r) H + g (H r)^T],   by the rates  k g g^T,
+// and where a mount spins, r also changes with the places.
+void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell, int i, double c,
+                                  const RodSlots& slots, std::vector<double>& values) {
+  CellMatrix by_place = CellMatrix::Zero();
+  CellMatrix by_rate = CellMatrix::Zero();
+  const std::array<double, 2> stiffness = viscous_stiffness(model, cell);
+  for (int j = 0; j < 2; ++j) {
+    const BendingCell::Derivatives kappa = cell.differentiate(j);
+    const CellVector slope = to_cell(kappa.gradient);
+    const CellMatrix hessian = to_cell(kappa.hessian);
+    const double factor = stiffness[base::at(j)];
+    by_place += factor * (slope.dot(cell.rate) * hessian + slope * (hessian * cell.rate).transpose());
+    by_rate += factor * slope * slope.transpose();
+  }
+  if (model.end_of(i)) by_place += by_rate * cell.rate_by_place();
+  slots.add_cell(i, by_place, by_rate, c, model.bands(), values);
+}
+
+}  // namespace snare::wire

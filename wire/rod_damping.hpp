@@ -1,0 +1,34 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "wire/bending_cell.hpp"
+#include "wire/rod_model.hpp"
+#include "wire/rod_slots.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+/// Kelvin-Voigt damping of a rod.                                                             theory.md (M.4)
+///
+///   D = sum_vertices 1/2 tau_b EI_j/l kappa_j'^2 + sum_edges 1/2 tau_a EA h e'^2,   rows of x and theta get
+///     dD/d(rate)
+///
+/// kappa_j: integrated curvatures (W.24), e = |x_{i+1} - x_i|/h - 1, ' is d/dt.
+namespace snare::wire {
+
+/// Adds the forces of stretching, by bands, and the power that they take [W].
+void add_axial_damping(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
+                       Eigen::VectorXd& gradient, double& power);
+void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
+                                const RodSlots& slots, std::vector<double>& values);
+
+/// tau_b EI_j/l of a cell, j = 1, 2 [N m s].
+[[nodiscard]] std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell);
+
+/// The Jacobian of vertex i's viscous moments tau_b EI_j/l kappa_j'.
+void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell, int i, double c,
+                                  const RodSlots& slots, std::vector<double>& values);
+
+}  // namespace snare::wire

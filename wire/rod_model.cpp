@@ -1,0 +1,68 @@
+#include "wire/rod_model.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace snare::wire {
+
+using numerics::DaeKind;
+
+namespace {
+
+MaterialMesh checked_mesh(const RodInMotion& rod) {
+  assert(rod.elements >= 4 && rod.length > 0.0 && rod.mass_per_length > 0.0);
+  return rod.mesh();
+}
+
+}  // namespace
+
+RodModel::RodModel(const RodInMotion& constants)
+    : constants_(constants), rod_(checked_mesh(constants), constants.properties), controls_(constants.controls()) {
+  // m_i = rho A (h_{i-1} + h_i)/2 (M.3).
+  mass_.assign(base::at(vertices()), 0.0);
+  for (int e = 0; e < edges(); ++e) {
+    const double half = 0.5 * constants.mass_per_length * rest_length(e);
+    mass_[base::at(e)] += half;
+    mass_[base::at(e + 1)] += half;
+  }
+  held_.assign(base::at(3 * vertices()), false);
+  for (const End which : ends) {
+    const SpatialEnd& end = properties().end(which);
+    if (end.kind == SpatialEnd::Kind::free) continue;
+    for (int k = 0; k < 3; ++k) {
+      held_[base::at(3 * vertex_at(which) + k)] = k > 0 || std::isinf(end.translational_stiffness);
+    }
+  }
+  if (!properties().left.orients() && !properties().right.orients()) {
+    // The drag on the spin of a straight wire is that of a wire bent by some 3e-5 rad in all: it exerts no
+    // moment of note.
+    constexpr double share = 1e-9;
+    holds_first_angle_ = damping().bending_time == 0.0;
+    spin_drag_ = share * damping().bending_time * properties().bending_stiffness / constants.length;
+  }
+}
+
+std::optional<End> RodModel::end_of(int i) const {
+  if (i == 0) return End::left;
+  if (i == edges()) return End::right;
+  return std::nullopt;
+}
+
+void RodModel::release(End end) {
+  for (int k = 0; k < 3; ++k) held_[base::at(3 * vertex_at(end) + k)] = false;
+}
+
+void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, const RodTolerances& tolerances) {
+  const int n = vertices();
+  const std::vector<std::string> axes{"x", "y", "z"};
+  x_ = layout.add({name + " position", axes, 3 * n, DaeKind::differential, tolerances.position, 0});
+  theta_ = layout.add({name + " twist angle", {}, n, DaeKind::algebraic, tolerances.angle, 0});
+  v_ = layout.add({name + " velocity", axes, 3 * n, DaeKind::differential, tolerances.velocity, 0});
+  if (strands().act()) {
+    // A thousandth of the curvature at which they slip.
+    strand_ =
+        layout.add({name + " strands", {"1", "2"}, 2 * n, DaeKind::differential, 1e-3 * strands().slip_curvature, 0});
+  }
+}
+
+}  // namespace snare::wire

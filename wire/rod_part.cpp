@@ -1,0 +1,305 @@
+#include "wire/rod_part.hpp"
+
+#include "wire/bending_cell.hpp"
+#include "wire/rod_damping.hpp"
+#include "wire/strand_friction.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace snare::wire {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using numerics::DaePoint;
+
+namespace {
+
+constexpr int block = RodModel::block;
+constexpr int angle = RodModel::angle;
+
+}  // namespace
+
+RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances)
+    : name_(std::move(name)), tolerances_(tolerances), model_(rod) {
+  band_.resize(model_.bands());
+}
+
+void RodPart::declare(numerics::DaeLayout& layout) {
+  model_.declare(layout, name_, tolerances_);
+}
+
+void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eigen::VectorXd& y) {
+  const int n = vertices();
+  assert(positions.cols() == n);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model_.bands());
+  for (int i = 0; i < n; ++i) {
+    q.segment<3>(block * i) = positions.col(i);
+    y.segment<3>(position_of(i)) = positions.col(i);
+    y[angle_of(i)] = 0.0;
+    y.segment<3>(velocity_of(i)).setZero();
+    if (velocities.cols() == n) y.segment<3>(velocity_of(i)) = velocities.col(i);
+  }
+  accepted_.state = rod().make_state(q, model_.controls());
+  trial_ = accepted_;
+}
+
+void RodPart::take_unknowns(const numerics::VectorView& y) {
+  for (int i = 0; i < vertices(); ++i) {
+    band_.segment<3>(block * i) = y.segment<3>(position_of(i));
+    band_[block * i + angle] = y[angle_of(i)];
+  }
+}
+
+void RodPart::carry(End end, std::function<MountMotion(const numerics::VectorView& y)> motion) {
+  assert(model_.properties().end(end).kind != SpatialEnd::Kind::free && !model_.properties().end(end).gives());
+  carried_[index_of(end)] = std::move(motion);
+  model_.release(end);
+}
+
+void RodPart::set_mounts(const numerics::VectorView& y, RodInstant& instant) const {
+  for (const End end : ends) {
+    if (!is_carried(end)) continue;
+    const MountMotion motion = carried_[index_of(end)](y);
+    std::optional<Frame>& frame = end == End::left ? instant.state.left_mount : instant.state.right_mount;
+    if (frame) frame = motion.frame;
+    instant.spin[index_of(end)] = motion.angular;
+  }
+}
+
+// Frames go from the last accepted state to the point's; then dE and what damping and strands add to it.
+void RodPart::evaluate(const DaePoint& at) {
+  take_unknowns(at.y);
+  trial_ = accepted_;
+  set_mounts(at.y, trial_);
+  wire::accept(trial_.state, band_);
+  rod().assemble_forces(trial_.state, assembly_);
+  losses_.power = losses_.strand_energy = 0.0;
+  losses_.couples = {Vector3d::Zero(), Vector3d::Zero()};
+  losses_.strand_rates.assign(base::at(vertices()), Vector2d::Zero());
+  if (model_.damping().axial_time > 0.0) add_axial_damping(model_, trial_, at, assembly_.gradient, losses_.power);
+  if (!model_.bends_with_loss()) return;
+  for (int i = 0; i < vertices(); ++i) {
+    if (BendingCell::exists(model_, i)) add_bending_losses(at, i);
+  }
+}
+
+// The moment M_j = tau EI_j/l kappa_j' + k_x m_j acts on what kappa_j depends on: sum_j M_j dkappa_j.
+void RodPart::add_bending_losses(const DaePoint& at, int i) {
+  const BendingCell cell(model_, trial_, at, i);
+  const CellVector& r = cell.rate;
+  const Vector3d middle = r.segment<3>(CellRows::middle);
+  const Vector3d rate_a = middle - r.segment<3>(CellRows::before);
+  const Vector3d rate_b = r.segment<3>(CellRows::after) - middle;
+  std::array<PairGradient, 2> gradients;
+  Vector2d rates;  // kappa_j'
+  for (int j = 0; j < 2; ++j) {
+    PairGradient& g = gradients[base::at(j)];
+    cell.curvature(j).add_gradient(cell.inverse, g);
+    rates[j] = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[CellRows::angle_before] +
+               g.theta_b * r[CellRows::angle_after];
+  }
+  Vector2d strands = Vector2d::Zero();
+  if (model_.strands().act()) {
+    const Vector2d held = at.y.segment<2>(strand_of(i));
+    const StrandResponse s(model_.strands(), held, rates / cell.length);
+    strands = s.moment;
+    losses_.strand_rates[base::at(i)] = s.rate;
+    const double stiffness = model_.strands().extra_stiffness * cell.length;
+    losses_.strand_energy += 0.5 * stiffness * held.squaredNorm();
+    // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
+    losses_.power +=
+        stiffness * model_.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - cell.length * s.rate);
+  }
+  const std::array<double, 2> stiffness = viscous_stiffness(model_, cell);
+  Eigen::VectorXd& gradient = assembly_.gradient;
+  const int n = model_.edges();
+  for (int j = 0; j < 2; ++j) {
+    const PairGradient& g = gradients[base::at(j)];
+    const double viscous = stiffness[base::at(j)] * rates[j];
+    const double moment = viscous + strands[j];
+    losses_.power += viscous * rates[j];
+    // Of the mounts on the wire: what a turn of all that follows does, less at the left, which precedes
+    // (W.29).
+    if (i == 0) losses_.couples[index_of(End::left)] -= moment * cell.curvature(j).by_rotation();
+    if (i == n) losses_.couples[index_of(End::right)] += moment * cell.curvature(j).by_rotation();
+    if (i > 0) {
+      gradient.segment<3>(block * (i - 1)) -= moment * g.a;
+      gradient[block * (i - 1) + angle] += moment * g.theta_a;
+    }
+    gradient.segment<3>(block * i) += moment * (g.a - g.b);
+    if (i < n) {
+      gradient[block * i + angle] += moment * g.theta_b;
+      gradient.segment<3>(block * (i + 1)) += moment * g.b;
+    }
+  }
+}
+
+// F: x' - v, or x - X where held;   m (v' + a v) + dE/dx + dD/dv, or v;   dE/dtheta + dD/dtheta', or theta;
+//    z' less the strands' answer.
+void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  evaluate(at);
+  const double mass_rate = model_.damping().mass_rate;
+  for (int i = 0; i < vertices(); ++i) {
+    const SpatialEnd& end = i == 0 ? model_.properties().left : model_.properties().right;
+    const double m = mass_of(i);
+    for (int k = 0; k < 3; ++k) {
+      const int x = position_of(i) + k;
+      const int v = velocity_of(i) + k;
+      if (is_held(i, k)) {
+        rows[x] += at.y[x] - end.position[k];
+        rows[v] += at.y[v];
+      } else {
+        rows[x] += at.rate[x] - at.y[v];
+        rows[v] += m * (at.rate[v] + mass_rate * at.y[v]) + assembly_.gradient[block * i + k];
+      }
+    }
+    rows[angle_of(i)] += model_.holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + angle];
+    if (model_.strands().act()) {
+      rows.segment<2>(strand_of(i)) += at.rate.segment<2>(strand_of(i)) - losses_.strand_rates[base::at(i)];
+    }
+  }
+  if (model_.spin_drag() > 0.0) rows[angle_of(0)] += model_.spin_drag() * at.rate[angle_of(0)];
+}
+
+void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
+  evaluate(at);
+  rod().assemble(trial_.state, {false, false, false}, assembly_);
+  const int bands = model_.bands();
+  // What is held: 1 for x and v, or theta. Else x' - v: (c, -1), and m (v' + a v): m (c + a).
+  for (int i = 0; i < bands; ++i) {
+    const RodSlots::Diagonal& d = slots_.diagonal(i);
+    if (RodModel::is_angle(i)) {
+      if (model_.is_held(i)) RodSlots::add_to(values, d.place, 1.0);
+    } else if (model_.is_held(i)) {
+      RodSlots::add_to(values, d.place, 1.0);
+      RodSlots::add_to(values, d.velocity, 1.0);
+    } else {
+      RodSlots::add_to(values, d.place, c);
+      RodSlots::add_to(values, d.place_by_velocity, -1.0);
+      RodSlots::add_to(values, d.velocity, mass_of(i / block) * (c + model_.damping().mass_rate));
+    }
+  }
+  // d2E, both triangles of the band.
+  for (int j = 0; j < bands; ++j) {
+    const double* column = assembly_.hessian.column(j);
+    for (int i = j; i <= std::min(bands - 1, j + SpatialRod::half_bandwidth); ++i) {
+      const double value = column[i - j];
+      slots_.add_place(i, j, value, values);
+      if (i != j) slots_.add_place(j, i, value, values);
+    }
+  }
+  if (model_.spin_drag() > 0.0)
+    RodSlots::add_to(values, slots_.diagonal(angle).place, c * model_.spin_drag());  // theta_0
+  add_losses_jacobian(at, c, values);
+}
+
+void RodPart::add_losses_jacobian(const DaePoint& at, double c, std::vector<double>& values) {
+  if (model_.damping().axial_time > 0.0) add_axial_damping_jacobian(model_, trial_, at, slots_, values);
+  if (!model_.bends_with_loss()) return;
+  for (int i = 0; i < vertices(); ++i) {
+    if (!BendingCell::exists(model_, i)) {
+      if (model_.strands().act()) add_resting_strands_jacobian(model_, i, c, slots_, values);
+      continue;
+    }
+    const BendingCell cell(model_, trial_, at, i);
+    if (model_.strands().act()) add_strands_jacobian(model_, cell, i, at, c, slots_, values);
+    if (model_.damping().bending_time > 0.0) add_bending_damping_jacobian(model_, cell, i, c, slots_, values);
+  }
+}
+
+Vector3d RodPart::mount_moment(const DaePoint& at, End end) {
+  trial_.spin[index_of(end)] = carried_[index_of(end)](at.y).angular;
+  return wire::mount_moment(model_, trial_, at, end);
+}
+
+MountCell RodPart::mount_cell(const DaePoint& at, End end) {
+  evaluate(at);
+  return wire::mount_cell(model_, trial_, at, end);
+}
+
+bool RodPart::accept(const DaePoint& at) {
+  take_unknowns(at.y);
+  set_mounts(at.y, accepted_);
+  wire::accept(accepted_.state, band_);
+  return false;
+}
+
+void RodPart::save_state(std::vector<double>& memory) const {
+  for (const Frame& f : accepted_.state.frames) {
+    for (int k = 0; k < 3; ++k) memory.push_back(f.tangent[k]);
+    for (int k = 0; k < 3; ++k) memory.push_back(f.director[k]);
+  }
+  const std::vector<double>& twist = accepted_.state.reference_twist;
+  memory.insert(memory.end(), twist.begin(), twist.end());
+}
+
+void RodPart::restore_state(const numerics::VectorView& y, std::span<const double>& memory) {
+  take_unknowns(y);
+  accepted_.state = rod().make_state(band_, model_.controls());
+  for (Frame& f : accepted_.state.frames) {
+    for (int k = 0; k < 3; ++k) f.tangent[k] = numerics::take(memory);
+    for (int k = 0; k < 3; ++k) f.director[k] = numerics::take(memory);
+  }
+  for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
+  trial_ = accepted_;
+}
+
+double RodPart::mount_error(const numerics::VectorView& y) const {
+  double worst = 0.0;
+  for (const End end : ends) {
+    const int i = model_.vertex_at(end);
+    const Vector3d& position = model_.properties().end(end).position;
+    for (int k = 0; k < 3; ++k) {
+      if (is_held(i, k)) worst = std::max(worst, std::abs(y[position_of(i) + k] - position[k]));
+    }
+  }
+  return worst;
+}
+
+RodPart::Energies RodPart::energies(const DaePoint& at) {
+  evaluate(at);
+  const SpatialState& state = trial_.state;
+  const Vector3d& weight = model_.properties().weight;
+  Energies result;
+  double square = 0.0;
+  for (int i = 0; i < vertices(); ++i) {
+    const Vector3d v = at.y.segment<3>(velocity_of(i));
+    square += mass_of(i) * v.squaredNorm();
+    result.momentum += mass_of(i) * v;
+    result.angular_momentum += mass_of(i) * vertex(state, i).cross(v);
+  }
+  for (int e = 0; e < model_.edges(); ++e) {
+    result.potential -= 0.5 * model_.rest_length(e) * weight.dot(vertex(state, e) + vertex(state, e + 1));
+  }
+  result.kinetic = 0.5 * square;
+  result.strain = assembly_.energy - result.potential + losses_.strand_energy;
+  result.dissipation = losses_.power + model_.damping().mass_rate * square;
+  for (int i = 0; weight != Vector3d::Zero() && i < vertices(); ++i) {
+    // Half the weight of each edge is at its ends, as the mass is.
+    result.weight_moment += mass_of(i) / constants().mass_per_length * vertex(state, i).cross(weight);
+  }
+  // Mounts that stand still: the gradient that is left at a held vertex, or the spring's force -k (x - X) of
+  // one that gives.
+  const std::array<Vector3d, 2> moments = rod().end_moments(state);
+  for (const End which : ends) {
+    const std::size_t side = index_of(which);
+    const SpatialEnd& end = model_.properties().end(which);
+    if (end.kind == SpatialEnd::Kind::free || is_carried(which)) continue;
+    const int i = model_.vertex_at(which);
+    result.mount_forces[side] = assembly_.gradient.segment<3>(block * i);
+    if (!is_held(i, 0)) {
+      result.mount_forces[side].x() = -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
+    }
+    result.mount_moments[side] = vertex(state, i).cross(result.mount_forces[side]) + losses_.couples[side] +
+                                 (which == End::left ? Vector3d(-moments[side]) : moments[side]);
+  }
+  return result;
+}
+
+}  // namespace snare::wire

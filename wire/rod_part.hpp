@@ -1,0 +1,120 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "wire/end.hpp"
+#include "wire/mount_cell.hpp"
+#include "wire/rod_in_motion.hpp"
+#include "wire/rod_model.hpp"
+#include "wire/rod_slots.hpp"
+#include "wire/spatial_rod.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace snare::wire {
+
+/// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without
+/// inertia.
+///                                                                                  theory.md (M.3), (M.4)
+///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
+///
+/// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. With strands two unknowns z a vertex are added,
+/// and their moments to the forces (M.14). Rigidly held unknowns have x = X, v = 0 instead; the force of the
+/// mount is what the row would have left. Without a mount that holds the twist nothing but the damping of
+/// bending feels the spin of the whole wire about itself: undamped theta_0 = 0, damped the spin that
+/// dissipates least (and a round-off's share of drag that decides for a straight wire).
+class RodPart final : public numerics::DaePart {
+ public:
+  RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
+
+  void declare(numerics::DaeLayout& layout) override;
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override { append_sparsity(model_, entries); }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(model_, pattern); }
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// Carries the reference frames along.
+  bool accept(const numerics::DaePoint& at) override;
+  void save_state(std::vector<double>& memory) const override;
+  void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
+
+  /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
+  void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
+
+  /// Before `declare`: the mount of one end moves. The vertex there is no longer held by this part: a
+  /// constraint has to.
+  void carry(End end, std::function<MountMotion(const numerics::VectorView& y)> motion);
+  [[nodiscard]] bool is_carried(End end) const { return static_cast<bool>(carried_[index_of(end)]); }
+  /// The half cell at a mount that moves.
+  [[nodiscard]] MountCell mount_cell(const numerics::DaePoint& at, End end);
+  /// Its moment alone, as of the last `residual` at that point.
+  [[nodiscard]] Eigen::Vector3d mount_moment(const numerics::DaePoint& at, End end);
+
+  [[nodiscard]] const RodModel& model() const { return model_; }
+  [[nodiscard]] const RodInMotion& constants() const { return model_.constants(); }
+  [[nodiscard]] const SpatialRod& rod() const { return model_.rod(); }
+  [[nodiscard]] int vertices() const { return model_.vertices(); }
+  [[nodiscard]] int position_of(int vertex) const { return model_.position_of(vertex); }
+  [[nodiscard]] int velocity_of(int vertex) const { return model_.velocity_of(vertex); }
+  [[nodiscard]] int angle_of(int edge) const { return model_.angle_of(edge); }
+  /// The angle of the edge beside an end.
+  [[nodiscard]] int end_angle(End end) const { return model_.angle_of(model_.edge_at(end)); }
+  /// First of the two of z of a vertex; only with strands.
+  [[nodiscard]] int strand_of(int vertex) const { return model_.strand_of(vertex); }
+  [[nodiscard]] double mass_of(int vertex) const { return model_.mass_of(vertex); }
+  [[nodiscard]] bool is_held(int vertex, int k) const { return model_.is_held(vertex, k); }
+  [[nodiscard]] double coordinate(int vertex) const { return rod().mesh().coordinate(vertex, model_.controls()); }
+  /// Largest distance of rigidly held components from their mounts [m].
+  [[nodiscard]] double mount_error(const numerics::VectorView& y) const;
+
+  /// Energies [J] at a point; dissipation is a power [W].
+  struct Energies {
+    double kinetic = 0.0;
+    double strain = 0.0;
+    double potential = 0.0;
+    double dissipation = 0.0;
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
+    Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
+    /// Forces of the left and the right mount that balance the wire's own forces [N].
+    std::array<Eigen::Vector3d, 2> mount_forces{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    /// The same as moments about the origin, with the couples of mounts that orient [N m].   theory.md (M.11)
+    std::array<Eigen::Vector3d, 2> mount_moments{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    Eigen::Vector3d weight_moment = Eigen::Vector3d::Zero();  ///< of the weight about the origin [N m]
+  };
+  [[nodiscard]] Energies energies(const numerics::DaePoint& at);
+
+ private:
+  /// What damping and strands do at the last point of evaluation.
+  struct Losses {
+    double power = 0.0;                                                                        // that they take [W]
+    double strand_energy = 0.0;                                                                // stored [J]
+    std::array<Eigen::Vector3d, 2> couples{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of the mounts
+    std::vector<Eigen::Vector2d> strand_rates;  // z' of every vertex [1/(m s)]
+  };
+  void evaluate(const numerics::DaePoint& at);
+  void add_bending_losses(const numerics::DaePoint& at, int i);
+  void add_losses_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
+  void set_mounts(const numerics::VectorView& y, RodInstant& instant) const;
+  void take_unknowns(const numerics::VectorView& y);
+
+  std::string name_;
+  RodTolerances tolerances_;
+  RodModel model_;
+  std::array<std::function<MountMotion(const numerics::VectorView& y)>, 2> carried_;
+  RodSlots slots_;
+
+  RodInstant accepted_;  // the state: frames of the last accepted step
+
+  // Workspace: the point of the last evaluation.
+  RodInstant trial_;
+  RodAssembly assembly_;
+  Losses losses_;
+  Eigen::VectorXd band_;
+};
+
+}  // namespace snare::wire
