@@ -4,7 +4,7 @@
 usage: compare_results.py OLD NEW [--quick] [--only TEXT] [--keep DIR]
 
 OLD and NEW are two executables. Every shipped experiment, wire and scenario goes through the verbs that read it, and so
-do two experiments with readings that OLD generates: one with an effect that the declared model lacks, one without.
+do three experiments with readings that OLD generates: with an effect that the declared model lacks, and without.
 Tables must be equal to the last byte. Times and versions are left out of JSON files, by their keys, and of pages: a number on a page
 may differ where it also differs between two runs of OLD, or where it is followed by "s".
 
@@ -42,11 +42,11 @@ density_kg_m3      = 7930.0
 [mount]
 kind    = "clamped"
 span_mm = 175.0
-
+{mount}
 [pusher]
 shape     = "cylinder"
 radius_mm = 6.0
-friction  = {friction}
+friction  = 0.0
 direction = "outward"
 """
 SERIES = """
@@ -60,14 +60,14 @@ force_sigma_N = {sigma}
 class Generated:
     """An experiment whose readings come from a wire with an effect, while the file declares none."""
 
-    def __init__(self, name: str, length: float, friction: float):
-        self.name, self.length, self.friction = name, length, friction
+    def __init__(self, name: str, verb: str, length: float = 180.0, mount: str = "", fit: str = ""):
+        self.name, self.verb, self.length, self.mount, self.fit = name, verb, length, mount, fit
 
     def write(self, command: str, folder: pathlib.Path) -> pathlib.Path:
         folder.mkdir(parents=True)
         sigma = 0.2
-        truth = EXPERIMENT.format(length=self.length, friction=self.friction)
-        declared = EXPERIMENT.format(length=180.0, friction=0.0)
+        truth = EXPERIMENT.format(length=self.length, mount=self.mount)
+        declared = EXPERIMENT.format(length=180.0, mount="")
         for position in (40, 65, 90):
             head = SERIES.format(position=position, sigma=sigma)
             truth += head + "travel_mm = 1.5\npoints = 31\n"
@@ -84,11 +84,16 @@ class Generated:
             text = "".join(f"{d!r},{f!r}\n" for d, f in readings)
             (folder / f"{name}.csv").write_text("displacement_mm,force_N\n" + text)
         file = folder / "declared.toml"
-        file.write_text(declared)
+        file.write_text(declared + self.fit)
         return file
 
 
-GENERATED = [Generated("length", 180.3, 0.0), Generated("nothing missing", 180.0, 0.0)]
+GENERATED = [
+    Generated("length", "trace", length=180.3),
+    Generated("nothing missing", "trace"),
+    Generated("mounts that give", "fit", mount="translational_stiffness_N_m = 2e6\n",
+              fit='\n[fit]\nfree = ["wire.length_mm", "mount_axial_compliance.compliance_m_N"]\n'),
+]
 
 
 def run(command: str, arguments: list, out: pathlib.Path) -> int:
@@ -104,7 +109,7 @@ def cases(quick: bool, generated: dict) -> list:
     found += [(f"distil {f.stem}", ["distil", f]) for f in sorted((DATA / "wires").glob("*.toml"))]
     published = DATA / "experiments" / "published_static.toml"
     found += [(f"{verb} published", [verb, published]) for verb in ("push", "fit", "trace", "compare")]
-    found += [(f"trace {name}", ["trace", file]) for name, file in generated.items()]
+    found += [(f"{g.verb} {g.name}", [g.verb, generated[g.name]]) for g in GENERATED]
     found += [("ringdown", ["ringdown", DATA / "experiments" / "ringdown.toml"])]
     if not quick:
         found += [("reproduce", ["reproduce"]), ("validate", ["validate"])]
