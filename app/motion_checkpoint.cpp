@@ -56,8 +56,8 @@ void fields(Archive& a, ContactSample& s) {
 }
 template <class Archive>
 void fields(Archive& a, EnergyBalance& e) {
-  static_assert(sizeof(EnergyBalance) == 7 * sizeof(double));
-  a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.impacts)(e.work)(e.integrator);
+  static_assert(sizeof(EnergyBalance) == 6 * sizeof(double));
+  a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.work)(e.integrator);
 }
 template <class Archive>
 void fields(Archive& a, MotionSample::Arm& s) {
@@ -65,7 +65,7 @@ void fields(Archive& a, MotionSample::Arm& s) {
 }
 template <class Archive>
 void fields(Archive& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 6 * sizeof(std::vector<double>) + 13 * sizeof(double));
+  static_assert(sizeof(MotionSample) == sizeof(double) + 6 * sizeof(std::vector<double>) + 12 * sizeof(double));
   a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.energy)(s.momentum)(s.angular_momentum);
 }
 template <class Archive>
@@ -74,9 +74,14 @@ void fields(Archive& a, MotionEvent& e) {
   a(e.time)(e.contact)(e.point)(e.arc)(e.kind)(e.approach_speed);
 }
 template <class Archive>
+void fields(Archive& a, StrengthUse& u) {
+  static_assert(sizeof(StrengthUse) == 5 * sizeof(double));
+  a(u.share)(u.tension)(u.bending)(u.arc)(u.time);
+}
+template <class Archive>
 void fields(Archive& a, MotionSums& s) {
-  a(s.events)(s.peak_force)(s.largest_penetration)(s.largest_gap)(s.largest_drift)(s.impacts)(s.start_energy)(
-      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds)(s.search_seconds);
+  a(s.events)(s.peak_force)(s.strength)(s.largest_penetration)(s.largest_drift)(s.start_energy)(s.start_momentum)(
+      s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
 }
 template <class Archive>
 void fields(Archive& a, MotionState& s) {
@@ -84,8 +89,8 @@ void fields(Archive& a, MotionState& s) {
 }
 template <class Archive>
 void fields(Archive& a, MotionResult& r) {
-  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.impulse)(
-      r.largest_penetration)(r.largest_gap)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.impulse)(
+      r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
 }
 }  // namespace snare::coupling
 
@@ -106,7 +111,7 @@ void fields(Archive& a, MotionProgress& p) {
 
 namespace {
 
-constexpr std::string_view mark = "snare motion checkpoint 2\n";
+constexpr std::string_view mark = "snare motion checkpoint 3\n";
 
 /// Of the input and of the program that is to go on with it.
 std::uint64_t key_of(const std::string& input) {

@@ -18,7 +18,6 @@ namespace {
 
 using base::at;
 using base::degree;
-using coupling::ContactSample;
 using coupling::MotionSample;
 using Eigen::Vector3d;
 using multibody::ArmSample;
@@ -65,10 +64,9 @@ class Columns {
 void add_energies(Columns<MotionSample>& columns) {
   using Energy = double coupling::EnergyBalance::*;
   static constexpr std::pair<const char*, Energy> energies[] = {
-      {"kinetic_J", &coupling::EnergyBalance::kinetic},      {"strain_J", &coupling::EnergyBalance::strain},
-      {"potential_J", &coupling::EnergyBalance::potential},  {"dissipated_J", &coupling::EnergyBalance::dissipated},
-      {"impacts_J", &coupling::EnergyBalance::impacts},      {"work_J", &coupling::EnergyBalance::work},
-      {"integrator_J", &coupling::EnergyBalance::integrator}};
+      {"kinetic_J", &coupling::EnergyBalance::kinetic},     {"strain_J", &coupling::EnergyBalance::strain},
+      {"potential_J", &coupling::EnergyBalance::potential}, {"dissipated_J", &coupling::EnergyBalance::dissipated},
+      {"work_J", &coupling::EnergyBalance::work},           {"integrator_J", &coupling::EnergyBalance::integrator}};
   for (const auto& [name, energy] : energies)
     columns.add(name, [energy = energy](const MotionSample& s) { return s.energy.*energy; });
 }

@@ -47,18 +47,34 @@ json result_json(const MotionResult& r) {
                    {"strain", r.energy.strain},
                    {"potential", r.energy.potential},
                    {"dissipated", r.energy.dissipated},
-                   {"impacts", r.energy.impacts},
                    {"work", r.energy.work},
                    {"integrator", r.energy.integrator}}},
                  {"momentum_error_Ns", vector_json(r.momentum_error)},
                  {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
                  {"largest_penetration_m", r.largest_penetration},
-                 {"largest_gap_m", r.largest_gap},
                  {"largest_drift", r.largest_drift},
                  {"analyses", r.statistics.analyses},
                  {"wall_s", r.wall_seconds},
                  {"real_time_factor", real_time_factor(r)}});
   return object;
+}
+
+/// What wires with a declared strength had to bear at most; none where none has.
+json strength_json(const FinishedMotion& run) {
+  json list = json::array();
+  for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
+    const coupling::MotionWire& wire = run.asked.motion.wires[k];
+    const coupling::StrengthUse& use = run.result.strength[k];
+    if (!std::isfinite(wire.strength.breaking_tension)) continue;
+    list.push_back({{"wire", wire.name},
+                    {"strength_N", wire.strength.breaking_tension},
+                    {"largest_share", use.share},
+                    {"tension_N", use.tension},
+                    {"bending_N", use.bending},
+                    {"arc_mm", 1e3 * use.arc},
+                    {"time_s", use.time}});
+  }
+  return list.empty() ? json::object() : json{{"strength", list}};
 }
 
 /// Velocities of a body before and after.
@@ -114,6 +130,7 @@ json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
   summary.update(contact_json(run, 0));
   summary.update(velocities_json(run.samples.front().bodies.front(), run.samples.back().bodies.front()));
   summary.update(result_json(run.result));
+  summary.update(strength_json(run));
   if (!run.asked.motion.arms.empty()) {
     summary["largest_deflection_deg"] = largest_deflections(run);
     return summary;
@@ -140,6 +157,7 @@ json listed_contact_json(const FinishedMotion& run, std::size_t k) {
 json lists_json(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
   json summary = result_json(run.result);
+  summary.update(strength_json(run));
   summary.update({{"bodies", json::array()}, {"contacts", json::array()}, {"events", json::array()}});
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const RigidBodyState& after = run.samples.back().bodies[k];

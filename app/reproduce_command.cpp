@@ -54,8 +54,7 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
       test.pusher.direction == coupling::PushDirection::outward ? "with the bulge" : "against the bulge",
       test.pusher.friction > 0.0 ? fmt::format(" other than Coulomb's, mu = {:g}", test.pusher.friction) : ""));
   result.push_back(
-      "The wire is computed in its plane; the displacement is counted from the first touch of pusher and "
-      "wire.");
+      "The wire is computed in its plane; the displacement is counted from the first touch of pusher and wire.");
   return result;
 }
 

@@ -71,7 +71,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<Override>& overrides)
     : TomlDocument(file.string(), read_text(file, size_limit), overrides) {}
 
-TomlDocument::TomlDocument(std::string file, std::string_view text, const std::vector<Override>& overrides)
+TomlDocument::TomlDocument(const std::string& file, std::string_view text, const std::vector<Override>& overrides)
     : TomlDocument(file, parse_toml(file, text), overrides) {}
 
 TomlDocument::TomlDocument(std::string file, TomlNode root, const std::vector<Override>& overrides)
@@ -231,7 +231,7 @@ std::string TomlTable::text(std::string_view key) const {
 }
 
 std::string TomlTable::text_or(std::string_view key, std::string otherwise) const {
-  return has(key) ? text(key) : otherwise;
+  return has(key) ? text(key) : std::move(otherwise);
 }
 
 std::vector<double> TomlTable::numbers(std::string_view key, std::size_t least, std::size_t most, Range range,

@@ -35,16 +35,16 @@ class TomlDocument {
   /// Reads and parses a file of at most 1 MiB. Throws InputError when it cannot be read or is not TOML.
   explicit TomlDocument(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
   /// The same from text in memory; `file` stands in messages.
-  TomlDocument(std::string file, std::string_view text, const std::vector<Override>& overrides = {});
+  TomlDocument(const std::string& file, std::string_view text, const std::vector<Override>& overrides = {});
   /// The same from what has been parsed already.
   TomlDocument(std::string file, TomlNode root, const std::vector<Override>& overrides = {});
+  ~TomlDocument() = default;
   TomlDocument(const TomlDocument&) = delete;
   TomlDocument& operator=(const TomlDocument&) = delete;
 
   [[nodiscard]] TomlTable root();
 
-  /// Adds a problem found by other means, in a file that this one names for instance. The same problem is
-  /// kept once.
+  /// Adds a problem found by other means, in a file that this one names for instance. The same problem is kept once.
   void add(InputProblem problem);
 
   /// Of what the file says after its overrides; comments and the order of keys make no difference.

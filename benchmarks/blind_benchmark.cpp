@@ -270,11 +270,9 @@ int main(int argc, char** argv) {
     o.finished = true;
     outcomes[static_cast<std::size_t>(i)] = o;
     journal << line_of(c, o).dump() << std::endl;
-    fmt::print(
-        "{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} "
-        "s)\n",
-        o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size,
-        fmt::join(o.deviates, " "), o.covered, o.seconds);
+    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n",
+               o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size,
+               fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
     if (!out.empty()) base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }
@@ -282,8 +280,7 @@ int main(int argc, char** argv) {
   const nlohmann::json result = summary(cases, outcomes);
   fmt::print("{}\n", result.dump(1));
   if (!required) return 0;
-  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small
-  // run.
+  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small run.
   const nlohmann::json& large = result["sizes"][fmt::format("{:g}", sizes.back())];
   const bool good = large.value("right_class", 1.0) >= 0.95 &&
                     large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&

@@ -1,25 +1,3 @@
-# FindKLU: KLU of SuiteSparse with the libraries that it needs. Defines the target SuiteSparse::KLU.
-
-find_path(KLU_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)
-set(_klu_parts klu btf colamd amd suitesparseconfig)
-set(_klu_libraries "")
-foreach(_part IN LISTS _klu_parts)
-  string(TOUPPER "KLU_${_part}_LIBRARY" _variable)
-  find_library(${_variable} ${_part})
-  mark_as_advanced(${_variable})
-  list(APPEND _klu_libraries ${_variable})
-endforeach()
-mark_as_advanced(KLU_INCLUDE_DIR)
-
-include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(KLU REQUIRED_VARS KLU_KLU_LIBRARY KLU_INCLUDE_DIR ${_klu_libraries})
-
-if(KLU_FOUND AND NOT TARGET SuiteSparse::KLU)
-  add_library(SuiteSparse::KLU INTERFACE IMPORTED)
-  target_include_directories(SuiteSparse::KLU INTERFACE "${KLU_INCLUDE_DIR}")
-  foreach(_variable IN LISTS _klu_libraries)
-    target_link_libraries(SuiteSparse::KLU INTERFACE "${${_variable}}")
-  endforeach()
-endif()
-unset(_klu_parts)
-unset(_klu_libraries)
+# FindKLU: KLU of SuiteSparse. Defines the target SuiteSparse::KLU.
+include("${CMAKE_CURRENT_LIST_DIR}/SuiteSparseLibrary.cmake")
+snare_find_suitesparse(KLU btf colamd amd)

@@ -19,6 +19,10 @@ if(SNARE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 
+# Precompiled headers fill GCC's heap from the start, and it would look for garbage in them again and again: a tenth of the
+# time to compile. Without that it takes a quarter more memory, some 1.1 GB for the largest sources.
+add_compile_options("$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=800000>")
+
 # Private settings of our own targets; never exported.
 add_library(snare_build_settings INTERFACE)
 target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)

@@ -14,9 +14,8 @@ struct ArticulatedInertia {
   Eigen::Matrix3d I, H, M;
 };
 
-/// Storage of the algorithms below, made once; they allocate nothing. Each returns a reference to its result in
-/// here, good
-/// until the same algorithm runs again.
+/// Storage of the algorithms below, made once; they allocate nothing. Each returns a reference to its result in here,
+/// good until the same algorithm runs again.
 struct DynamicsWorkspace {
   explicit DynamicsWorkspace(const Tree& tree);
 

@@ -39,8 +39,7 @@ struct RobotDescription {
 };
 
 /// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names, numbers,
-/// inertias
-/// that no body has, links that nothing carries, loops. docs/arm_files.md lists what is checked.
+/// inertias that no body has, links that nothing carries, loops. docs/arm_files.md lists what is checked.
 [[nodiscard]] RobotDescription read_urdf(const std::filesystem::path& file);
 /// The same from text in memory; `file` stands in messages.
 [[nodiscard]] RobotDescription parse_urdf(const std::string& file, const std::string& text);

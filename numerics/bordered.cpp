@@ -1,6 +1,5 @@
 #include "numerics/bordered.hpp"
 
-#include "numerics/klu.hpp"
 #include "numerics/sparse_matrix.hpp"
 
 #include <Eigen/LU>
@@ -9,11 +8,6 @@
 #include <cmath>
 
 namespace snare::numerics {
-
-BorderedSolver::BorderedSolver() = default;
-BorderedSolver::~BorderedSolver() = default;
-BorderedSolver::BorderedSolver(BorderedSolver&&) noexcept = default;
-BorderedSolver& BorderedSolver::operator=(BorderedSolver&&) noexcept = default;
 
 bool BorderedSolver::factorize(const BorderedSystem& system) {
   whole_.reset();
@@ -24,10 +18,10 @@ bool BorderedSolver::factorize(const BorderedSystem& system) {
     return true;
   }
   const SparseMatrix matrix = to_sparse(system);
-  auto whole = std::make_unique<Klu>(matrix);
+  Klu whole(matrix);
   // Written so that a NaN counts as singular.
-  if (!whole->factorize(matrix) || !(whole->reciprocal_condition() >= 1e-15)) return false;
-  determinant_sign_ = whole->determinant_sign();
+  if (!whole.factorize(matrix) || !(whole.reciprocal_condition() >= 1e-15)) return false;
+  determinant_sign_ = whole.determinant_sign();
   whole_ = std::move(whole);
   return true;
 }
@@ -142,7 +136,7 @@ bool BorderedSolver::factorize_blocks(const BorderedSystem& system) {
 }
 
 void BorderedSolver::solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const {
-  if (whole_ != nullptr) {
+  if (whole_) {
     Eigen::VectorXd all(band.size() + border.size());
     all << band, border;
     whole_->solve(all);

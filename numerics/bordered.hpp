@@ -2,30 +2,24 @@
 
 #include "numerics/band_matrix.hpp"
 #include "numerics/bordered_system.hpp"
+#include "numerics/klu.hpp"
 
 #include <Eigen/Core>
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 namespace snare::numerics {
-
-class Klu;
 
 /// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides. Where K with its anchors is
 /// singular although the whole is not, KLU factorises the whole: when the blocks cannot be factorised, or when a
 /// pivot of K is mostly round-off and a trial solution has a componentwise backward error above 1e-8.
 class BorderedSolver {
  public:
-  BorderedSolver();
-  ~BorderedSolver();
-  BorderedSolver(BorderedSolver&&) noexcept;
-  BorderedSolver& operator=(BorderedSolver&&) noexcept;
-
   /// False when the whole system is singular.
   [[nodiscard]] bool factorize(const BorderedSystem& system);
   /// Whether the block factorisation holds; inertia and solved columns are known only then.
-  [[nodiscard]] bool blockwise() const noexcept { return whole_ == nullptr; }
+  [[nodiscard]] bool blockwise() const noexcept { return !whole_; }
 
   /// Solves with right-hand sides (b_q, b_b), each given negated residuals or any other load; in place.
   void solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const;
@@ -43,7 +37,7 @@ class BorderedSolver {
   [[nodiscard]] bool blocks_are_accurate(const BorderedSystem& system) const;
 
   BandLdlt factor_;
-  std::unique_ptr<Klu> whole_;
+  std::optional<Klu> whole_;
   double stiffness_ = 0.0;      // added at the anchors
   Eigen::MatrixXd solved_;      // K^-1 [anchor columns, dense columns]
   std::vector<int> column_of_;  // border unknown of each column of solved_

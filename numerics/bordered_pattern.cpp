@@ -37,7 +37,7 @@ BorderedPattern::BorderedPattern(const BorderedSystem& system, Zeros zeros)
   for (int i = 0; i < m_; ++i) {
     for (int j = 0; j < m_; ++j) want(n_ + i, n_ + j, system.corner(i, j));
   }
-  pattern_ = make_pattern(n_ + m_, std::move(entries));
+  pattern_ = make_pattern(n_ + m_, entries);
 
   for (int j = 0; j < n_; ++j) {
     for (int k = 0; k <= b_; ++k) {

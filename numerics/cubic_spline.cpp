@@ -72,7 +72,7 @@ SplineEquations spline_equations(const std::vector<double>& knots, SplineEnd upp
   equations.left.setFromTriplets(left.begin(), left.end());
   equations.right.setFromTriplets(right.begin(), right.end());
   return equations;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrices free what they hold
 
 /// Slopes for every column of `values`.
 Eigen::MatrixXd slopes_of(const std::vector<double>& knots, const Eigen::MatrixXd& values, SplineEnd upper) {

@@ -41,7 +41,7 @@ DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
 void DaeSystem::make_pattern_anew() {
   std::vector<std::pair<int, int>> entries;
   for (const DaePart* part : parts_) part->sparsity(entries);
-  matrix_ = make_pattern(size(), std::move(entries));
+  matrix_ = make_pattern(size(), entries);
   for (DaePart* part : parts_) part->attach_pattern(matrix_);
   ++pattern_version_;
   stale_pattern_ = false;

@@ -29,6 +29,8 @@ struct DaeBlock {
   DaeKind kind = DaeKind::differential;
   double absolute_tolerance = 1e-8;  ///< of one unknown, in its unit, > 0
   int first = 0;                     ///< set by DaeLayout
+  /// Whether the relative tolerance acts on them: not on places and angles, whose origin says nothing.
+  bool relative = true;
 };
 
 /// The unknowns of all parts, one block behind another.

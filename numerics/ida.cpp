@@ -64,13 +64,14 @@ struct Ida::Memory {
   double time = 0.0;
   std::vector<int> events;
   IdaReport report;
-  IdaStatistics counted;  // of earlier starts: IDA counts from each start
-  IdaWatch watch;
-  double previous_time = 0.0;
+  IdaStatistics counted;      // of earlier starts: IDA counts from each start
+  bool starting = false;      // no step since the start
+  double longest_step = 0.0;  // since the last start after which there was one; 0: none yet
 
   Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted);
   void update_counts();
   void begin(double at, const Eigen::VectorXd& y0, const Eigen::VectorXd& rate0);
+  [[nodiscard]] double first_step(double limit) const;
   void fail(int code, const std::string& function);
   [[nodiscard]] std::vector<std::string> worst_unknowns();
 };
@@ -105,9 +106,10 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       ++blocks;
     }
   }
-  callbacks.relative_tolerance = options.relative_tolerance;
+  callbacks.relative = Eigen::VectorXd::Zero(system.size());
   callbacks.scale = Eigen::VectorXd::Ones(system.size());
   for (const DaeBlock& block : system.layout().blocks()) {
+    if (block.relative) callbacks.relative.segment(block.first, block.count).setConstant(options.relative_tolerance);
     if (block.kind == DaeKind::differential || options.test_algebraic) {
       callbacks.scale.segment(block.first, block.count)
           .setConstant(std::sqrt(static_cast<double>(block.count) * blocks / tested));
@@ -156,15 +158,24 @@ void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::Vecto
   y = y0;
   rate = rate0;
   time = at;
-  previous_time = at;
+  starting = true;
   report = {};
   report.time = at;
   counted = callbacks.statistics;
   ++callbacks.statistics.restarts;
   check(IDAReInit(ida.get(), at, y_view.get(), rate_view.get()), "IDAReInit");
   if (integrals.size() > 0) check(IDAQuadReInit(ida.get(), integrals_view.get()), "IDAQuadReInit");
-  check(IDASetInitStep(ida.get(), options.first_step), "IDASetInitStep");
   std::fill(events.begin(), events.end(), 0);
+}
+
+// IDA would begin with a step on which nothing changes by more than half its tolerance, and double it with a Jacobian each
+// time: a body that flies uniformly costs a dozen. The error test divides a first step that is too long by four.   (M.2)
+double Ida::Memory::first_step(double limit) const {
+  if (options.first_step > 0.0 || options.cautious_start) return options.first_step;
+  constexpr double of_the_way = 1e-3;
+  constexpr double of_the_longest = 0.1;
+  const double step = std::max(of_the_way * (limit - time), options.smallest_step);
+  return longest_step > 0.0 ? std::min(step, of_the_longest * longest_step) : step;
 }
 
 std::vector<std::string> Ida::Memory::worst_unknowns() {
@@ -179,7 +190,7 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
     return {};
   }
   Eigen::VectorXd size = (map(current) - map(predicted)).cwiseAbs();
-  size.array() /= callbacks.scale.array() * (options.relative_tolerance * y.array().abs() + tolerance.array());
+  size.array() /= callbacks.scale.array() * (callbacks.relative.array() * y.array().abs() + tolerance.array());
   if (rows != nullptr) {
     for (Eigen::Index i = 0; i < size.size(); ++i) {
       if (!std::isfinite(map(rows)[i])) size[i] = std::numeric_limits<double>::infinity();
@@ -237,13 +248,14 @@ IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const E
   return m.report;
 }
 
-void Ida::watch(IdaWatch watch) {
-  memory_->watch = std::move(watch);
+void Ida::set_max_step(double step) {
+  check(IDASetMaxStep(memory_->ida.get(), std::isfinite(step) ? step : 0.0), "IDASetMaxStep");
 }
 
 IdaAdvance Ida::advance(double limit) {
   Memory& m = *memory_;
   check(IDASetStopTime(m.ida.get(), limit), "IDASetStopTime");
+  if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(limit)), "IDASetInitStep");
   double reached = m.time;
   const int code = IDASolve(m.ida.get(), limit, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
   m.update_counts();
@@ -253,24 +265,14 @@ IdaAdvance Ida::advance(double limit) {
     return IdaAdvance::failed;
   }
   IdaStatistics& s = m.callbacks.statistics;
-  m.previous_time = m.time;
   m.time = reached;
   m.report.time = reached;
   check(IDAGetLastStep(m.ida.get(), &m.report.step), "IDAGetLastStep");
+  m.longest_step = m.starting ? m.report.step : std::max(m.longest_step, m.report.step);
+  m.starting = false;
   ++s.steps;
   s.smallest_step = std::min(s.smallest_step, m.report.step);
   s.largest_step = std::max(s.largest_step, m.report.step);
-  if (m.watch) {
-    if (const std::optional<double> stop = m.watch(m.previous_time, *this)) {
-      check(IDAGetDky(m.ida.get(), *stop, 0, m.y_view.get()), "IDAGetDky");
-      check(IDAGetDky(m.ida.get(), *stop, 1, m.rate_view.get()), "IDAGetDky");
-      if (m.integrals.size() > 0) check(IDAGetQuadDky(m.ida.get(), *stop, 0, m.integrals_view.get()), "IDAGetQuadDky");
-      m.time = m.report.time = *stop;
-      std::fill(m.events.begin(), m.events.end(), 0);
-      m.callbacks.system.accept({m.time, m.y, m.rate});
-      return IdaAdvance::event;
-    }
-  }
   if (m.integrals.size() > 0) {
     double at = reached;
     check(IDAGetQuad(m.ida.get(), &at, m.integrals_view.get()), "IDAGetQuad");

@@ -24,14 +24,17 @@ enum class NewtonTest {
 /// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and of that over
 /// the blocks with differential unknowns, must be below one.
 struct IdaOptions {
-  double relative_tolerance = 1e-5;  ///< of every unknown [-], in (0, 1)
+  double relative_tolerance = 1e-5;  ///< of every unknown but those of blocks that are not relative [-], in (0, 1)
   /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
   /// oscillations that the step does not resolve.                                                theory.md (M.2)
   int max_order = 5;
   double max_step = std::numeric_limits<double>::infinity();  ///< [s], > 0
   /// A smaller one is a failure [s], > 0: without it IDA creeps up to a time that it cannot pass, for ever.
   double smallest_step = 1e-13;
-  double first_step = 0.0;      ///< [s]; 0: IDA chooses
+  /// [s]; 0: a thousandth of the way to the limit, and at most a tenth of the longest step before the last start; where
+  /// that is too long the error test shortens it.                                                theory.md (M.2)
+  double first_step = 0.0;
+  bool cautious_start = false;  ///< with first_step = 0: IDA's own, within which nothing changes by half its tolerance
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
   NewtonTest newton_test = NewtonTest::mean;
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
@@ -56,15 +59,9 @@ struct [[nodiscard]] IdaReport : SolveReport {
 enum class IdaAdvance {
   stepped,        ///< one internal step, short of the limit
   reached_limit,  ///< the state is at the limit
-  event,          ///< an event function is zero here: `events_found` (none: the watch has stopped the step)
+  event,          ///< an event function is zero here: `events_found`
   failed          ///< see `report`; the state is that of the last accepted step
 };
-
-class Ida;
-
-/// Asked after every internal step from `from` to the integrator's time, before the parts are told of it: a time in between at which to
-/// stop instead [s], or nothing.
-using IdaWatch = std::function<std::optional<double>(double from, const Ida& ida)>;
 
 /// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse
 /// Jacobian; the pattern is analysed when it changes only.                                theory.md (M.1), (M.2)
@@ -83,11 +80,10 @@ class Ida {
   [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
                                              double towards);
 
-  /// For what no sign of a function shows, such as bodies that have passed through each other within a step.
-  void watch(IdaWatch watch);
+  /// From the next step on [s], > 0; may be infinite.
+  void set_max_step(double step);
 
-  /// One internal step, never beyond `limit` [s]. When the watch stops it the state is that of the dense output there; begin anew from
-  /// it before the next one.
+  /// One internal step, never beyond `limit` [s].
   [[nodiscard]] IdaAdvance advance(double limit);
 
   [[nodiscard]] double time() const;

@@ -45,11 +45,11 @@ extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vecto
   });
 }
 
-// One over the tolerance of each unknown, w_i = 1/(s_i (r |y_i| + a_i)): an error e passes by the mean of (w_i e_i)^2.
+// One over the tolerance of each unknown, w_i = 1/(s_i (r_i |y_i| + a_i)): an error e passes by the mean of (w_i e_i)^2.
 extern "C" int snare_ida_weights(N_Vector y, N_Vector weights, void* data) {
   const auto& self = *static_cast<const IdaCallbacks*>(data);
   auto out = map(weights);
-  out = (self.scale.array() * (self.relative_tolerance * map(y).array().abs() + self.tolerance.array())).inverse();
+  out = (self.scale.array() * (self.relative.array() * map(y).array().abs() + self.tolerance.array())).inverse();
   return out.allFinite() ? 0 : -1;
 }
 

@@ -34,7 +34,7 @@ struct IdaCallbacks {
 
   static constexpr double unknown_remainder = 20.0;
 
-  double relative_tolerance = 0.0;
+  Eigen::VectorXd relative{};   // tolerance, zero where none acts
   Eigen::VectorXd tolerance{};  // absolute
   Eigen::VectorXd scale{};      // of both tolerances: makes IDA's mean over unknowns one over blocks (see Ida)
 };

@@ -24,7 +24,7 @@ struct Klu::Handles {
   Handles& operator=(const Handles&) = delete;
 };
 
-Klu::Klu(const SparseMatrix& pattern) : handles_(std::make_unique<Handles>()) {
+Klu::Klu(const SparseMatrix& pattern) : handles_(new Handles) {
   handles_->order = pattern.order;
   // KLU takes its pattern as pointers to non-const but does not write to it.
   handles_->symbolic = klu_analyze(pattern.order, const_cast<int*>(pattern.column_start.data()),
@@ -34,9 +34,9 @@ Klu::Klu(const SparseMatrix& pattern) : handles_(std::make_unique<Handles>()) {
   }
 }
 
-Klu::~Klu() = default;
-Klu::Klu(Klu&&) noexcept = default;
-Klu& Klu::operator=(Klu&&) noexcept = default;
+void Klu::HandlesDeleter::operator()(Handles* handles) const noexcept {
+  delete handles;
+}
 
 bool Klu::factorize(const SparseMatrix& matrix) {
   assert(matrix.order == handles_->order);

@@ -15,9 +15,6 @@ class Klu {
   /// Analyses the pattern. A pattern that makes every matrix singular is no error: `factorize` then is false. Throws
   /// LibraryError when the pattern is invalid or memory runs out.
   explicit Klu(const SparseMatrix& pattern);
-  ~Klu();
-  Klu(Klu&&) noexcept;
-  Klu& operator=(Klu&&) noexcept;
 
   /// Factorises values of the analysed pattern; false when the matrix is singular. Throws LibraryError when memory
   /// runs out.
@@ -31,7 +28,10 @@ class Klu {
 
  private:
   struct Handles;
-  std::unique_ptr<Handles> handles_;
+  struct HandlesDeleter {
+    void operator()(Handles* handles) const noexcept;
+  };
+  std::unique_ptr<Handles, HandlesDeleter> handles_;
 };
 
 }  // namespace snare::numerics

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 
 namespace snare::numerics {
 
@@ -23,21 +24,27 @@ Eigen::VectorXd SparseMatrix::operator*(const Eigen::VectorXd& x) const {
   return y;
 }
 
-SparseMatrix make_pattern(int order, std::vector<std::pair<int, int>> entries) {
-  std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
-    return a.second != b.second ? a.second < b.second : a.first < b.first;
-  });
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  SparseMatrix result;
-  result.order = order;
-  result.column_start.assign(static_cast<std::size_t>(order) + 1, 0);
+SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& entries) {
+  const auto columns = static_cast<std::size_t>(order);
+  // Rows by columns, with the repeated ones; then every column in order and without them.
+  std::vector<std::size_t> next(columns + 1, 0);
   for (const auto& [i, j] : entries) {
     assert(i >= 0 && i < order && j >= 0 && j < order);
-    ++result.column_start[static_cast<std::size_t>(j) + 1];
-    result.row.push_back(i);
+    ++next[static_cast<std::size_t>(j) + 1];
   }
-  for (std::size_t j = 0; j < static_cast<std::size_t>(order); ++j) {
-    result.column_start[j + 1] += result.column_start[j];
+  for (std::size_t j = 0; j < columns; ++j) next[j + 1] += next[j];
+  std::vector<int> rows(entries.size());
+  for (const auto& [i, j] : entries) rows[next[static_cast<std::size_t>(j)]++] = i;
+  SparseMatrix result;
+  result.order = order;
+  result.column_start.assign(columns + 1, 0);
+  auto first = rows.begin();
+  for (std::size_t j = 0; j < columns; ++j) {
+    const auto last = rows.begin() + static_cast<std::ptrdiff_t>(next[j]);
+    std::sort(first, last);
+    std::unique_copy(first, last, std::back_inserter(result.row));
+    result.column_start[j + 1] = static_cast<int>(result.row.size());
+    first = last;
   }
   result.value.assign(result.row.size(), 0.0);
   return result;
@@ -47,7 +54,7 @@ SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {
   std::vector<std::pair<int, int>> pattern;
   pattern.reserve(triplets.size());
   for (const Triplet& t : triplets) pattern.emplace_back(t.row, t.column);
-  SparseMatrix result = make_pattern(order, std::move(pattern));
+  SparseMatrix result = make_pattern(order, pattern);
   for (const Triplet& t : triplets) result.value[static_cast<std::size_t>(result.slot(t.row, t.column))] += t.value;
   return result;
 }

@@ -23,7 +23,7 @@ struct SparseMatrix {
 };
 
 /// Pattern from coordinates (i, j), repeated ones merged; values zero.
-[[nodiscard]] SparseMatrix make_pattern(int order, std::vector<std::pair<int, int>> entries);
+[[nodiscard]] SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& entries);
 
 /// One value to be added at (row, column).
 struct Triplet {

@@ -10,10 +10,6 @@ void check(int code, const std::string& function) {
   if (code < 0) throw base::LibraryError(function, code, "the library refused its input or could not be set up");
 }
 
-SunVector view(Eigen::VectorXd& v, SUNContext context) {
-  return SunVector(made(N_VMake_Serial(v.size(), v.data(), context), "N_VMake_Serial"));
-}
-
 SunMatrix make_matrix(const SparseMatrix& pattern, SUNContext context) {
   SunMatrix matrix(made(
       SUNSparseMatrix(pattern.order, pattern.order, static_cast<sunindextype>(pattern.row.size()), CSC_MAT, context),

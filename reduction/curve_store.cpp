@@ -31,9 +31,8 @@ std::uint64_t fnv1a(std::string_view text) {
 std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
   const coupling::PushProblem& t = wire.test;
   std::string text = fmt::format(
-      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} "
-      "g {} {} {} "
-      "rho {} elements {} {}",
+      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} g {} {} "
+      "{} rho {} elements {} {}",
       t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature, t.wire.torsional_stiffness(),
       t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius, t.pusher.radius, t.pusher.friction,
       t.pusher.compliance, static_cast<int>(t.pusher.direction), t.pusher.misalignment, t.bulge.mode, t.bulge.plane,

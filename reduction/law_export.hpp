@@ -11,16 +11,14 @@ namespace snare::reduction {
 [[nodiscard]] std::string position_name(double position);
 
 /// Sources that need nothing but their language's standard library: the table as `force(d, s, slack)` with
-/// `in_range(d, s, slack)`, and every simple law as `<law>_<position>(d)`. All in SI: m and N. Negative travel
-/// is no contact,
-/// no force; beyond the range the outermost cell's polynomial goes on, which `in_range` tells.
+/// `in_range(d, s, slack)`, and every simple law as `<law>_<position>(d)`. All in SI: m and N. Negative travel is no
+/// contact, no force; beyond the range the outermost cell's polynomial goes on, which `in_range` tells.
 [[nodiscard]] std::string cpp_header(const DistilledCase& one, const std::string& title);
 [[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title);
 [[nodiscard]] std::string python_module(const DistilledCase& one, const std::string& title);
 
-/// A slide joint with the linear spring-dashpot law of the first position, and how far that is from the full
-/// wire. MuJoCo's joint
-/// springs are linear: nothing else fits one.
+/// A slide joint with the linear spring-dashpot law of the first position, and how far that is from the full wire.
+/// MuJoCo's joint springs are linear: nothing else fits one.
 [[nodiscard]] std::string mujoco_snippet(const DistilledCase& one, const std::string& title);
 
 /// ADAMS solver splines: one of force over travel for every law position, and one of force over travel and position.

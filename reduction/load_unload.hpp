@@ -15,8 +15,7 @@ struct LoadUnloadState {
 /// A wire that dissipates by friction, at any rate alike.                                  theory.md (R.9)
 ///   F = L(d) [(1 + r)/2 + z (1 - r)/2],   dz = 2 dd/lambda, -1 <= z <= 1
 /// L: the loading curve; r: the share of it that is left on the way back, once the turn is over; lambda: the
-/// travel that the
-/// turn takes.
+/// travel that the turn takes.
 class LoadUnloadLaw {
  public:
   LoadUnloadLaw(numerics::HermiteCurve loading, double returned, double turn);

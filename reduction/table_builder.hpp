@@ -24,9 +24,8 @@ struct TableError {
   double worst_travel = 0.0;       ///< [m]
 };
 
-/// A table's stated bound over the largest error found in the middles of its cells, where a cubic's error is
-/// largest: one
-/// half more, for what lies between.
+/// A table's stated bound over the largest error found in the middles of its cells, where a cubic's error is largest:
+/// one half more, for what lies between.
 inline constexpr double bound_factor = 1.5;
 
 /// A table with its error. `report` is not usable where the sampling ended early; then there is no table.
@@ -51,9 +50,8 @@ struct BuiltTable {
 [[nodiscard]] BuiltTable build_table(CurveStore& store, const DistilSettings& settings,
                                      const SamplingObserver& observer = {});
 
-/// Knots for functions given on candidates: ends first, then one at a time where the spline through the knots
-/// is farthest
-/// from a function. lines: each as long as candidates. Returns ascending indices, `count` of them or all.
+/// Knots for functions given on candidates: ends first, then one at a time where the spline through the knots is
+/// farthest from a function. lines: each as long as candidates. Returns ascending indices, `count` of them or all.
 [[nodiscard]] std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
                                                    const std::vector<std::vector<double>>& lines, std::size_t count);
 

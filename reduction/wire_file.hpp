@@ -65,8 +65,7 @@ struct WireFile {
 /// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].  theory.md (R.1)
 [[nodiscard]] double default_travel(const coupling::PushProblem& test);
 
-/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws
-/// base::InputError with
+/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws base::InputError with
 /// every problem found (file, line, key, value, what is allowed).
 [[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file,
                                       const std::vector<base::Override>& overrides = {});

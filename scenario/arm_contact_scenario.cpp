@@ -160,7 +160,11 @@ WireMotions read_arm_contact(TomlDocument& document, const std::filesystem::path
   }
   if (contact) {
     override_times(root, duration, interval, contact->options);
-    if (asked.carries == Carries::wire) require_standing_wires(root, contact->models);
+    if (asked.carries == Carries::wire) {
+      require_standing_wires(root, contact->models);
+      if (contact->damping.mass_rate > 0.0)
+        root.fail("contact", "has damping.mass_rate_1_s: that drags against the world, which the arm's wire leaves");
+    }
   }
   if (!arm || !contact) finish_without(document, arm ? "contact" : "arm");
   document.finish();

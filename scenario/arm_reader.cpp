@@ -117,7 +117,7 @@ ArmMotion read_arm_motion(TomlDocument& document, const std::filesystem::path& f
   ArmMotion motion = read(document, *arm, angles, duration);
   motion.scenario.sample = interval;
   motion.scenario.ida.relative_tolerance = tolerance;
-  motion.scenario.tolerances.motion = motion_tolerance;
+  motion.scenario.tolerances.coordinate = motion.scenario.tolerances.rate = motion_tolerance;
   return motion;
 }
 

@@ -1,20 +1,17 @@
 #include "scenario/bodies_scenario.hpp"
 
-#include "base/archive.hpp"
 #include "base/index.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
-#include "coupling/contact/mesh_shape.hpp"
-#include "coupling/contact/revolved_shape.hpp"
 #include "coupling/dynamics/start.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
+#include "scenario/shape_reader.hpp"
 #include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -87,7 +84,9 @@ DeclaredWire read_declared_wire(const TomlTable& table, Names& names, const wire
   else
     w.bulge = across.normalized();
   w.wire.rod = wire::rod_in_motion(w.specification, w.span, table.integer_or("elements", 60, 8, 20000));
+  w.wire.rod.formulation = read_formulation(table);
   w.wire.rod.damping = damping;
+  w.wire.strength = read_strength(table, w.specification);
   w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind.value_or(wire::SpatialEnd::Kind::clamp);
   return w;
 }
@@ -129,87 +128,6 @@ coupling::MotionBody read_body(const TomlTable& table, Names& names) {
   return body;
 }
 
-enum class ShapeKind { knife_edge, cylinder, sphere, capsule, cone, grapple_shaft, mesh };
-
-// The document is told what a maker of shapes finds wrong.
-template <class Make>
-std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::string_view key, const Make& make) {
-  try {
-    return make();
-  } catch (const base::InputError& error) {
-    for (const base::InputProblem& p : error.problems())
-      table.fail(key, p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
-  }
-  return nullptr;
-}
-
-std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder,
-                                                         std::string& meshes) {
-  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
-                                                {"cylinder", ShapeKind::cylinder},
-                                                {"sphere", ShapeKind::sphere},
-                                                {"capsule", ShapeKind::capsule},
-                                                {"cone", ShapeKind::cone},
-                                                {"grapple_shaft", ShapeKind::grapple_shaft},
-                                                {"mesh", ShapeKind::mesh}};
-  const Range size = Range::above(0.0, far);
-  const auto kind = table.choice("kind", kinds);
-  if (!kind) return nullptr;
-  switch (*kind) {
-    case ShapeKind::knife_edge:
-      return std::make_shared<coupling::Capsule>(0.0, table.number("length_mm", size, mm));
-    case ShapeKind::sphere:
-      return std::make_shared<coupling::Ball>(table.number("radius_mm", size, mm));
-    case ShapeKind::capsule: {
-      const double radius = table.number("radius_mm", size, mm);
-      return std::make_shared<coupling::Capsule>(radius, table.number("length_mm", size, mm));
-    }
-    case ShapeKind::cylinder: {
-      const double radius = table.number("radius_mm", size, mm);
-      const double length = table.number("length_mm", size, mm);
-      if (!(radius > 0.0 && length > 0.0)) return nullptr;  // reported
-      return coupling::finite_cylinder(radius, length);
-    }
-    case ShapeKind::cone: {
-      const double lower = table.number("lower_radius_mm", Range::from(0.0, far), mm);
-      const double upper = table.number("upper_radius_mm", Range::from(0.0, far), mm);
-      const double length = table.number("length_mm", size, mm);
-      if (lower == 0.0 && upper == 0.0) table.fail("upper_radius_mm", "must be > 0 where lower_radius_mm is 0");
-      if (!(std::max(lower, upper) > 0.0 && lower >= 0.0 && upper >= 0.0 && length > 0.0)) return nullptr;
-      return coupling::truncated_cone(lower, upper, length);
-    }
-    case ShapeKind::grapple_shaft: {
-      coupling::GrappleShaft s;
-      const Range from_zero = Range::from(0.0, far);
-      s.shaft_radius = table.number_or("shaft_radius_mm", s.shaft_radius, size, mm);
-      s.shaft_length = table.number_or("shaft_length_mm", s.shaft_length, size, mm);
-      s.cam_radius = table.number_or("cam_radius_mm", s.cam_radius, size, mm);
-      s.underside_length = table.number_or("underside_length_mm", s.underside_length, from_zero, mm);
-      s.cam_length = table.number_or("cam_length_mm", s.cam_length, size, mm);
-      s.end_radius = table.number_or("end_radius_mm", s.end_radius, size, mm);
-      s.bulge = table.number_or("bulge_mm", s.bulge, from_zero, mm);
-      return made(table, "kind", [&s] { return grapple_shaft(s); });
-    }
-    case ShapeKind::mesh: {
-      static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
-      const std::string name = table.text("file");
-      const auto unit = table.choice("unit", units);
-      if (name.empty() || !unit) return nullptr;
-      return made(table, "file", [&] {
-        coupling::TriangleMesh mesh = coupling::read_triangle_mesh(folder / name, *unit);
-        base::ByteWriter bytes;
-        bytes(mesh.points);
-        for (std::array<int, 3>& triangle : mesh.triangles) {
-          for (int& corner : triangle) bytes(corner);
-        }
-        meshes += fmt::format("{:x};", base::fingerprint(bytes.bytes()));
-        return std::make_shared<coupling::MeshShape>(mesh);
-      });
-    }
-  }
-  return nullptr;
-}
-
 /// A shape with its body and friction, on no wire yet.
 coupling::MotionContact read_contact_shape(const TomlTable& table, const std::filesystem::path& folder,
                                            const Names& bodies, std::string& meshes) {
@@ -222,7 +140,8 @@ coupling::MotionContact read_contact_shape(const TomlTable& table, const std::fi
   contact.X_BS.p = read_vector_or_zero(table, "position_mm", Range::from(-far, far), mm);
   contact.X_BS.R = read_rotation_vector(table, "rotation_deg");
   contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
-  contact.points = table.integer_or("points", contact.points, 1, 100);
+  contact.foundation = read_foundation(table.table("foundation"));
+  static_cast<void>(table.integer_or("points", 4, 1, 100));  // of older files: their number has no limit any more
   return contact;
 }
 

@@ -128,7 +128,9 @@ ContactScenario read_contact(TomlDocument& document) {
   require_simple_motion(tables, scenario.push);
 
   scenario.damping = read_damping(root.table("damping"));
+  scenario.strength = read_strength(tables.wire, scenario.push.wire);
   read_body(root.table("body"), scenario);
+  scenario.foundation = read_foundation(root.table("foundation"));
   scenario.friction = read_friction(root.table("friction"), scenario.push.pusher.friction, "pusher.friction");
 
   std::set<std::string> names;
@@ -139,6 +141,7 @@ ContactScenario read_contact(TomlDocument& document) {
   if (scenario.models.empty() && !root.has("models")) scenario.models.push_back({"wire", "wire", {}});
 
   scenario.elements = root.table("solver").integer_or("elements", 60, 8, 20000);
+  scenario.formulation = read_formulation(root.table("solver"));
   scenario.output = read_motion_output(root.table("output"), o);
   scenario.input = document.canonical();
   document.finish();
@@ -163,6 +166,7 @@ coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& mod
   const auto end = push.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
+  rod.formulation = scenario.formulation;
   rod.damping = scenario.damping;
   rod.strands.time = scenario.strand_time;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
@@ -192,12 +196,13 @@ coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& mod
     motion.springs.push_back(spring);
     return motion;
   }
-  motion.wires.push_back({"wire", rod, rest, {}});
+  motion.wires.push_back({"wire", rod, rest, {}, scenario.strength});
   coupling::MotionContact contact;
   contact.name = model.name;
   contact.shape = std::make_shared<coupling::EndlessCylinder>(push.pusher.radius);
   contact.X_BS.p = scenario.probe;
   contact.wire_radius = 0.5 * w.diameter;
+  contact.foundation = scenario.foundation;
   contact.friction = scenario.friction;
   motion.contacts.push_back(contact);
   return motion;

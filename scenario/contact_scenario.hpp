@@ -22,10 +22,13 @@ struct ContactScenario {
   std::string input;           ///< canonical text of everything that was read: equal for equal scenarios
   coupling::PushProblem push;  ///< wire, mounts, probe (the pusher) and contact position
   wire::RodDamping damping;
+  coupling::WireStrength strength;
   double strand_time = wire::RodStrands{}.time;  ///< of a wire with strand friction [s]
   int elements = 60;
+  wire::Formulation formulation = wire::Formulation::vertices;
   coupling::MotionBody body;                        ///< at the start; position.y: less its distance to the wire
   Eigen::Vector3d probe = Eigen::Vector3d::Zero();  ///< p_BP of the probe's axis [m]
+  coupling::ElasticFoundation foundation;
   coupling::MotionFriction friction;
   std::vector<WireModel> models;  ///< run one after the other
   coupling::MotionOptions options;

@@ -82,6 +82,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   o.max_order = solver.integer_or("max_order", 2, 1, 5);
+  o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
 }
 
@@ -107,6 +108,30 @@ wire::RodDamping read_damping(const TomlTable& table) {
   return damping;
 }
 
+coupling::ElasticFoundation read_foundation(const TomlTable& table) {
+  coupling::ElasticFoundation f;
+  f.modulus = table.number_or("modulus_N_m2", f.modulus, Range::from(0.0, 1e16));
+  f.damping = table.number_or("damping_s_m", f.damping, Range::from(0.0, 1e6));
+  return f;
+}
+
+coupling::WireStrength read_strength(const TomlTable& table, const wire::WireSpecification& wire) {
+  static constexpr Choice<bool> ways[] = {{"flag", false}, {"stop", true}};
+  const bool ends_run = table.has("at_strength") && table.choice("at_strength", ways).value_or(false);
+  if (!table.has("strength_N")) {
+    if (table.has("at_strength")) table.fail("at_strength", "only beside strength_N");
+    return {};
+  }
+  return coupling::wire_strength(wire, table.number("strength_N", Range::above(0.0, 1e9)), ends_run);
+}
+
+wire::Formulation read_formulation(const TomlTable& table) {
+  static constexpr Choice<wire::Formulation> formulations[] = {{"vertices", wire::Formulation::vertices},
+                                                               {"higher_order", wire::Formulation::higher_order}};
+  if (!table.has("formulation")) return wire::Formulation::vertices;
+  return table.choice("formulation", formulations).value_or(wire::Formulation::vertices);
+}
+
 coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, std::string_view dynamic_key) {
   static constexpr Choice<coupling::ContactFriction> laws[] = {{"stick_slip", coupling::ContactFriction::stick_slip},
                                                                {"smooth", coupling::ContactFriction::smooth}};
@@ -117,7 +142,6 @@ coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, s
   f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
   f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
   f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
-  f.bristle_force = table.number_or("bristle_force_N", f.bristle_force, Range::above(0.0, 1e6));
   f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
   const bool at_once =
       f.law == coupling::ContactFriction::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;
@@ -125,7 +149,7 @@ coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, s
     table.fail("dynamic_speed_m_s", "must be > static_speed_m_s (with stick_slip both may be 0)");
   if (f.law == coupling::ContactFriction::smooth) {
     if (f.static_speed == 0.0) table.fail("static_speed_m_s", "must be > 0 with the smooth law");
-    for (const char* key : {"bristle_displacement_m", "bristle_force_N", "bristle_time_s"}) {
+    for (const char* key : {"bristle_displacement_m", "bristle_time_s"}) {
       if (table.has(key)) table.fail(key, "belongs to law = \"stick_slip\"");
     }
   } else if (f.static_coefficient < dynamic) {

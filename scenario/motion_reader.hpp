@@ -56,6 +56,13 @@ void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& o
 /// `[damping]` of the wires.
 [[nodiscard]] wire::RodDamping read_damping(const base::TomlTable& table);
 
+/// `[foundation]` between wire and shape.
+[[nodiscard]] coupling::ElasticFoundation read_foundation(const base::TomlTable& table);
+/// `strength_N` and `at_strength` of a wire.
+[[nodiscard]] coupling::WireStrength read_strength(const base::TomlTable& table, const wire::WireSpecification& wire);
+/// `formulation` of a wire: how its bending is discretised.
+[[nodiscard]] wire::Formulation read_formulation(const base::TomlTable& table);
+
 /// Law, coefficients, speeds and bristle of the friction. dynamic: the coefficient of fast sliding; dynamic_key: its key in the file.
 [[nodiscard]] coupling::MotionFriction read_friction(const base::TomlTable& table, double dynamic,
                                                      std::string_view dynamic_key);

@@ -236,7 +236,7 @@ std::vector<Row> amplitude_rows() {
     const ElasticArm arm = one_joint_arm(H, 1.0, table2_law(0.0, StiffnessReading::continuous));
     auto run = at_rest(arm, Drive::locked(), 40.0, 1e-10);
     run.initial.q[0] = A;
-    run.tolerances.motion = 1e-13;
+    run.tolerances.coordinate = run.tolerances.rate = 1e-13;
     rows.push_back(row(fmt::format("undamped Table 2, period at an amplitude of {:g} deg", amplitude), "s",
                        "quadrature of the energy integral", period, mean_period(multibody::simulate(run), arm),
                        ErrorKind::relative, 1e-4));
@@ -300,7 +300,7 @@ std::vector<Row> jump_rows() {
         Case{"literal, narrow ramps", StiffnessReading::literal, width}}) {
     auto run = at_rest(one_joint_arm(inertia, 1.0, table2_law(1.0, c.reading, c.width)), Drive::locked(), 60.0, 1e-7);
     run.initial.q[0] = 0.5 * degree;
-    run.tolerances.motion = 1e-11;
+    run.tolerances.coordinate = run.tolerances.rate = 1e-11;
     const ArmHistory history = multibody::simulate(run);
     const PlainRun plain = swing_on_table2(inertia, 0.5, 60.0, c.reading == StiffnessReading::literal);
     const std::string name = fmt::format("Table 2 ({}), {} kg m^2 let go at 0.5 deg: ", c.name, inertia);
@@ -318,7 +318,7 @@ std::vector<Row> jump_rows() {
   for (const double w : {width, 0.1 * width}) {
     auto run = at_rest(one_joint_arm(0.01 * inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)),
                        Drive::locked(), 20.0, 1e-7);
-    run.tolerances.motion = 1e-12;
+    run.tolerances.coordinate = run.tolerances.rate = 1e-12;
     run.loads.push_back({1, {{0.0, 0.0, 10.0}, Vector3d::Zero()}, 0.0, 1e3, multibody::TimedLoad::Shape::constant});
     const ArmHistory history = multibody::simulate(run);
     const double usable = history.report.usable() ? 0.0 : not_computed;
@@ -372,7 +372,7 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
   for (std::size_t k = 0; k < 3; ++k) {
     auto run = scenario::joint_step(arm, arm.poses.back().angles, static_cast<int>(k), 0.5 * degree, 60.0);
     run.ida.relative_tolerance = 1e-6;
-    run.tolerances.motion = 1e-8;
+    run.tolerances.coordinate = run.tolerances.rate = 1e-8;
     const ArmHistory history = multibody::simulate(run);
     const std::string name = fmt::format("literal Table 2 at all six joints, step of joint {}: ", k + 1);
     rows.push_back(

@@ -24,13 +24,11 @@ struct BlindReading {
 /// falls), C = -T_s pushes it out. The bending term has the sign of the sliding sleeve (Bigoni et al. 2015):
 /// bending in the wire next to the mount lowers the energy when wire is fed.
 /// Pusher: r(S_c) = a + R nu(S_c), a = touch + (travel - c_p F) m, f = n(S_c-) - n(S_c+), F = f . m. Sliding:
-/// f . t = sgn mu f . nu with sgn the sign of d(S_c + R th_c); sticking: d(S_c + R th_c) = 0. It sticks at
-/// first touch.
+/// f . t = sgn mu f . nu with sgn the sign of d(S_c + R th_c); sticking: d(S_c + R th_c) = 0. It sticks at first touch.
 /// Strands: M grows by EI_x (kappa - kappa_p), bounded by EI_x kappa_slip. Yield: a share h = 0.02 of EA and
 /// of EI stays elastic, the rest is elastic and perfectly plastic, in bending in 20 fibres of the round
 /// section, without interaction of bending and tension. Both start unloaded in the straight wire. Viscous: e
-/// and kappa are replaced by e + tau de/dt and kappa + tau dkappa/dt at fixed S, by implicit Euler from rest
-/// at time 0.
+/// and kappa are replaced by e + tau de/dt and kappa + tau dkappa/dt at fixed S, by implicit Euler from rest at time 0.
 ///
 /// travel: of the pusher after first touch [m], in the order of the test. time: empty, or one for each
 /// reading, from first touch, increasing [s]; needed when relaxation_time > 0. A lost contact reads force 0.

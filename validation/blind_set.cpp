@@ -172,8 +172,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     throw std::invalid_argument("no blind effect " + effect);
   }
   std::mt19937 random(7919u * seed + 17u);
-  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many
-  // times.
+  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
   const auto which = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
   std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
   std::mt19937 noise(own);
@@ -216,8 +215,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
       base.col(k) = read_all("none", other, 0.0, highest_tension) - plain;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not
-    // linearly.
+    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly.
     const auto size_of = [&](const Eigen::VectorXd& changed) {
       Hidden fitted = h;
       Eigen::VectorXd left = changed - plain;

@@ -11,9 +11,7 @@ namespace snare::validation {
 
 namespace {
 
-using coupling::MotionEvent;
 using coupling::MotionResult;
-using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr double mass = 2.0;  // [kg]

@@ -64,8 +64,7 @@ class Shooting {
   }
   [[nodiscard]] static ElasticaForce force(const VectorXd& z, Index at) { return {z[at], z[at + 1]}; }
 
-  // Geometric curvature of the wire at the point contact over the cylinder's, 1 where the wire begins to
-  // wrap.
+  // Geometric curvature of the wire at the point contact over the cylinder's, 1 where the wire begins to wrap.
   [[nodiscard]] double relative_curvature(const VectorXd& z) const {
     const ElasticaSection p = section(z, pieces_);
     const double tension = section_forces(force(z, left_force()), p.angle).tension;

@@ -24,7 +24,6 @@ using coupling::MotionOptions;
 using coupling::MotionResult;
 using coupling::MotionSample;
 using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
 using std::numbers::pi;
 
 using base::mm;

@@ -4,11 +4,21 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace snare::wire {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Rows = CellRows;
+
+namespace {
+
+Directors scaled(const Directors& d, double factor) {
+  return {factor * d.first, factor * d.second};
+}
+
+}  // namespace
 
 // d/dx_{i-1} = -d/da,   d/dx_i = d/da - d/db,   d/dx_{i+1} = d/db.
 CellVector to_cell(const PairGradient& g) {
@@ -17,32 +27,48 @@ CellVector to_cell(const PairGradient& g) {
   return v;
 }
 
-CellMatrix to_cell(const PairHessian& h) {
-  CellMatrix m = CellMatrix::Zero();
-  const Matrix3d ba = h.ab.transpose();
-  m.block<3, 3>(Rows::before, Rows::before) = h.aa;
-  m.block<3, 3>(Rows::before, Rows::middle) = -h.aa + h.ab;
-  m.block<3, 3>(Rows::before, Rows::after) = -h.ab;
-  m.block<3, 3>(Rows::middle, Rows::before) = -h.aa + ba;
-  m.block<3, 3>(Rows::middle, Rows::middle) = h.aa - h.ab - ba + h.bb;
-  m.block<3, 3>(Rows::middle, Rows::after) = h.ab - h.bb;
-  m.block<3, 3>(Rows::after, Rows::before) = -ba;
-  m.block<3, 3>(Rows::after, Rows::middle) = ba - h.bb;
-  m.block<3, 3>(Rows::after, Rows::after) = h.bb;
-  const auto with_angle = [&m](int angle, const Vector3d& a, const Vector3d& b) {
-    m.block<3, 1>(Rows::before, angle) = -a;
-    m.block<3, 1>(Rows::middle, angle) = a - b;
-    m.block<3, 1>(Rows::after, angle) = b;
-    m.block<1, 3>(angle, Rows::before) = -a.transpose();
-    m.block<1, 3>(angle, Rows::middle) = (a - b).transpose();
-    m.block<1, 3>(angle, Rows::after) = b.transpose();
-  };
-  with_angle(Rows::angle_before, h.a_theta_a, h.b_theta_a);
-  with_angle(Rows::angle_after, h.a_theta_b, h.b_theta_b);
-  m(Rows::angle_before, Rows::angle_before) = h.theta_aa;
-  m(Rows::angle_before, Rows::angle_after) = m(Rows::angle_after, Rows::angle_before) = h.theta_ab;
-  m(Rows::angle_after, Rows::angle_after) = h.theta_bb;
+CellMatrix to_cell(const PairMatrix& h) {
+  Eigen::Matrix<double, CellRows::count, 8> r;
+  r << -h.topRows<3>(), h.row(3), h.topRows<3>() - h.middleRows<3>(4), h.row(7), h.middleRows<3>(4);
+  CellMatrix m;
+  m << -r.leftCols<3>(), r.col(3), r.leftCols<3>() - r.middleCols<3>(4), r.col(7), r.middleCols<3>(4);
   return m;
+}
+
+PairVector to_pair(const PairGradient& g) {
+  PairVector v;
+  v << g.a, g.theta_a, g.b, g.theta_b;
+  return v;
+}
+
+PairMatrix to_pair(const PairHessian& h) {
+  PairMatrix m;
+  m << h.aa, h.a_theta_a, h.ab, h.a_theta_b,                                     //
+      h.a_theta_a.transpose(), h.theta_aa, h.b_theta_a.transpose(), h.theta_ab,  //
+      h.ab.transpose(), h.b_theta_a, h.bb, h.b_theta_b,                          //
+      h.a_theta_b.transpose(), h.theta_ab, h.b_theta_b.transpose(), h.theta_bb;
+  return m;
+}
+
+PairVector BendingCell::pair_rate() const {
+  const Vector3d middle = rate.segment<3>(Rows::middle);
+  PairVector r;
+  r << middle - rate.segment<3>(Rows::before), rate[Rows::angle_before], rate.segment<3>(Rows::after) - middle,
+      rate[Rows::angle_after];
+  return r;
+}
+
+void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor, Eigen::VectorXd& gradient) {
+  constexpr int block = RodModel::block;
+  if (i > 0) {
+    gradient.segment<3>(block * (i - 1)) -= factor * g.a;
+    gradient[block * (i - 1) + RodModel::angle] += factor * g.theta_a;
+  }
+  gradient.segment<3>(block * i) += factor * (g.a - g.b);
+  if (i < model.edges()) {
+    gradient[block * i + RodModel::angle] += factor * g.theta_b;
+    gradient.segment<3>(block * (i + 1)) += factor * g.b;
+  }
 }
 
 bool BendingCell::exists(const RodModel& model, int i) {
@@ -54,32 +80,38 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
     : end_(model.end_of(i)) {
   const SpatialState& state = instant.state;
   const int n = model.edges();
-  // Directions and directors of the edges before and after; at an end those of the mount stand for the outer
-  // edge.
+  // Directions and directors of the edges before and after; at an end those of the mount stand for the outer edge.
   const auto add_edge = [&](int e, int angle, Directors& directors, double& inverse_length) {
-    const bool mount = e < 0 || e >= n;
-    const Frame frame = mount ? (e < 0 ? *state.left_mount : *state.right_mount) : state.frames[base::at(e)];
-    const double theta =
-        mount ? model.properties().end(*end_).twist_angle : state.q[RodModel::block * e + RodModel::angle];
-    directors.first = turned_director(frame, theta);
-    directors.second = frame.tangent.cross(directors.first);
-    if (!mount) {
-      inverse_length = 1.0 / (vertex(state, e + 1) - vertex(state, e)).norm();
-      rate[angle] = at.rate[model.angle_of(e)];
+    if (e < 0 || e >= n) {
+      const Frame& frame = e < 0 ? *state.left_mount : *state.right_mount;
+      directors.first = turned_director(frame, model.properties().end(*end_).twist_angle);
+      directors.second = frame.tangent.cross(directors.first);
+      return frame.tangent;
     }
-    return frame.tangent;
+    directors = instant.directors[base::at(e)];
+    inverse_length = 1.0 / std::sqrt((vertex(state, e + 1) - vertex(state, e)).squaredNorm());
+    rate[angle] = at.rate[model.angle_of(e)];
+    return state.frames[base::at(e)].tangent;
   };
   const Vector3d tangent_before = add_edge(i - 1, Rows::angle_before, before, inverse.a);
   const Vector3d tangent_after = add_edge(i, Rows::angle_after, after, inverse.b);
   turn = make_turn(tangent_before, tangent_after);
+  if (model.is_curved() && end_) {
+    // What the first edge turns from its mount is integral (1 - s/h) k ds, whose centre is at h/3: of the directors at 0
+    // and at h/2 it takes 1/3 and 2/3 (W.31).
+    const double mount = 2.0 / 3.0;
+    const double edge = 4.0 / 3.0;
+    const bool left = *end_ == End::left;
+    before = scaled(before, left ? mount : edge);
+    after = scaled(after, left ? edge : mount);
+  }
 
   // Velocities of the vertices that there are.
   if (i > 0) rate.segment<3>(Rows::before) = at.y.segment<3>(model.velocity_of(i - 1));
   rate.segment<3>(Rows::middle) = at.y.segment<3>(model.velocity_of(i));
   if (i < n) rate.segment<3>(Rows::after) = at.y.segment<3>(model.velocity_of(i + 1));
 
-  // A mount that spins with w carries the frame in which the edge e beside it bends: e' - w x e, theta' -
-  // w.t.
+  // A mount that spins with w carries the frame in which the edge e beside it bends: e' - w x e, theta' - w.t.
   if (end_ && instant.spin[index_of(*end_)]) {
     spin_ = *instant.spin[index_of(*end_)];
     const int e = model.edge_at(*end_);
@@ -95,6 +127,26 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
   const double rest_before = i > 0 ? model.rest_length(i - 1) : 0.0;
   const double rest_after = i < n ? model.rest_length(i) : 0.0;
   length = 0.5 * (rest_before + rest_after);
+}
+
+// (W.24) with t' = (I - t t^T) a'/|a| and likewise u', c' = t'.u + t.u', and directors that turn by theta' about t, u:
+//   kb' = [2 (t' x u + t x u') - c' kb]/chi,
+//   kappa_1' = 1/2 [kb'.(m2_- + m2_+) - theta_-' kb.m1_- - theta_+' kb.m1_+],
+//   kappa_2' = -1/2 [kb'.(m1_- + m1_+) + theta_-' kb.m2_- + theta_+' kb.m2_+].
+Eigen::Vector2d BendingCell::curvature_rates() const {
+  const Vector3d& t = turn.before;
+  const Vector3d& u = turn.after;
+  const Vector3d& kb = turn.binormal;
+  const Vector3d a = inverse.a * (rate.segment<3>(Rows::middle) - rate.segment<3>(Rows::before));
+  const Vector3d b = inverse.b * (rate.segment<3>(Rows::after) - rate.segment<3>(Rows::middle));
+  const Vector3d t_rate = a - t.dot(a) * t;
+  const Vector3d u_rate = b - u.dot(b) * u;
+  const Vector3d kb_rate =
+      (2.0 * (t_rate.cross(u) + t.cross(u_rate)) - (t_rate.dot(u) + t.dot(u_rate)) * kb) / turn.chi;
+  const double turn_a = rate[Rows::angle_before];
+  const double turn_b = rate[Rows::angle_after];
+  return {0.5 * (kb_rate.dot(before.second + after.second) - kb.dot(turn_a * before.first + turn_b * after.first)),
+          -0.5 * (kb_rate.dot(before.first + after.first) + kb.dot(turn_a * before.second + turn_b * after.second))};
 }
 
 // d(w x e)/de = [w]_x,   d(w.t)/de = (w - (w.t) t)^T/|e|;   e = x_1 - x_0 at the left end, x_n - x_{n-1} at

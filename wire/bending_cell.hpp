@@ -8,8 +8,7 @@
 
 namespace snare::wire {
 
-/// Unknowns of a vertex's cell: x_{i-1}, theta_{i-1}, x_i, theta_i, x_{i+1}; band index block (i - 1) +
-/// local.
+/// Unknowns of a vertex's cell: x_{i-1}, theta_{i-1}, x_i, theta_i, x_{i+1}; band index block (i - 1) + local.
 struct CellRows {
   static constexpr int before = 0;        ///< x_{i-1} (3)
   static constexpr int angle_before = 3;  ///< theta_{i-1}
@@ -23,20 +22,30 @@ struct CellRows {
 using CellVector = Eigen::Matrix<double, CellRows::count, 1>;
 using CellMatrix = Eigen::Matrix<double, CellRows::count, CellRows::count>;
 
-/// Derivatives by the cell's unknowns from those by its edges a = x_i - x_{i-1}, b = x_{i+1} - x_i and
-/// angles.
+/// By the edges a = x_i - x_{i-1}, b = x_{i+1} - x_i and their angles: a (3), theta_{i-1}, b (3), theta_i.
+using PairVector = Eigen::Matrix<double, 8, 1>;
+using PairMatrix = Eigen::Matrix<double, 8, 8>;
+[[nodiscard]] PairVector to_pair(const PairGradient& g);
+[[nodiscard]] PairMatrix to_pair(const PairHessian& h);
+
+/// Derivatives by the cell's unknowns from those by its edges and angles.
 [[nodiscard]] CellVector to_cell(const PairGradient& g);
-[[nodiscard]] CellMatrix to_cell(const PairHessian& h);
+[[nodiscard]] CellMatrix to_cell(const PairMatrix& h);
+[[nodiscard]] inline CellMatrix to_cell(const PairHessian& h) {
+  return to_cell(to_pair(h));
+}
 
 /// One vertex's bending in motion: its curvatures kappa_1, kappa_2 and the rates of what they depend on.
 struct BendingCell {
   Turn turn;
   InverseLengths inverse;
-  Directors before, after;
-  double length = 0.0;  ///< of the cell [m]
+  Directors before, after;  ///< of length one, but for their weights at the mount of a rod of higher order
+  double length = 0.0;      ///< of the cell [m]
   /// Of the cell's unknowns, relative to a mount that spins: e' - w x e of the edge beside it, theta' - w.t
   /// of its angle.                                                                           theory.md (M.17)
   CellVector rate = CellVector::Zero();
+  /// The same of its edges and angles.
+  [[nodiscard]] PairVector pair_rate() const;
   /// Change of `rate` with the cell's places at given velocities; zero but beside a mount that spins.
   [[nodiscard]] CellMatrix rate_by_place() const;
 
@@ -45,9 +54,13 @@ struct BendingCell {
   BendingCell(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at, int i);
 
   /// kappa_j, j = 0 or 1.
-  [[nodiscard]] WeightedCurvature curvature(int j) const {
-    return {turn, before, after, j == 0 ? Eigen::Vector2d(1.0, 0.0) : Eigen::Vector2d(0.0, 1.0)};
+  [[nodiscard]] WeightedCurvature curvature(int j) const { return curvature(Eigen::Vector2d::Unit(j)); }
+  /// sum_j weights_j kappa_j.
+  [[nodiscard]] WeightedCurvature curvature(const Eigen::Vector2d& weights) const {
+    return {turn, before, after, weights};
   }
+  /// kappa_1', kappa_2' [1/s].
+  [[nodiscard]] Eigen::Vector2d curvature_rates() const;
   /// First and second derivatives of kappa_j by edges and angles.
   struct Derivatives {
     PairGradient gradient;
@@ -60,5 +73,8 @@ struct BendingCell {
   Eigen::Vector3d spin_ = Eigen::Vector3d::Zero();  // of a mount that moves
   Eigen::Vector3d edge_ = Eigen::Vector3d::Zero();  // beside it
 };
+
+/// Adds factor times derivatives by the edges beside vertex i and their angles to those by bands.
+void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor, Eigen::VectorXd& gradient);
 
 }  // namespace snare::wire

@@ -118,8 +118,7 @@ void WeightedCurvature::add_gradient(const InverseLengths& inverse, PairGradient
 //   |a|^2 d2kappa/da2 = -(A mean^T + mean A^T) - kappa/chi (I - t t^T) + 1/2 kb w_-^T,
 //   |b|^2 d2kappa/db2 = -(B mean^T + mean B^T) - kappa/chi (I - u u^T) + 1/2 kb w_+^T,
 //   |a||b| d2kappa/da db = -A mean^T - mean B^T - kappa/chi (I + t u^T) - [s]_x/chi,
-// where of kb w^T the symmetric part is taken. By an edge and an angle (v of the angle's edge), and by
-// angles:
+// where of kb w^T the symmetric part is taken. By an edge and an angle (v of the angle's edge), and by angles:
 //   |a| d2kappa/da dtheta = 1/2 (kb.v) mean - u x v/chi,   |b| d2kappa/db dtheta = 1/2 (kb.v) mean + t x
 //     v/chi,
 //   d2kappa/dtheta^2 = -1/2 kb.w,   d2kappa/dtheta_- dtheta_+ = 0.

@@ -19,8 +19,7 @@ struct Turn {
 
 [[nodiscard]] Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after);
 
-/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist
-/// angles.
+/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist angles.
 struct PairGradient {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

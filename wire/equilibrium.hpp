@@ -61,8 +61,7 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
   double shift = 0.0;
   double previous = std::numeric_limits<double>::max();
 
-  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times
-  // an edge.
+  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times an edge.
   const auto is_angle = [](Eigen::Index i) { return i % Rod::block >= Rod::dimension; };
   const auto evaluate = [&](const State& at) {
     rod.assemble(at, no_controls, assembly);
@@ -97,8 +96,7 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     if (report.iterations == options.max_iterations) break;
 
     if (options.branch == Branch::stable) {
-      // Shift until positive definite; start from the last shift, so that a long descent does not search
-      // anew.
+      // Shift until positive definite; start from the last shift, so that a long descent does not search anew.
       double trial =
           (factored && factor.negative_pivots() == 0) ? 0.0 : std::max(shift, 1e-3 * ei / std::pow(length, 3));
       while (trial > 0.0) {

@@ -21,7 +21,7 @@ Vector3d edge_of(const RodInstant& instant, int e) {
 void add_axial_damping(const RodModel& model, const RodInstant& instant, const DaePoint& at, Eigen::VectorXd& gradient,
                        double& power) {
   for (int e = 0; e < model.edges(); ++e) {
-    const Vector3d t = edge_of(instant, e).normalized();
+    const Vector3d& t = instant.state.frames[base::at(e)].tangent;
     const double rest = model.rest_length(e);
     const double rate = t.dot(at.y.segment<3>(model.velocity_of(e + 1)) - at.y.segment<3>(model.velocity_of(e))) / rest;
     const double force = model.damping().axial_time * model.properties().axial_stiffness * rate;
@@ -73,19 +73,22 @@ std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell
 // and where a mount spins, r also changes with the places.
 void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell, int i, double c,
                                   const RodSlots& slots, std::vector<double>& values) {
-  CellMatrix by_place = CellMatrix::Zero();
-  CellMatrix by_rate = CellMatrix::Zero();
+  PairMatrix place = PairMatrix::Zero();
+  PairMatrix rate = PairMatrix::Zero();
+  const PairVector r = cell.pair_rate();
   const std::array<double, 2> stiffness = viscous_stiffness(model, cell);
   for (int j = 0; j < 2; ++j) {
     const BendingCell::Derivatives kappa = cell.differentiate(j);
-    const CellVector slope = to_cell(kappa.gradient);
-    const CellMatrix hessian = to_cell(kappa.hessian);
-    const double factor = stiffness[base::at(j)];
-    by_place += factor * (slope.dot(cell.rate) * hessian + slope * (hessian * cell.rate).transpose());
-    by_rate += factor * slope * slope.transpose();
+    const PairVector slope = to_pair(kappa.gradient);
+    const PairMatrix hessian = to_pair(kappa.hessian);
+    const PairVector weighted = stiffness[base::at(j)] * slope;
+    place += weighted.dot(r) * hessian + weighted * (hessian * r).transpose();
+    rate += weighted * slope.transpose();
   }
+  CellMatrix by_place = to_cell(place);
+  const CellMatrix by_rate = to_cell(rate);
   if (model.end_of(i)) by_place += by_rate * cell.rate_by_place();
-  slots.add_cell(i, by_place, by_rate, c, model.bands(), values);
+  slots.add_cell(i, by_place, by_rate, c, model.bands() - 1, values);  // the last angle is of no edge
 }
 
 }  // namespace snare::wire

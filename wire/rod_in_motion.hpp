@@ -29,6 +29,12 @@ struct RodStrands {
   [[nodiscard]] bool act() const { return extra_stiffness > 0.0; }
 };
 
+/// How a wire's bending is discretised.
+enum class Formulation {
+  vertices,     ///< curvature lumped at the vertices, chords that stretch: second order                  (W.27)
+  higher_order  ///< curvatures as unknowns, edges as beams: fourth order for loads on vertices, (W.31) to (W.33)
+};
+
 /// Constants of a wire in motion.
 struct RodInMotion {
   SpatialRodProperties properties;  ///< stiffness, mounts, weight
@@ -36,6 +42,7 @@ struct RodInMotion {
   double length = 0.0;              ///< unstretched [m], > 0
   int elements = 60;                ///< >= 4
   double grading = 0.0;             ///< of the mesh, see MaterialMesh; 0: equal edges
+  Formulation formulation = Formulation::vertices;
   RodDamping damping;
   RodStrands strands;
 
@@ -48,7 +55,7 @@ struct RodInMotion {
 struct RodTolerances {
   double position = 1e-7;  ///< [m]
   double velocity = 1e-4;  ///< [m/s]
-  double angle = 1e-6;     ///< of twist [rad]
+  double angle = 1e-6;     ///< of twist, and of what an edge of mean length turns by its curvature [rad]
 };
 
 /// Where a mount that moves points, and how it turns, at given unknowns of the DAE.

@@ -1,5 +1,7 @@
 #include "wire/rod_model.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cassert>
 #include <cmath>
 
@@ -17,7 +19,10 @@ MaterialMesh checked_mesh(const RodInMotion& rod) {
 }  // namespace
 
 RodModel::RodModel(const RodInMotion& constants)
-    : constants_(constants), rod_(checked_mesh(constants), constants.properties), controls_(constants.controls()) {
+    : constants_(constants),
+      rod_(checked_mesh(constants), constants.properties,
+           constants.formulation == Formulation::higher_order ? Strains::twist : Strains::all),
+      controls_(constants.controls()) {
   // m_i = rho A (h_{i-1} + h_i)/2 (M.3).
   mass_.assign(base::at(vertices()), 0.0);
   for (int e = 0; e < edges(); ++e) {
@@ -55,13 +60,31 @@ void RodModel::release(End end) {
 void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, const RodTolerances& tolerances) {
   const int n = vertices();
   const std::vector<std::string> axes{"x", "y", "z"};
-  x_ = layout.add({name + " position", axes, 3 * n, DaeKind::differential, tolerances.position, 0});
-  theta_ = layout.add({name + " twist angle", {}, n, DaeKind::algebraic, tolerances.angle, 0});
+  x_ = layout.add({name + " position", axes, 3 * n, DaeKind::differential, tolerances.position, 0, false});
+  theta_ = layout.add({name + " twist angle", {}, n, DaeKind::algebraic, tolerances.angle, 0, false});
   v_ = layout.add({name + " velocity", axes, 3 * n, DaeKind::differential, tolerances.velocity, 0});
+  if (is_curved()) {
+    curvature_ = layout.add({name + " curvature",
+                             {"1", "2"},
+                             2 * n,
+                             DaeKind::algebraic,
+                             tolerances.angle * edges() / constants_.length,
+                             0});
+  }
   if (strands().act()) {
     // A thousandth of the curvature at which they slip.
     strand_ =
         layout.add({name + " strands", {"1", "2"}, 2 * n, DaeKind::differential, 1e-3 * strands().slip_curvature, 0});
+  }
+}
+
+void RodInstant::take_directors() {
+  directors.resize(state.frames.size());
+  for (std::size_t e = 0; e < directors.size(); ++e) {
+    const Frame& frame = state.frames[e];
+    const Eigen::Vector3d first =
+        turned_director(frame, state.q[SpatialState::block * static_cast<Eigen::Index>(e) + SpatialState::angle]);
+    directors[e] = {first, frame.tangent.cross(first)};
   }
 }
 

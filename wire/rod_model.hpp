@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "numerics/dae.hpp"
+#include "wire/curvature.hpp"
 #include "wire/end.hpp"
 #include "wire/rod_in_motion.hpp"
 #include "wire/spatial_rod.hpp"
@@ -18,7 +19,8 @@ namespace snare::wire {
 /// What of a rod in a DAE does not change: its constants, its masses, what is held, and where its unknowns
 /// are.
 ///
-/// Vertices have positions x and velocities v, edges angles theta, with strands vertices have z as well. The
+/// Vertices have positions x and velocities v, edges angles theta, with strands vertices have z as well, of higher order
+/// curvatures k. The
 /// rod's own numbering, (x_0, theta_0, x_1, ...), is called band: that of its Hessian.
 class RodModel {
  public:
@@ -30,6 +32,8 @@ class RodModel {
   [[nodiscard]] const RodInMotion& constants() const { return constants_; }
   [[nodiscard]] const RodDamping& damping() const { return constants_.damping; }
   [[nodiscard]] const RodStrands& strands() const { return constants_.strands; }
+  [[nodiscard]] bool is_curved() const { return constants_.formulation == Formulation::higher_order; }
+  /// With curvatures as unknowns its twist and its weight alone.
   [[nodiscard]] const SpatialRod& rod() const { return rod_; }
   [[nodiscard]] const SpatialRodProperties& properties() const { return rod_.properties(); }
   [[nodiscard]] const Controls& controls() const { return controls_; }
@@ -62,6 +66,9 @@ class RodModel {
   [[nodiscard]] int angle_of(int edge) const { return theta_ + edge; }
   [[nodiscard]] int strand_of(int vertex) const { return strand_ + 2 * vertex; }  ///< first of two
 
+  /// First of the two curvatures of a vertex [1/m]; only of higher order.
+  [[nodiscard]] int curvature_of(int vertex) const { return curvature_ + 2 * vertex; }
+
   [[nodiscard]] static bool is_angle(int band) { return band % block == angle; }
   /// Unknown x or theta of the DAE.
   [[nodiscard]] int unknown_of(int band) const {
@@ -84,13 +91,17 @@ class RodModel {
   std::vector<bool> held_;          // of 3 components a vertex
   bool holds_first_angle_ = false;  // nothing else determines the spin of the wire about itself
   double spin_drag_ = 0.0;
-  int x_ = 0, theta_ = 0, v_ = 0, strand_ = 0;
+  int x_ = 0, theta_ = 0, v_ = 0, strand_ = 0, curvature_ = 0;
 };
 
 /// Shape and frames of a rod at one point of a motion, with what its moving mounts do.
 struct RodInstant {
   SpatialState state;
+  std::vector<Directors> directors;                    ///< material ones of the edges
   std::array<std::optional<Eigen::Vector3d>, 2> spin;  ///< of mounts that move, in the world [rad/s]
+
+  /// Sets the directors from the state's frames and angles.
+  void take_directors();
 };
 
 }  // namespace snare::wire

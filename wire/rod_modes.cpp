@@ -34,39 +34,53 @@ double lost_power(RodInMotion rod, const RodDamping& damping, const Eigen::Matri
 }  // namespace
 
 std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& rest, int count) {
-  // The same rod as RodPart's, and what of it moves.
-  RodPart part("wire", rod, {});
-  const SpatialRod& statics = part.rod();
+  // The stiffness is the Jacobian of RodPart without rates and damping; what of it moves, and what follows.
+  RodInMotion undamped = rod;
+  undamped.damping = {};
+  undamped.strands = {};
+  RodPart part("wire", undamped, {});
+  const RodModel& model = part.model();
   const int n = part.vertices();
   assert(rest.cols() == n);
-  VectorXd q = VectorXd::Zero(statics.unknowns());
-  for (int i = 0; i < n; ++i) q.segment<3>(block * i) = rest.col(i);
-  RodAssembly tangent;
-  statics.assemble(statics.make_state(q, rod.controls()), {false, false, false}, tangent);
+  numerics::DaeSystem system({&part});
+  VectorXd y = VectorXd::Zero(system.size());
+  const VectorXd standing = y;
+  part.place(rest, {}, y);
+  const numerics::SparseMatrix& tangent = system.jacobian({0.0, y, standing}, 0.0);
+  struct Row {
+    int balance, unknown;
+  };
   std::vector<int> moving;
   std::vector<int> turning;
+  std::vector<Row> moving_rows, following;
   const bool twist_free = !rod.properties.left.orients() && !rod.properties.right.orients();
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < 3; ++k) {
-      if (!part.is_held(i, k)) moving.push_back(block * i + k);
+      if (part.is_held(i, k)) continue;
+      moving.push_back(block * i + k);
+      moving_rows.push_back({part.velocity_of(i) + k, part.position_of(i) + k});
     }
-    if (i + 1 < n && !(twist_free && i == 0)) turning.push_back(block * i + SpatialRod::angle);
+    if (i + 1 < n && !(twist_free && i == 0)) {
+      turning.push_back(i);
+      following.push_back({part.angle_of(i), part.angle_of(i)});
+    }
   }
-  const auto entries = [&](const std::vector<int>& rows, const std::vector<int>& columns) {
+  for (int i = 0; model.is_curved() && i < n; ++i) {
+    for (int k = model.curvature_of(i); k < model.curvature_of(i) + 2; ++k) following.push_back({k, k});
+  }
+  const auto entries = [&](const std::vector<Row>& rows, const std::vector<Row>& columns) {
     MatrixXd m(rows.size(), columns.size());
     for (std::size_t a = 0; a < rows.size(); ++a) {
       for (std::size_t b = 0; b < columns.size(); ++b) {
-        const int i = std::max(rows[a], columns[b]);
-        const int j = std::min(rows[a], columns[b]);
-        m(static_cast<Index>(a), static_cast<Index>(b)) =
-            i - j <= SpatialRod::half_bandwidth ? tangent.hessian.lower(i, j) : 0.0;
+        const int slot = tangent.slot(rows[a].balance, columns[b].unknown);
+        m(static_cast<Index>(a), static_cast<Index>(b)) = slot < 0 ? 0.0 : tangent.value[base::at(slot)];
       }
     }
     return m;
   };
-  // dE/dtheta = 0 along: dtheta = -K_tt^-1 K_tx dx.
-  const MatrixXd follow = -entries(turning, turning).ldlt().solve(entries(turning, moving));
-  MatrixXd stiffness = entries(moving, moving) + entries(moving, turning) * follow;
+  // dE/dtheta = 0 and dE/dk = 0 along: of these unknowns f, df = -K_ff^-1 K_fx dx.
+  const MatrixXd follow = -entries(following, following).partialPivLu().solve(entries(following, moving_rows));
+  MatrixXd stiffness = entries(moving_rows, moving_rows) + entries(moving_rows, following) * follow;
   VectorXd root_mass(static_cast<Index>(moving.size()));
   for (std::size_t a = 0; a < moving.size(); ++a)
     root_mass[static_cast<Index>(a)] = std::sqrt(part.mass_of(moving[a] / block));
@@ -87,7 +101,7 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
       mode.shape(moving[a] % block, moving[a] / block) = x[static_cast<Index>(a)];
     const VectorXd turns = follow * x;
     VectorXd rates = VectorXd::Zero(n);
-    for (std::size_t a = 0; a < turning.size(); ++a) rates[turning[a] / block] = turns[static_cast<Index>(a)];
+    for (std::size_t a = 0; a < turning.size(); ++a) rates[turning[a]] = turns[static_cast<Index>(a)];
     // phi^T M phi = 1/scale^2.
     const double whole = squares[m] / (scale * scale);
     mode.bending_share = lost_power(rod, {1.0, 0.0, 0.0}, rest, mode.shape, rates) / whole;

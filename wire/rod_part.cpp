@@ -1,6 +1,7 @@
 #include "wire/rod_part.hpp"
 
 #include "wire/bending_cell.hpp"
+#include "wire/curved_rod.hpp"
 #include "wire/rod_damping.hpp"
 #include "wire/strand_friction.hpp"
 
@@ -46,7 +47,12 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
     if (velocities.cols() == n) y.segment<3>(velocity_of(i)) = velocities.col(i);
   }
   accepted_.state = rod().make_state(q, model_.controls());
+  accepted_.take_directors();
   trial_ = accepted_;
+  if (model_.is_curved()) {
+    y.segment(model_.curvature_of(0), 2 * n) =
+        balanced_curvatures(model_, accepted_, {0.0, y, Eigen::VectorXd::Zero(y.size())}).reshaped();
+  }
 }
 
 void RodPart::take_unknowns(const numerics::VectorView& y) {
@@ -75,40 +81,35 @@ void RodPart::set_mounts(const numerics::VectorView& y, RodInstant& instant) con
 // Frames go from the last accepted state to the point's; then dE and what damping and strands add to it.
 void RodPart::evaluate(const DaePoint& at) {
   take_unknowns(at.y);
-  trial_ = accepted_;
+  trial_.state = accepted_.state;
   set_mounts(at.y, trial_);
   wire::accept(trial_.state, band_);
+  trial_.take_directors();
   rod().assemble_forces(trial_.state, assembly_);
+  if (model_.is_curved()) add_curved_edges(model_, trial_, at, assembly_, by_curvature_);
   losses_.power = losses_.strand_energy = 0.0;
   losses_.couples = {Vector3d::Zero(), Vector3d::Zero()};
   losses_.strand_rates.assign(base::at(vertices()), Vector2d::Zero());
   if (model_.damping().axial_time > 0.0) add_axial_damping(model_, trial_, at, assembly_.gradient, losses_.power);
-  if (!model_.bends_with_loss()) return;
+  if (!model_.bends_with_loss() && !model_.is_curved()) return;
   for (int i = 0; i < vertices(); ++i) {
-    if (BendingCell::exists(model_, i)) add_bending_losses(at, i);
+    if (!BendingCell::exists(model_, i)) continue;
+    const BendingCell cell(model_, trial_, at, i);
+    if (model_.is_curved()) add_curved_vertex(model_, cell, i, at, assembly_, by_curvature_);
+    if (model_.bends_with_loss()) add_bending_losses(at, cell, i);
   }
 }
 
 // The moment M_j = tau EI_j/l kappa_j' + k_x m_j acts on what kappa_j depends on: sum_j M_j dkappa_j.
-void RodPart::add_bending_losses(const DaePoint& at, int i) {
-  const BendingCell cell(model_, trial_, at, i);
-  const CellVector& r = cell.rate;
-  const Vector3d middle = r.segment<3>(CellRows::middle);
-  const Vector3d rate_a = middle - r.segment<3>(CellRows::before);
-  const Vector3d rate_b = r.segment<3>(CellRows::after) - middle;
-  std::array<PairGradient, 2> gradients;
-  Vector2d rates;  // kappa_j'
-  for (int j = 0; j < 2; ++j) {
-    PairGradient& g = gradients[base::at(j)];
-    cell.curvature(j).add_gradient(cell.inverse, g);
-    rates[j] = g.a.dot(rate_a) + g.b.dot(rate_b) + g.theta_a * r[CellRows::angle_before] +
-               g.theta_b * r[CellRows::angle_after];
-  }
-  Vector2d strands = Vector2d::Zero();
+void RodPart::add_bending_losses(const DaePoint& at, const BendingCell& cell, int i) {
+  const Vector2d rates = cell.curvature_rates();
+  const std::array<double, 2> viscosity = viscous_stiffness(model_, cell);
+  Vector2d moments(viscosity[0] * rates[0], viscosity[1] * rates[1]);
+  losses_.power += moments.dot(rates);
   if (model_.strands().act()) {
     const Vector2d held = at.y.segment<2>(strand_of(i));
     const StrandResponse s(model_.strands(), held, rates / cell.length);
-    strands = s.moment;
+    moments += s.moment;
     losses_.strand_rates[base::at(i)] = s.rate;
     const double stiffness = model_.strands().extra_stiffness * cell.length;
     losses_.strand_energy += 0.5 * stiffness * held.squaredNorm();
@@ -116,32 +117,18 @@ void RodPart::add_bending_losses(const DaePoint& at, int i) {
     losses_.power +=
         stiffness * model_.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - cell.length * s.rate);
   }
-  const std::array<double, 2> stiffness = viscous_stiffness(model_, cell);
-  Eigen::VectorXd& gradient = assembly_.gradient;
+  const WeightedCurvature curvature = cell.curvature(moments);
   const int n = model_.edges();
-  for (int j = 0; j < 2; ++j) {
-    const PairGradient& g = gradients[base::at(j)];
-    const double viscous = stiffness[base::at(j)] * rates[j];
-    const double moment = viscous + strands[j];
-    losses_.power += viscous * rates[j];
-    // Of the mounts on the wire: what a turn of all that follows does, less at the left, which precedes
-    // (W.29).
-    if (i == 0) losses_.couples[index_of(End::left)] -= moment * cell.curvature(j).by_rotation();
-    if (i == n) losses_.couples[index_of(End::right)] += moment * cell.curvature(j).by_rotation();
-    if (i > 0) {
-      gradient.segment<3>(block * (i - 1)) -= moment * g.a;
-      gradient[block * (i - 1) + angle] += moment * g.theta_a;
-    }
-    gradient.segment<3>(block * i) += moment * (g.a - g.b);
-    if (i < n) {
-      gradient[block * i + angle] += moment * g.theta_b;
-      gradient.segment<3>(block * (i + 1)) += moment * g.b;
-    }
-  }
+  // Of the mounts on the wire: what a turn of all that follows does, less at the left, which precedes (W.29).
+  if (i == 0) losses_.couples[index_of(End::left)] -= curvature.by_rotation();
+  if (i == n) losses_.couples[index_of(End::right)] += curvature.by_rotation();
+  PairGradient g;
+  curvature.add_gradient(cell.inverse, g);
+  add_to_bands(model_, i, g, 1.0, assembly_.gradient);
 }
 
 // F: x' - v, or x - X where held;   m (v' + a v) + dE/dx + dD/dv, or v;   dE/dtheta + dD/dtheta', or theta;
-//    z' less the strands' answer.
+//    dE/dk of higher order;   z' less the strands' answer.
 void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   evaluate(at);
   const double mass_rate = model_.damping().mass_rate;
@@ -160,6 +147,7 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
       }
     }
     rows[angle_of(i)] += model_.holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + angle];
+    if (model_.is_curved()) rows.segment<2>(model_.curvature_of(i)) += by_curvature_.col(i);
     if (model_.strands().act()) {
       rows.segment<2>(strand_of(i)) += at.rate.segment<2>(strand_of(i)) - losses_.strand_rates[base::at(i)];
     }
@@ -196,6 +184,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
   }
   if (model_.spin_drag() > 0.0)
     RodSlots::add_to(values, slots_.diagonal(angle).place, c * model_.spin_drag());  // theta_0
+  if (model_.is_curved()) add_curved_jacobian(model_, trial_, at, slots_, values);
   add_losses_jacobian(at, c, values);
 }
 
@@ -223,6 +212,11 @@ MountCell RodPart::mount_cell(const DaePoint& at, End end) {
   return wire::mount_cell(model_, trial_, at, end);
 }
 
+const SpatialState& RodPart::state_at(const DaePoint& at) {
+  evaluate(at);
+  return trial_.state;
+}
+
 bool RodPart::accept(const DaePoint& at) {
   take_unknowns(at.y);
   set_mounts(at.y, accepted_);
@@ -247,6 +241,7 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
     for (int k = 0; k < 3; ++k) f.director[k] = numerics::take(memory);
   }
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
+  accepted_.take_directors();
   trial_ = accepted_;
 }
 
@@ -286,7 +281,10 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
   }
   // Mounts that stand still: the gradient that is left at a held vertex, or the spring's force -k (x - X) of
   // one that gives.
-  const std::array<Vector3d, 2> moments = rod().end_moments(state);
+  std::array<Vector3d, 2> moments = rod().end_moments(state);
+  if (model_.is_curved()) {
+    for (const End which : ends) moments[index_of(which)] += curved_end_moment(model_, trial_, at, which);
+  }
   for (const End which : ends) {
     const std::size_t side = index_of(which);
     const SpatialEnd& end = model_.properties().end(which);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "numerics/dae.hpp"
+#include "wire/bending_cell.hpp"
 #include "wire/end.hpp"
 #include "wire/mount_cell.hpp"
 #include "wire/rod_in_motion.hpp"
@@ -20,9 +21,9 @@
 namespace snare::wire {
 
 /// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without
-/// inertia.
+/// inertia, of higher order curvatures k as well.
 ///                                                                                  theory.md (M.3), (M.4)
-///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0
+///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0,   dE/dk = 0
 ///
 /// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. With strands two unknowns z a vertex are added,
 /// and their moments to the forces (M.14). Rigidly held unknowns have x = X, v = 0 instead; the force of the
@@ -54,6 +55,9 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] MountCell mount_cell(const numerics::DaePoint& at, End end);
   /// Its moment alone, as of the last `residual` at that point.
   [[nodiscard]] Eigen::Vector3d mount_moment(const numerics::DaePoint& at, End end);
+
+  /// Shape and frames at a point; stays valid until the next evaluation.
+  [[nodiscard]] const SpatialState& state_at(const numerics::DaePoint& at);
 
   [[nodiscard]] const RodModel& model() const { return model_; }
   [[nodiscard]] const RodInMotion& constants() const { return model_.constants(); }
@@ -97,7 +101,7 @@ class RodPart final : public numerics::DaePart {
     std::vector<Eigen::Vector2d> strand_rates;  // z' of every vertex [1/(m s)]
   };
   void evaluate(const numerics::DaePoint& at);
-  void add_bending_losses(const numerics::DaePoint& at, int i);
+  void add_bending_losses(const numerics::DaePoint& at, const BendingCell& cell, int i);
   void add_losses_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
   void set_mounts(const numerics::VectorView& y, RodInstant& instant) const;
   void take_unknowns(const numerics::VectorView& y);
@@ -113,6 +117,7 @@ class RodPart final : public numerics::DaePart {
   // Workspace: the point of the last evaluation.
   RodInstant trial_;
   RodAssembly assembly_;
+  Eigen::Matrix2Xd by_curvature_;  // dE/dk of higher order
   Losses losses_;
   Eigen::VectorXd band_;
 };

@@ -4,6 +4,7 @@
 #include "wire/bending_cell.hpp"
 #include "wire/rod_model.hpp"
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,23 @@ class RodSlots {
   /// of coordinates and c times the unknown of angles. Columns from `columns` on are left out.
   void add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c, int columns,
                 std::vector<double>& values) const;
+  /// Adds second derivatives by the places of vertex i's cell; none by a mount's angle.
+  void add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const;
+  /// Adds a 3 x 3 block by places from a band on.
+  void add_places(int row, int column, const Eigen::Matrix3d& block, std::vector<double>& values) const {
+    for (int r = 0; r < 3; ++r) {
+      for (int s = 0; s < 3; ++s) add_place(row + r, column + s, block(r, s), values);
+    }
+  }
+
+  /// Of the balances of a vertex's cell by its curvatures.
+  using CurvatureColumns = Eigen::Matrix<double, CellRows::count, 2>;
+  /// Adds what couples vertex i's curvatures with its cell, on both sides of the diagonal, and with themselves. Rows of
+  /// a vertex that does not bend have nothing by the cell.
+  void add_curvature(int i, const CurvatureColumns& by_cell, const Eigen::Matrix2d& own,
+                     std::vector<double>& values) const;
+  /// Adds what couples the curvatures of vertices i (rows) and i + 1, on both sides.
+  void add_curvature_pair(int i, const Eigen::Matrix2d& block, std::vector<double>& values) const;
   [[nodiscard]] bool has_balance(int band) const { return place_[slot_of(band, band)] >= 0; }
 
   /// Slots of x' - v = 0 and of m v' in the balance (x = X, v = 0 where held).
@@ -62,6 +80,11 @@ class RodSlots {
   std::vector<int> place_;  // the band row by row, -1 where there is no entry
   std::vector<int> rate_;
   std::vector<Diagonal> diagonal_;
+  struct CurvatureSlots {
+    std::array<std::array<int, 2>, CellRows::count> column{}, row{};  // balances by k, rows of k by places
+    std::array<std::array<int, 2>, 2> own{}, next{}, next_transposed{};
+  };
+  std::vector<CurvatureSlots> curvature_;  // of every vertex of a rod of higher order
 };
 
 }  // namespace snare::wire

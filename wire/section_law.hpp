@@ -49,9 +49,8 @@ struct SectionMemory {
   std::vector<double> axial;    ///< [edge * elements + element] [-]
 };
 
-/// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other
-/// controls put them, by linear interpolation in the material coordinate; material that comes in at a mount
-/// is virgin (zero).
+/// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other controls put
+/// them, by linear interpolation in the material coordinate; material that comes in at a mount is virgin (zero).
 [[nodiscard]] std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<double>& values,
                                                int components, bool of_edges, const Controls& from, const Controls& to);
 

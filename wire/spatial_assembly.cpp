@@ -110,7 +110,8 @@ bool feels_controls(const MaterialMesh& mesh, int i, int n, std::array<double, 3
 void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
   reset(out, unknowns(), wanted);
   const int n = mesh_.edges();
-  const double ea = properties_.axial_stiffness;
+  const CellTerms terms(properties_, strains_);
+  const double ea = terms.axial_stiffness;
   const Vector3d& weight = properties_.weight;
   EdgeBlock pending;  // of the edge before the vertex at hand
 
@@ -206,7 +207,7 @@ void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& 
     if (i > 0) finish_edge(i - 1, before, pending);
     pending = following;
   };
-  visit_cells(mesh_, state, CellTerms(properties_), add_cell);
+  visit_cells(mesh_, state, terms, add_cell);
 
   // Mounts that give along x: 1/2 k (x - X)^2 (W.6).
   for (const End which : ends) {

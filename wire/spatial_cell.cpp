@@ -146,6 +146,7 @@ SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& 
   cell.inverse = {before.inverse_length, after.inverse_length};
   const double tau = after.theta - before.theta + state.reference_twist[base::at(i)];  // (W.26)
   twist(tau, length, end == nullptr ? 0.0 : 1.0 / end->twisting_stiffness, p, cell);
+  if (!terms.bends) return cell;
   if (end == nullptr) {
     bend(before, after, length, 0.0, terms, cell);
   } else if (end->kind == SpatialEnd::Kind::clamp) {

@@ -46,11 +46,16 @@ struct SpatialCell {
 
 /// The constants of a rod, and which terms of a cell they ask for.
 struct CellTerms {
-  explicit CellTerms(const SpatialRodProperties& p)
+  CellTerms(const SpatialRodProperties& p, Strains strains)
       : properties(p),
-        directed(p.bending_stiffness != p.second_bending_stiffness || p.natural_curvature != Eigen::Vector2d::Zero()) {}
+        bends(strains == Strains::all),
+        axial_stiffness(bends ? p.axial_stiffness : 0.0),
+        directed(bends && (p.bending_stiffness != p.second_bending_stiffness ||
+                           p.natural_curvature != Eigen::Vector2d::Zero())) {}
   const SpatialRodProperties& properties;
-  bool directed;  ///< not round, or naturally curved
+  bool bends;
+  double axial_stiffness;  ///< EA, 0 of a rod that only twists [N]
+  bool directed;           ///< not round, or naturally curved
 };
 
 [[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms);

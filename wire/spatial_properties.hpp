@@ -44,6 +44,12 @@ struct SpatialEnd {
   }
 };
 
+/// Which strains of a spatial rod store energy.
+enum class Strains {
+  all,
+  twist  ///< alone; somebody else adds bending and stretching
+};
+
 /// Constants of a uniform spatial rod.
 struct SpatialRodProperties {
   double bending_stiffness = 0.0;                               ///< EI_1 of kappa_1, towards director m1 [N m^2], > 0

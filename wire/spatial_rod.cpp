@@ -12,8 +12,8 @@ namespace snare::wire {
 
 using Eigen::Vector3d;
 
-SpatialRod::SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties)
-    : mesh_(std::move(mesh)), properties_(properties) {
+SpatialRod::SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties, Strains strains)
+    : mesh_(std::move(mesh)), properties_(properties), strains_(strains) {
   assert(properties.bending_stiffness > 0.0 && properties.second_bending_stiffness > 0.0);
   assert(properties.torsional_stiffness > 0.0 && properties.axial_stiffness > 0.0);
 }
@@ -80,20 +80,21 @@ double SpatialRod::energy(const SpatialState& state) const {
   double sum = properties_.left.spring_energy(state.q[row_of(End::left)]) +
                properties_.right.spring_energy(state.q[row_of(End::right)]);
   const int n = mesh_.edges();
-  visit_cells(mesh_, state, CellTerms(properties_),
-              [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge& after) {
-                sum += cell.energy;
-                if (i == n) return;
-                const double strain = after.length / after.rest - 1.0;
-                sum += 0.5 * properties_.axial_stiffness * strain * strain * after.rest;
-                sum -= 0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
-              });
+  const CellTerms terms(properties_, strains_);
+  visit_cells(mesh_, state, terms, [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge& after) {
+    sum += cell.energy;
+    if (i == n) return;
+    const double strain = after.length / after.rest - 1.0;
+    sum += 0.5 * terms.axial_stiffness * strain * strain * after.rest;
+    sum -= 0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
+  });
   return sum;
 }
 
 void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) const {
   const int n = mesh_.edges();
-  const double ea = properties_.axial_stiffness;
+  const CellTerms terms(properties_, strains_);
+  const double ea = terms.axial_stiffness;
   out.energy = properties_.left.spring_energy(state.q[row_of(End::left)]) +
                properties_.right.spring_energy(state.q[row_of(End::right)]);
   out.gradient.setZero(unknowns());
@@ -105,7 +106,7 @@ void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) co
       g[block * (e + 1) + r] += force[r];
     }
   };
-  visit_cells(mesh_, state, CellTerms(properties_),
+  visit_cells(mesh_, state, CellTerms(properties_, strains_),
               [&](int i, const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
                 out.energy += cell.energy;
                 if (cell.bends || cell.twists) {
@@ -139,7 +140,7 @@ void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) co
 
 SpatialRod::EndCell SpatialRod::end_cell(const SpatialState& state, End end) const {
   const int n = mesh_.edges();
-  const CellTerms terms(properties_);
+  const CellTerms terms(properties_, strains_);
   const bool left = end == End::left;
   const SpatialEdge before =
       left ? mount_edge(properties_.left, state.left_mount, terms) : edge_at(n - 1, mesh_, state, terms);
@@ -157,7 +158,7 @@ SpatialRod::EndCell SpatialRod::end_cell(const SpatialState& state, End end) con
 
 Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
   Eigen::Matrix3Xd result(3, mesh_.vertices());
-  visit_cells(mesh_, state, CellTerms(properties_),
+  visit_cells(mesh_, state, CellTerms(properties_, strains_),
               [&](int i, const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
                 result.col(i) = moment_of(cell, before, after);
               });
@@ -165,7 +166,7 @@ Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
 }
 
 std::array<Vector3d, 2> SpatialRod::end_moments(const SpatialState& state) const {
-  const CellTerms terms(properties_);
+  const CellTerms terms(properties_, strains_);
   const int n = mesh_.edges();
   const SpatialEdge left = mount_edge(properties_.left, state.left_mount, terms);
   const SpatialEdge right = mount_edge(properties_.right, state.right_mount, terms);
@@ -177,7 +178,7 @@ std::array<Vector3d, 2> SpatialRod::end_moments(const SpatialState& state) const
 
 Eigen::VectorXd SpatialRod::torques(const SpatialState& state) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(mesh_.vertices());
-  visit_cells(mesh_, state, CellTerms(properties_),
+  visit_cells(mesh_, state, CellTerms(properties_, strains_),
               [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge&) { result[i] = cell.torque; });
   return result;
 }

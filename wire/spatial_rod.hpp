@@ -33,7 +33,7 @@ class SpatialRod {
   static constexpr int angle = SpatialState::angle;
   static constexpr int half_bandwidth = 10;  ///< x_i and z_{i+2}
 
-  SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties);
+  SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties, Strains strains = Strains::all);
 
   [[nodiscard]] const MaterialMesh& mesh() const noexcept { return mesh_; }
   [[nodiscard]] const SpatialRodProperties& properties() const noexcept { return properties_; }
@@ -97,6 +97,7 @@ class SpatialRod {
  private:
   MaterialMesh mesh_;
   SpatialRodProperties properties_;
+  Strains strains_;
 };
 
 }  // namespace snare::wire

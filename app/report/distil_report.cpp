@@ -101,8 +101,7 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
 void add_map(ReportPage& page, const DistilledCase& one) {
   PlotSpecification plot{"Where the closed forms are within 5 % of the full wire", {"slack", "mm"}, {"travel", "mm"}};
   plot.note = fmt::format(
-      "Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is "
-      "within 5 %. "
+      "Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is within 5 %. "
       "Negative slack is pretension.",
       1e3 * one.map.travel.back());
   Curve stretched{"stretched wire", {}, {}, CurveStyle::points, 1};

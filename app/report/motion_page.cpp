@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 
 namespace snare::app {
@@ -93,6 +94,34 @@ void add_contacts(const FinishedMotion& run, ReportPage& page) {
                           std::to_string(touches.count), std::to_string(most_points(run, k))});
   }
   page.table(table);
+}
+
+/// What wires with a declared strength had to bear at most.
+void add_strength(const std::vector<FinishedMotion>& finished, ReportPage& page) {
+  Table table{"Largest load of the wires against their strength",
+              {{"Model", ColumnKind::code},
+               {"Wire", ColumnKind::code},
+               {"Share", ColumnKind::number},
+               {"Tension [N]", ColumnKind::number},
+               {"Bending as tension [N]", ColumnKind::number},
+               {"Along the wire [mm]", ColumnKind::number},
+               {"Time [s]", ColumnKind::number}},
+              {}};
+  for (const FinishedMotion& run : finished) {
+    for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
+      const coupling::MotionWire& wire = run.asked.motion.wires[k];
+      const coupling::StrengthUse& use = run.result.strength[k];
+      if (!std::isfinite(wire.strength.breaking_tension)) continue;
+      table.rows.push_back({run.asked.name, wire.name, format_significant(use.share), format_significant(use.tension),
+                            format_significant(use.bending), format_significant(1e3 * use.arc),
+                            format_significant(use.time, 6)});
+      if (use.share >= 1.0)
+        page.callout(fmt::format("{}: {} would break: it bears {} of its strength at {} s", run.asked.name, wire.name,
+                                 format_significant(use.share), format_significant(use.time, 6)),
+                     Tone::bad);
+    }
+  }
+  if (!table.rows.empty()) page.table(table);
 }
 
 struct ModelPlot {
@@ -187,6 +216,7 @@ void add_views(const FinishedMotion& run, ReportPage& page) {
 void add_lists(const FinishedMotion& run, ReportPage& page) {
   add_balance(run.result, page);
   add_contacts(run, page);
+  add_strength({run}, page);
   page.heading("Time histories");
   add_list_plots(run, page);
   page.heading("The motion");
@@ -197,6 +227,7 @@ void add_lists(const FinishedMotion& run, ReportPage& page) {
 void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedMotion>& finished, ReportPage& page) {
   const bool with_arm = !finished.empty() && !finished.front().asked.motion.arms.empty();
   add_models(finished, page);
+  add_strength(finished, page);
   page.heading("Time histories");
   add_model_plots(with_arm ? plots_with_arm() : plots_without_arm(), finished, page);
   if (with_arm) {

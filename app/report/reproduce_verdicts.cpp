@@ -13,9 +13,8 @@ void add_verdicts(ReportPage& page, const Reproduction& result) {
   if (result.trace) {
     page.callout(verdict(*result.trace), result.trace->explained ? Tone::good : Tone::bad);
     page.paragraph(
-        "Readings were drawn about the published fits with the scatter that the printed R2 implies, since "
-        "the "
-        "readings themselves are lost. Run `snare trace` on the experiment file for the whole evidence.");
+        "Readings were drawn about the published fits with the scatter that the printed R2 implies, since the readings "
+        "themselves are lost. Run `snare trace` on the experiment file for the whole evidence.");
     const auto& next = result.trace->next;
     if (next && !next->what.empty()) page.paragraph("To measure next: " + next->what + ".");
   }

@@ -46,8 +46,7 @@ std::string nearest_channel(const identification::ChannelFunction& f) {
         to_string(f.channel), f.argument, f.effect, 100.0 * f.carried_over, f.shape);
   }
   return fmt::format(
-      " No single function of one channel carries over from series to series; the {} comes nearest "
-      "({:.0f} %).",
+      " No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} %).",
       to_string(f.channel), 100.0 * std::max(0.0, f.carried_over));
 }
 

@@ -148,11 +148,9 @@ void add_summary(ReportPage& page, const Trace& trace) {
   if (const auto prediction = prediction_figure(trace)) others.push_back(*prediction);
   page.key_figures(others);
   page.paragraph(
-      "The declared model is the wire as its file describes it. The base model is the same with its "
-      "uncertain "
-      "numbers fitted. The final model has in addition the effects, if any, that the readings ask for. "
-      "Errors are "
-      "root mean squares over the fitted readings.");
+      "The declared model is the wire as its file describes it. The base model is the same with its uncertain numbers "
+      "fitted. The final model has in addition the effects, if any, that the readings ask for. Errors are root mean "
+      "squares over the fitted readings.");
 }
 
 PlotSpecification series_plot(const Trace& trace, std::size_t k) {
@@ -274,8 +272,7 @@ PlotSpecification residual_plot(const Trace& trace, const std::string& name, con
 
 void add_tests(ReportPage& page, const Trace& trace) {
   Table table{
-      "p: how often pure noise would look at least this bad. Small, below about 0.01: the model misses "
-      "something.",
+      "p: how often pure noise would look at least this bad. Small, below about 0.01: the model misses something.",
       {{"Test of what is left"}, number_column("Base model"), number_column("Final model")},
       {}};
   const auto add = [&](const char* name, double base, double final) {
@@ -291,9 +288,8 @@ void add_tests(ReportPage& page, const Trace& trace) {
   page.table(table);
   if (trace.noise.source == "replicates") {
     page.paragraph(
-        "The noise is that of repeated series, whose specimens differ smoothly: runs and resemblance are "
-        "then no "
-        "sign of a missing effect, and only the lack of fit counts.");
+        "The noise is that of repeated series, whose specimens differ smoothly: runs and resemblance are then no sign "
+        "of a missing effect, and only the lack of fit counts.");
   }
 }
 
@@ -351,12 +347,10 @@ void add_parameters(ReportPage& page, const Trace& trace) {
   }
   page.heading("The model now");
   page.paragraph(
-      "Fitted numbers with the interval that holds the true value in 95 of 100 such tests, if the model is "
-      "right. "
-      "Profile: the number was moved and all others refitted until the misfit grew too much (profile "
-      "likelihood). "
-      "Curvature: 1.96 standard errors, from how sharply the misfit rises about its least; rougher when the "
-      "interval is wide.");
+      "Fitted numbers with the interval that holds the true value in 95 of 100 such tests, if the model is right. "
+      "Profile: the number was moved and all others refitted until the misfit grew too much (profile likelihood). "
+      "Curvature: 1.96 standard errors, from how sharply the misfit rises about its least; rougher when the interval "
+      "is wide.");
   page.table(table);
 }
 
@@ -391,12 +385,9 @@ void add_functions(ReportPage& page, const Trace& trace) {
   if (trace.functions.empty()) return;
   page.heading("Where the residual comes from");
   page.paragraph(
-      "Each part of the test, a channel, is given a free function in place of a known effect. A true cause "
-      "acts "
-      "alike in every series: what is found in some has to explain the others. Carried over: the share of "
-      "the "
-      "residual beyond noise that it explains there. Explained: the same when all series are used to find "
-      "it.");
+      "Each part of the test, a channel, is given a free function in place of a known effect. A true cause acts alike "
+      "in every series: what is found in some has to explain the others. Carried over: the share of the residual "
+      "beyond noise that it explains there. Explained: the same when all series are used to find it.");
   Table table{"",
               {{"Channel"},
                {"What it would do, as a function of what"},
@@ -420,8 +411,7 @@ void add_alternatives(ReportPage& page, const Trace& trace) {
   if (trace.alternatives.empty()) return;
   page.heading("Causes outside the catalogue that would do as well");
   page.paragraph(
-      "A free function in another part of the test, found in some series, explains the others too. These "
-      "readings "
+      "A free function in another part of the test, found in some series, explains the others too. These readings "
       "cannot tell it from the effect above, which is the simpler answer.");
   Table table{
       "", {{"Channel"}, {"What it would do"}, {"As a function of"}, {"Shape"}, number_column("Carried over")}, {}};

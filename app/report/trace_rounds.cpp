@@ -131,12 +131,10 @@ void add_rounds(ReportPage& page, const Trace& trace) {
   if (trace.rounds.empty()) return;
   page.heading("What could be missing");
   page.paragraph(
-      "Every effect of the catalogue is asked in turn. Where: the part of the test in which it sits. Score "
-      "z: by how many standard deviations its "
-      "pattern stands out of the noise; 0 when the residual points the other way. p: how often noise alone "
-      "would reach such a score, corrected by "
-      "Holm's rule for asking so many effects at once. Smallest size: what these readings would reveal nine "
-      "times in ten.");
+      "Every effect of the catalogue is asked in turn. Where: the part of the test in which it sits. Score z: by how "
+      "many standard deviations its pattern stands out of the noise; 0 when the residual points the other way. p: how "
+      "often noise alone would reach such a score, corrected by Holm's rule for asking so many effects at once. "
+      "Smallest size: what these readings would reveal nine times in ten.");
   page.paragraph(
       "BIC, the Bayesian information criterion, is the misfit plus a price for every number fitted: an "
       "effect worth its price lowers it.");

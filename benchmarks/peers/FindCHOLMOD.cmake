@@ -1,25 +1,3 @@
-# FindCHOLMOD: CHOLMOD of SuiteSparse with the libraries that it needs. Defines the target SuiteSparse::CHOLMOD.
-
-find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
-set(_cholmod_parts cholmod camd ccolamd colamd amd suitesparseconfig)
-set(_cholmod_libraries "")
-foreach(_part IN LISTS _cholmod_parts)
-  string(TOUPPER "CHOLMOD_${_part}_LIBRARY" _variable)
-  find_library(${_variable} ${_part})
-  mark_as_advanced(${_variable})
-  list(APPEND _cholmod_libraries ${_variable})
-endforeach()
-mark_as_advanced(CHOLMOD_INCLUDE_DIR)
-
-include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(CHOLMOD REQUIRED_VARS CHOLMOD_CHOLMOD_LIBRARY CHOLMOD_INCLUDE_DIR ${_cholmod_libraries})
-
-if(CHOLMOD_FOUND AND NOT TARGET SuiteSparse::CHOLMOD)
-  add_library(SuiteSparse::CHOLMOD INTERFACE IMPORTED)
-  target_include_directories(SuiteSparse::CHOLMOD INTERFACE "${CHOLMOD_INCLUDE_DIR}")
-  foreach(_variable IN LISTS _cholmod_libraries)
-    target_link_libraries(SuiteSparse::CHOLMOD INTERFACE "${${_variable}}")
-  endforeach()
-endif()
-unset(_cholmod_parts)
-unset(_cholmod_libraries)
+# FindCHOLMOD: CHOLMOD of SuiteSparse. Defines the target SuiteSparse::CHOLMOD.
+include(SuiteSparseLibrary)
+snare_find_suitesparse(CHOLMOD camd ccolamd colamd amd)

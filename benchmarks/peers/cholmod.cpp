@@ -56,7 +56,7 @@ struct Cholmod::Handles {
   Handles& operator=(const Handles&) = delete;
 };
 
-Cholmod::Cholmod(const SparseMatrix& lower, Ordering ordering) : handles_(std::make_unique<Handles>()) {
+Cholmod::Cholmod(const SparseMatrix& lower, Ordering ordering) : handles_(new Handles) {
   Handles& h = *handles_;
   h.order = lower.order;
   h.common.nmethods = 1;
@@ -67,9 +67,9 @@ Cholmod::Cholmod(const SparseMatrix& lower, Ordering ordering) : handles_(std::m
   if (h.factor == nullptr) throw base::LibraryError("cholmod_analyze", h.common.status, "the pattern is invalid");
 }
 
-Cholmod::~Cholmod() = default;
-Cholmod::Cholmod(Cholmod&&) noexcept = default;
-Cholmod& Cholmod::operator=(Cholmod&&) noexcept = default;
+void Cholmod::HandlesDeleter::operator()(Handles* handles) const noexcept {
+  delete handles;
+}
 
 bool Cholmod::factorize(const SparseMatrix& lower) {
   assert(lower.order == handles_->order);

@@ -17,9 +17,6 @@ class Cholmod {
 
   /// Analyses the pattern of a lower triangle. Throws LibraryError when CHOLMOD refuses it.
   Cholmod(const numerics::SparseMatrix& lower, Ordering ordering);
-  ~Cholmod();
-  Cholmod(Cholmod&&) noexcept;
-  Cholmod& operator=(Cholmod&&) noexcept;
 
   /// Factorises values of the analysed pattern; false when a pivot vanishes.
   [[nodiscard]] bool factorize(const numerics::SparseMatrix& lower);
@@ -30,7 +27,10 @@ class Cholmod {
 
  private:
   struct Handles;
-  std::unique_ptr<Handles> handles_;
+  struct HandlesDeleter {
+    void operator()(Handles* handles) const noexcept;
+  };
+  std::unique_ptr<Handles, HandlesDeleter> handles_;
 };
 
 }  // namespace snare::benchmarks

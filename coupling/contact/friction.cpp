@@ -22,9 +22,11 @@ struct SlipLaw {
 };
 
 SlipLaw slip_law(const MotionFriction& f, double s) {
-  if (s >= f.dynamic_speed) return {f.dynamic_coefficient, 0.0};
+  constexpr double at_once = 1e-5;  // "both speeds 0" [m/s]
+  const double end = f.dynamic_speed > 0.0 ? f.dynamic_speed : at_once;
+  if (s >= end) return {f.dynamic_coefficient, 0.0};
   if (s <= f.static_speed) return {f.static_coefficient, 0.0};
-  const double width = f.dynamic_speed - f.static_speed;
+  const double width = end - f.static_speed;
   const double x = (s - f.static_speed) / width;
   const double fall = f.dynamic_coefficient - f.static_coefficient;
   return {f.static_coefficient + fall * x * x * (3.0 - 2.0 * x), fall * 6.0 * x * (1.0 - x) / (width * s)};
@@ -42,8 +44,18 @@ SmoothLaw smooth_law(const MotionFriction& f, double s) {
   return {slip.coefficient / s, slip.slope / s - slip.coefficient / (s * s * s)};
 }
 
-Vector2d reach(const MotionFriction& f, const BristleState& at) {
-  return at.bristle + f.bristle_time * at.sliding;
+/// How much of the speed along the bristle its slider takes, and the derivative by the share |z|/z_m.
+struct SliderShare {
+  double value = 0.0, slope = 0.0;
+};
+
+SliderShare slider_share(double share) {
+  constexpr double sticks_up_to = 0.999;
+  constexpr double width = 1.0 - sticks_up_to;
+  if (share <= sticks_up_to) return {};
+  const double x = (share - sticks_up_to) / width;
+  // Beyond 1 straight on: what has been stretched too far comes back.
+  return x < 1.0 ? SliderShare{x * x, 2.0 * x / width} : SliderShare{2.0 * x - 1.0, 2.0 / width};
 }
 
 }  // namespace
@@ -52,7 +64,25 @@ double slip_coefficient(const MotionFriction& friction, double speed) {
   return slip_law(friction, speed).coefficient;
 }
 
-TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode, const BristleState& at) {
+BristleRate bristle_rate(const MotionFriction& friction, const BristleState& at) {
+  BristleRate r;
+  r.rate = at.sliding;
+  const double size = at.bristle.norm();
+  const SliderShare share = slider_share(size / friction.bristle_displacement);
+  if (share.value == 0.0) return r;
+  const Vector2d direction = at.bristle / size;
+  const double along = at.sliding.dot(direction);
+  if (along <= 0.0) return r;
+  r.rate -= share.value * along * direction;
+  const Matrix2d axis = direction * direction.transpose();
+  const Matrix2d across = (Matrix2d::Identity() - axis) / size;
+  r.by_sliding -= share.value * axis;
+  r.by_bristle = -(share.slope / friction.bristle_displacement * along * axis +
+                   share.value * (direction * at.sliding.transpose() * across + along * across));
+  return r;
+}
+
+TangentForce tangent_force(const MotionFriction& friction, const BristleState& at) {
   TangentForce t;
   if (!friction.acts()) return t;
   const double speed = at.sliding.norm();
@@ -64,43 +94,16 @@ TangentForce tangent_force(const MotionFriction& friction, FrictionMode mode, co
         at.normal * (law.over_speed * Matrix2d::Identity() + law.slope * at.sliding * at.sliding.transpose());
     return t;
   }
-  const Vector2d e = reach(friction, at);
-  if (mode == FrictionMode::stick) {
-    const double k = friction.bristle_stiffness();
-    t.force = k * e;
-    t.by_bristle = k * Matrix2d::Identity();
-    t.by_sliding = friction.bristle_time * t.by_bristle;
-    return t;
-  }
-  const double size = e.norm();
-  if (size == 0.0) return t;  // only without a normal force
-  const Vector2d direction = e / size;
   const SlipLaw law = slip_law(friction, speed);
-  t.by_normal = law.coefficient * direction;
+  const BristleRate rate = bristle_rate(friction, at);
+  const Vector2d reach = (at.bristle + friction.bristle_time * rate.rate) / friction.bristle_displacement;
+  t.by_normal = law.coefficient * reach;
   t.force = at.normal * t.by_normal;
-  t.by_bristle = law.coefficient * at.normal / size * (Matrix2d::Identity() - direction * direction.transpose());
-  t.by_sliding = friction.bristle_time * t.by_bristle + at.normal * law.slope * direction * at.sliding.transpose();
+  const double stiffness = at.normal * law.coefficient / friction.bristle_displacement;
+  t.by_bristle = stiffness * (Matrix2d::Identity() + friction.bristle_time * rate.by_bristle);
+  t.by_sliding =
+      stiffness * friction.bristle_time * rate.by_sliding + at.normal * law.slope * reach * at.sliding.transpose();
   return t;
-}
-
-Vector2d bristle_rate(const MotionFriction& friction, FrictionMode mode, const BristleState& at) {
-  if (mode == FrictionMode::stick) return at.sliding;
-  const Vector2d force = tangent_force(friction, mode, at).force;
-  return (force / friction.bristle_stiffness() - at.bristle) / friction.bristle_time;
-}
-
-double friction_margin(const MotionFriction& friction, FrictionMode mode, const BristleState& at) {
-  const double size = friction.bristle_stiffness() * reach(friction, at).norm();
-  if (mode == FrictionMode::stick) return (1.0 + slip_onset_margin) * friction.static_coefficient * at.normal - size;
-  return size - slip_coefficient(friction, at.sliding.norm()) * at.normal;
-}
-
-double friction_heat(const MotionFriction& friction, FrictionMode mode, const BristleState& at) {
-  const Vector2d force = tangent_force(friction, mode, at).force;
-  if (friction.law == ContactFriction::smooth) return force.dot(at.sliding);
-  const Vector2d rate = bristle_rate(friction, mode, at);
-  const double dashpot = friction.bristle_stiffness() * friction.bristle_time * rate.squaredNorm();
-  return dashpot + force.dot(at.sliding - rate);
 }
 
 }  // namespace snare::coupling

@@ -29,6 +29,13 @@ Eigen::Matrix3Xd exchanged(const Eigen::Matrix3Xd& line, int i, int j) {
 
 }  // namespace
 
+std::vector<std::shared_ptr<const ContactShape>> pieces_of(const std::shared_ptr<const ContactShape>& shape,
+                                                           double wire_radius) {
+  std::vector<std::shared_ptr<const ContactShape>> pieces = shape->pieces(wire_radius);
+  if (pieces.empty()) pieces.push_back(shape);
+  return pieces;
+}
+
 Eigen::Matrix3Xd circle_drawing(double radius, double height, int count) {
   Eigen::Matrix3Xd line(3, count + 1);
   for (int k = 0; k <= count; ++k) {
@@ -41,6 +48,11 @@ Eigen::Matrix3Xd circle_drawing(double radius, double height, int count) {
 std::vector<Eigen::Matrix3Xd> Ball::drawing() const {
   const Eigen::Matrix3Xd circle = circle_drawing(radius_, 0.0, chords);
   return {circle, exchanged(circle, 0, 2), exchanged(circle, 1, 2)};
+}
+
+std::vector<Eigen::Matrix3Xd> HalfSpace::drawing() const {
+  const Eigen::Matrix3Xd side = drawn_ * (Matrix3d() << -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 0.0, 0.0, 0.0).finished();
+  return {side, -side};
 }
 
 std::vector<Eigen::Matrix3Xd> EndlessCylinder::drawing() const {
@@ -59,6 +71,10 @@ std::vector<Eigen::Matrix3Xd> Capsule::drawing() const {
 
 DistanceField Ball::at(const Vector3d& p) const {
   return distance_along(p, Matrix3d::Identity(), radius_);
+}
+
+DistanceField HalfSpace::at(const Vector3d& p) const {
+  return {p.z(), Vector3d::UnitZ(), Matrix3d::Zero()};
 }
 
 DistanceField EndlessCylinder::at(const Vector3d& p) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -29,12 +30,22 @@ class ContactShape {
   [[nodiscard]] virtual DistanceField at(const Eigen::Vector3d& p) const = 0;
   /// The distance alone [m].
   [[nodiscard]] virtual double distance(const Eigen::Vector3d& p) const { return at(p).distance; }
-  /// Smallest radius of curvature where the surface is convex [m]: the Hessian's largest eigenvalue at a distance d outside is at most
-  /// 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line would have no direction of contact.
+  /// Smallest radius of curvature where the surface is convex [m], infinite where it is nowhere: the Hessian's largest eigenvalue at a
+  /// distance d outside is at most 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line would have no direction of contact.
   [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
+  /// Where phi has a kink outside that a wire of this radius can reach, as in a concave corner: shapes without, none of which has
+  /// pieces, that have the least distance in common wherever it is more than the radius. Empty for any other shape.
+  [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(double /*wire_radius*/) const {
+    return {};
+  }
   /// Lines that show the shape, in its frame [m]; of an endless one a cut across it.
   [[nodiscard]] virtual std::vector<Eigen::Matrix3Xd> drawing() const = 0;
 };
+
+/// The pieces of a shape for a wire of a radius [m], >= 0, or the shape itself. All are in the shape's frame; a wire touches each on
+/// its own: in the corner between two it has a gap and a normal to both.                      theory.md (G.10)
+[[nodiscard]] std::vector<std::shared_ptr<const ContactShape>> pieces_of(
+    const std::shared_ptr<const ContactShape>& shape, double wire_radius = 0.0);
 
 /// A circle about the z axis in `chords` chords, closed [m].
 [[nodiscard]] Eigen::Matrix3Xd circle_drawing(double radius, double height, int chords);
@@ -49,6 +60,19 @@ class Ball final : public ContactShape {
 
  private:
   double radius_;
+};
+
+/// The half space z < 0 below a plane.
+class HalfSpace final : public ContactShape {
+ public:
+  /// Of the square that is drawn, half its side [m], > 0.
+  explicit HalfSpace(double drawn) : drawn_(drawn) {}
+  [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
+  [[nodiscard]] double smallest_radius() const override { return std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
+
+ private:
+  double drawn_;
 };
 
 /// An endless round cylinder about the z axis; radius 0 is a line (a knife edge that never bends).

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace snare::coupling {
@@ -26,7 +27,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[0]);
     into->mount_forces.push_back(w.mount_forces[1]);
   }
-  for (const ContactHandle& p : points()) e.strain += p.part->bristle_energy(at.y);
+  for (const ContactGroup& c : contacts_) e.strain += c.sums(at.y).energy;
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
     const multibody::RigidBodyState s = b.state(at.y);
@@ -41,23 +42,21 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
   return e;
 }
 
-// Of a contact's force (or impulse) on its wire: what a driven body gives, with its work, and what goes on to rigidly
-// held components, where it is no part of the rod's own reaction.
-void MotionRun::add_reactions(const ContactHandle& contact, const Vector3d& force, const DaePoint& at,
+// Of a contact's force on its wire: what a driven body gives, with its work, and what goes on to rigidly held components,
+// where it is no part of the rod's own reaction.
+void MotionRun::add_reactions(std::size_t contact, const ContactPart::Sums& sums, const DaePoint& at,
                               Eigen::Ref<VectorXd> rates) const {
-  const ContactPart& c = *contact.part;
-  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact.contact].wire)];
-  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact.contact].body)];
-  const auto outer = [&rates](const Vector3d& f, const Vector3d& point) {
-    rates.segment<3>(integral::outer) += f;
-    rates.segment<3>(integral::outer_moment) += point.cross(f);
-  };
-  const std::array<Vector3d, 2> held = c.share_of_mounts(at.y, force);
-  outer(-held[0], at.y.segment<3>(rod.position_of(0)));
-  outer(-held[1], at.y.segment<3>(rod.position_of(rod.vertices() - 1)));
+  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact].wire)];
+  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact].body)];
+  const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};
+  for (std::size_t k = 0; k < 2; ++k) {
+    rates.segment<3>(integral::outer) -= sums.on_mounts[k];
+    rates.segment<3>(integral::outer_moment) -= Vector3d(at.y.segment<3>(ends[k])).cross(sums.on_mounts[k]);
+  }
   if (body.moves_freely()) return;
-  rates[integral::work] += force.dot(at.y.segment<3>(body.velocity()));
-  outer(force, c.sample(at).point);
+  rates[integral::work] += sums.body_power;
+  rates.segment<3>(integral::outer) += sums.force;
+  rates.segment<3>(integral::outer_moment) += sums.moment;
 }
 
 void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
@@ -82,16 +81,18 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer_moment) +=
         state.position.cross(force) - b.body().angular_drag * (state.orientation * state.spin);
   }
-  for (const ContactHandle& p : points()) {
-    if (!p.part->closed()) continue;
-    const Vector3d force = p.part->sample(at).force;
-    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(p.contact)) += force;
-    rates[integral::dissipated] += p.part->lost_power(at.y);
-    add_reactions(p, force, at, rates);
+  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const ContactPart::Sums s = contacts_[k].sums(at.y);
+    rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(k)) += s.force;
+    rates[integral::contacts + 3 * touching + static_cast<Eigen::Index>(k)] = s.normal;
+    rates[integral::dissipated] += s.lost_power;
+    add_reactions(k, s, at, rates);
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const ContactSample s = springs_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
+    rates[integral::contacts + 3 * touching + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
     rates[integral::dissipated] += springs_[k].taken_power(at);
     rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
@@ -103,27 +104,46 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   rates[integral::work] += held.power;
 }
 
-// Extremes over the accepted steps.
-void MotionRun::watch() {
-  const DaePoint at{time_, y_, rate_};
+double MotionRun::longest_step() const {
+  double step = std::numeric_limits<double>::infinity();
+  for (const ContactGroup& c : contacts_) step = std::min(step, c.longest_step());
+  return step;
+}
+
+// Extremes over the accepted steps, and what happened since the last one.
+void MotionRun::watch(double time_before, const VectorXd& before) {
+  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
+  VectorXd forces(touching);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const ContactSample sum = contacts_[k].closed_sample(at);
-    sums_.peak_force[k] = std::max(sums_.peak_force[k], sum.normal_force);
-    if (motion_.contacts[k].law) continue;
-    for (const ContactSample& s : sum.points) {
-      sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
-      sums_.largest_gap = std::max(sums_.largest_gap, std::abs(s.gap));
+    const ContactSample sum = contacts_[k].closed_sample(y_);
+    for (MotionEvent& e : contacts_[k].observe(time_, sum, y_, time_before, before)) {
+      e.contact = static_cast<int>(k);
+      sums_.events.push_back(e);
     }
+    forces[static_cast<Eigen::Index>(k)] = sum.normal_force;
+    if (motion_.contacts[k].law) continue;
+    for (const ContactSample& s : sum.points) sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
   }
-  for (std::size_t k = 0; k < springs_.size(); ++k) {
-    double& peak = sums_.peak_force[contacts_.size() + k];
-    peak = std::max(peak, springs_[k].sample(at).normal_force);
+  const DaePoint at{time_, y_, rate_};
+  for (std::size_t k = 0; k < springs_.size(); ++k)
+    forces[static_cast<Eigen::Index>(contacts_.size() + k)] = springs_[k].sample(at).normal_force;
+  peak_.add(time_before, time_, forces, integrals_.tail(touching), sums_.peak_force);
+  // Laws take no mass of the wire along at once.
+  for (std::size_t k = 0; k < sums_.peak_force.size(); ++k) {
+    if (k < contacts_.size() && !motion_.contacts[k].law) continue;
+    sums_.peak_force[k] = std::max(sums_.peak_force[k], forces[static_cast<Eigen::Index>(k)]);
   }
   sums_.largest_drift = std::max(sums_.largest_drift, constraints_->largest_gap(y_));
   for (const BodyPart& b : bodies_) {
     sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
   }
   for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
+  sums_.strength.resize(rods_.size());
+  for (std::size_t w = 0; w < rods_.size(); ++w) {
+    const MotionWire& wire = motion_.wires[w];
+    if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))
+      broken_ = wire.name + *broken;
+  }
 }
 
 MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
@@ -131,19 +151,16 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
   e.dissipated += integrals[integral::dissipated];
-  e.impacts = sums_.impacts;
   e.work += integrals[integral::work];
-  e.integrator = e.kinetic + e.strain + e.potential + e.dissipated + e.impacts - e.work - sums_.start_energy;
+  e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    s.contacts.push_back(contacts_[k].sample(at));
+    s.contacts.push_back(contacts_[k].sample(at.y));
     const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
-    for (const ContactPart& p : contacts_[k].points()) {
-      const std::array<Vector3d, 2> held = p.force_on_mounts(at.y);
-      s.mount_forces[2 * w] -= held[0];
-      s.mount_forces[2 * w + 1] -= held[1];
-    }
+    const ContactPart::Sums sums = contacts_[k].sums(at.y);
+    s.mount_forces[2 * w] -= sums.on_mounts[0];
+    s.mount_forces[2 * w + 1] -= sums.on_mounts[1];
   }
   for (const LawPart& spring : springs_) s.contacts.push_back(spring.sample(at));
   for (const wire::RodPart& r : rods_) {

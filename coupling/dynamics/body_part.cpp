@@ -19,8 +19,9 @@ BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const Motion
 void BodyPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::string& name = body_.name;
-  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0});
-  layout.add({name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0});
+  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0, false});
+  layout.add(
+      {name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0, false});
   layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.body_velocity_tolerance, 0});
   layout.add({name + " angular velocity", axes, 3, DaeKind::differential, options_.spin_tolerance, 0});
   layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, numerics::no_tolerance, 0});

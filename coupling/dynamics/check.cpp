@@ -1,8 +1,10 @@
 #include "coupling/dynamics/check.hpp"
 
+#include "base/index.hpp"
 #include "coupling/dynamics/complaints.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -27,9 +29,8 @@ void validate_friction(Complaints& c, const std::string& key, const MotionFricti
             f.static_speed, "must be >= 0 and < dynamic_speed, or both 0");
   c.require(f.static_coefficient >= f.dynamic_coefficient, key + "static_coefficient", f.static_coefficient,
             "must be at least the dynamic coefficient");
-  for (const auto& [name, value] : {std::pair{"bristle_displacement", f.bristle_displacement},
-                                    {"bristle_force", f.bristle_force},
-                                    {"bristle_time", f.bristle_time}}) {
+  for (const auto& [name, value] :
+       {std::pair{"bristle_displacement", f.bristle_displacement}, {"bristle_time", f.bristle_time}}) {
     c.require(std::isfinite(value) && value > 0.0, key + name, value, "must be > 0");
   }
 }
@@ -52,6 +53,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   positive("angle_tolerance", options.angle_tolerance);
   positive("spin_tolerance", options.spin_tolerance);
   positive("newton_share", options.newton_share);
+  c.require(options.peak_window >= 0.0, "peak_window", options.peak_window, "must be >= 0");
   c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
   c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order, "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
@@ -60,6 +62,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     positive(w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
     positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
     positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
+    c.require(w.strength.breaking_tension > 0.0, w.name + ".strength", w.strength.breaking_tension, "must be > 0");
     c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
     if (w.rod.strands.act()) {
       positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
@@ -88,7 +91,10 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
-    c.require(k.points >= 1 && k.points <= 1000, k.name + ".points", k.points, "must be 1 to 1000");
+    c.require(std::isfinite(k.foundation.modulus) && k.foundation.modulus >= 0.0, k.name + ".foundation.modulus",
+              k.foundation.modulus, "must be > 0, or 0 for the default");
+    c.require(std::isfinite(k.foundation.damping) && k.foundation.damping >= 0.0, k.name + ".foundation.damping",
+              k.foundation.damping, "must be >= 0");
     c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius,
               "must be >= 0");
     c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius",
@@ -101,6 +107,13 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
               "must be a unit vector");
     c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
+  }
+  for (const MotionMount& m : motion.mounts) {
+    if (m.wire < 0 || m.wire >= static_cast<int>(motion.wires.size())) continue;  // said below
+    const MotionWire& w = motion.wires[base::at(m.wire)];
+    c.require(m.carrier.kind == MotionCarrier::Kind::world || w.rod.damping.mass_rate == 0.0,
+              w.name + ".damping.mass_rate", w.rod.damping.mass_rate,
+              fmt::format("must be 0: it drags against the world, which {} leaves", m.name));
   }
   ConstraintSet::check(motion, c);
   c.raise();

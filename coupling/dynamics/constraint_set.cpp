@@ -106,9 +106,11 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
     arm.floats = arm.model.tree.size() > 0;
     for (const multibody::TreeBody& b : arm.model.tree.bodies())
       arm.floats = arm.floats && (b.parent >= 0 || b.joint == multibody::JointKind::free);
-    const double motion_tolerance = std::min(options.position_tolerance, options.angle_tolerance);
-    arm.part.emplace(arm.model, a.drives, a.loads, multibody::ArmTolerances{motion_tolerance, 1e-6},
-                     multibody::BaseEquations::newton_euler);
+    // Coordinates and rates are lengths and angles of the links and of a floating base.
+    const multibody::ArmTolerances tolerances{std::min(options.body_position_tolerance, options.angle_tolerance),
+                                              std::min(options.body_velocity_tolerance, options.spin_tolerance), 1e-6,
+                                              false};
+    arm.part.emplace(arm.model, a.drives, a.loads, tolerances, multibody::BaseEquations::newton_euler);
     arm.stepper.emplace(*arm.part, a.switches);
   }
   for (const MotionWeld& w : motion.welds) {

@@ -8,9 +8,8 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 using numerics::VectorView;
 
-ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode, const CurvePoint& curve,
-                                 const BodyPart& body, const VectorView& y, double normal_force,
-                                 const Vector2d& bristle) {
+ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape, const CurvePoint& curve,
+                                 const BodyPart& body, const VectorView& y, const Vector2d& bristle) {
   ContactGeometry g;
   static_cast<CurvePoint&>(g) = curve;
   // The shape: distance, normal and Hessian in S, at R_WS^T (r - R_WB p_BS).
@@ -19,7 +18,7 @@ ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode
   g.arm = g.x - y.segment<3>(body.position());
   const Matrix3d R_WS = g.R_WB * contact.X_BS.R;
   const Vector3d in_shape = R_WS.transpose() * (g.arm - g.R_WB * contact.X_BS.p);
-  const DistanceField field = contact.shape->at(in_shape);
+  const DistanceField field = shape.at(in_shape);
   g.gap = field.distance - contact.wire_radius;
   g.normal = R_WS * field.normal;
   g.hessian = R_WS * field.hessian * R_WS.transpose();
@@ -34,9 +33,15 @@ ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode
   g.along = level / g.run;
   g.across = g.normal.cross(g.along);
   g.state.sliding = {g.along.dot(g.relative), g.across.dot(g.relative)};
-  g.state.normal = normal_force;
+  if (contact.law) {
+    const Vector3d force = contact.law(-g.gap, -g.gap_rate);
+    g.load = {force[0], -force[1], -force[2]};
+  } else {
+    g.load = contact.foundation.load(g.gap, g.gap_rate);
+  }
+  g.state.normal = g.load[0];
   g.state.bristle = bristle;
-  g.friction = tangent_force(contact.friction, mode, g.state);
+  g.friction = tangent_force(contact.friction, g.state);
   g.force = g.state.normal * g.normal - g.in_world(g.friction.force);
   return g;
 }
@@ -55,7 +60,8 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   const Vector3d domega = d.turn.cross(g.omega) + g.R_WB * d.spin;
   const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
-  c.force = d.lambda * g.normal + g.state.normal * c.normal;
+  c.load = g.load[1] * c.gap + g.load[2] * c.gap_rate;
+  c.force = c.load * g.normal + g.state.normal * c.normal;
   if (friction.acts()) {
     // The axes turn with X' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n x da.
     const Vector3d du =
@@ -63,8 +69,7 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
     const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
     const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
     c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};
-    c.friction =
-        g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * d.lambda;
+    c.friction = g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load;
     c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   }
   // Torque on the body, in the body: m = R^T (r x -f), dm = R^T (d(r x -f) - phi x (r x -f)).

@@ -21,7 +21,8 @@ struct CurvePoint {
 ///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
 ///   u = X' - (n.X') n,  a = u/|u|,  b = n x a: axes of the tangent plane
 ///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
-///   force on the wire: f = lambda n - (friction on the body, in a and b)
+///   lambda(g, dg/dt): load by the foundation [N/m], or normal force by a law [N]
+///   force on the wire, a length or in all: f = lambda n - (friction on the body, in a and b)
 struct ContactGeometry : CurvePoint {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();                                      ///< r [m]
@@ -34,19 +35,20 @@ struct ContactGeometry : CurvePoint {
   double gap_rate = 0.0;                                                              ///< dg/dt [m/s]
   Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
   double run = 0.0;                                                                   ///< |u|
-  BristleState state;  ///< z, the sliding velocity w in a and b, lambda
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and dg/dt
+  BristleState state;                              ///< z, the sliding velocity w in a and b, lambda
   TangentForce friction;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
 
   [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
     return tangent.x() * along + tangent.y() * across;
   }
 };
 
-/// normal_force: lambda [N]; bristle: z [m], zero without one.
-[[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, FrictionMode mode, const CurvePoint& curve,
-                                               const BodyPart& body, const numerics::VectorView& y, double normal_force,
-                                               const Eigen::Vector2d& bristle);
+/// bristle: z [m], zero without one.
+[[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape,
+                                               const CurvePoint& curve, const BodyPart& body,
+                                               const numerics::VectorView& y, const Eigen::Vector2d& bristle);
 
 /// A direction in the space of what a contact depends on.
 struct ContactDirection {
@@ -57,14 +59,14 @@ struct ContactDirection {
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< phi: turn of the body, in the world
   Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< of omega in the body
-  double zeta = 0.0;
-  double lambda = 0.0;
+  double zeta = 0.0;                               ///< of the material coordinate
   Eigen::Vector2d bristle = Eigen::Vector2d::Zero();
 };
 
 /// What changes along a direction.
 struct ContactChange {
   double gap = 0.0, tangency = 0.0, gap_rate = 0.0;  ///< of g, n.X' and dg/dt
+  double load = 0.0;                                 ///< of lambda
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero(), friction = Eigen::Vector2d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire

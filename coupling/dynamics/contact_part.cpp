@@ -1,266 +1,430 @@
 #include "coupling/dynamics/contact_part.hpp"
 
+#include "base/index.hpp"
+#include "coupling/contact/curve.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace snare::coupling {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using multibody::Pose;
 using numerics::DaeKind;
 using numerics::DaePoint;
 using numerics::VectorView;
 
-ContactPart::ContactPart(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body,
-                         const MotionOptions& options)
-    : contact_(contact), rod_(rod), body_(body), options_(options) {
-  assert(contact.shape && rod.vertices() >= 5);
+namespace {
+
+// Gauss's rule on a closed stretch: exact for a parabola of load under the cubics of the curve.
+constexpr std::array<double, 3> gauss_places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
+constexpr std::array<double, 3> gauss_weights{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+
+// Of bristles that nothing presses: the load that stands for it [N], and the time in which they forget [s].
+constexpr double idle_load = 1e-6;
+constexpr double idle_time = 1e-2;
+
+// A law's minimum of the gap that is flatter than this along the wire [1/m] is taken to stand still. theory.md (G.9)
+constexpr double least_curvature = 1.0;
+
+// Beside what may be touched next, so that the pattern seldom changes.
+constexpr int coupled_beside = 2;
+
+// A slider slower than this stands still [m/s].
+constexpr double standing = 1e-5;
+
+/// What changes along one unknown, or along one direction of a node.
+struct Change {
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
+  Vector2d sliding = Vector2d::Zero();
+  double load = 0.0, zeta = 0.0;
+
+  Change() = default;
+  Change(const ContactChange& c, double shift)
+      : force(c.force), torque(c.torque), sliding(c.sliding), load(c.load), zeta(shift) {}
+  [[nodiscard]] Change times(double factor) const {
+    Change c = *this;
+    c.force *= factor;
+    c.torque *= factor;
+    c.sliding *= factor;
+    c.load *= factor;
+    c.zeta *= factor;
+    return c;
+  }
+  Change& operator+=(const Change& o) {
+    force += o.force;
+    torque += o.torque;
+    sliding += o.sliding;
+    load += o.load;
+    zeta += o.zeta;
+    return *this;
+  }
+};
+
+}  // namespace
+
+ContactPart::ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece,
+                         const wire::RodPart& rod, const BodyPart& body)
+    : contact_(contact),
+      rod_(rod),
+      body_(body),
+      search_(contact, std::move(piece), rod, body),
+      coupled_(base::at(search_.curve().elements()), false) {
+  assert(rod_.vertices() >= 5);
+  if (contact_.foundation.modulus == 0.0) {
+    const wire::SpatialRodProperties& p = rod.constants().properties;
+    contact_.foundation.modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, 2.0 * contact_.wire_radius);
+  }
 }
 
 void ContactPart::declare(numerics::DaeLayout& layout) {
-  coordinate_ =
-      layout.add({contact_.name + " material coordinate", {}, 1, DaeKind::algebraic, options_.position_tolerance, 0});
-  layout.add({contact_.name + " normal force", {}, 1, DaeKind::algebraic, options_.force_tolerance, 0});
-  layout.add({contact_.name + " stabiliser", {}, 1, DaeKind::algebraic, numerics::no_tolerance, 0});
-  // A hundredth of what it gives before it slips.
-  if (has_bristle()) {
-    layout.add({contact_.name + " bristle",
-                {"along", "across"},
-                2,
-                DaeKind::differential,
-                0.01 * contact_.friction.bristle_displacement,
-                0});
-  }
+  if (!has_bristle()) return;
+  // Outside of the error test: z is the integral of a sliding whose displacements are tested.
+  bristle_ = layout.add({contact_.name + " bristle",
+                         {"along", "across"},
+                         2 * rod_.vertices(),
+                         DaeKind::algebraic,
+                         0.1 * contact_.friction.bristle_displacement,
+                         0});
 }
 
-std::vector<int> ContactPart::local_unknowns(int first_vertex) const {
-  std::vector<int> list;
-  const int end = std::min(rod_.vertices(), first_vertex + window_size);
-  for (int i = first_vertex; i < end; ++i) {
-    for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(i) + k);
-    for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
+bool ContactPart::look_around(const VectorView& y) {
+  search_.update(y);
+  const auto known = [this](int e) { return coupled_[base::at(e)]; };
+  if (std::all_of(search_.candidates().begin(), search_.candidates().end(), known)) return false;
+  std::fill(coupled_.begin(), coupled_.end(), false);
+  const int last = search_.curve().elements() - 1;
+  for (const int e : search_.candidates()) {
+    for (int k = std::max(0, e - coupled_beside); k <= std::min(last, e + coupled_beside); ++k)
+      coupled_[base::at(k)] = true;
   }
-  for (int k = 0; k < BodyPart::coordinates; ++k) list.push_back(body_.position() + k);
-  for (int k = 0; k < BodyPart::velocities; ++k) list.push_back(body_.velocity() + k);
-  for (const int own : own_unknowns()) list.push_back(own);
-  return list;
-}
-
-std::vector<int> ContactPart::own_unknowns() const {
-  std::vector<int> list{coordinate_unknown(), force_unknown(), stabiliser_unknown()};
-  for (int a = 0; has_bristle() && a < 2; ++a) list.push_back(bristle_unknown() + a);
-  return list;
+  return true;
 }
 
 void ContactPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  for (const int own : own_unknowns()) entries.emplace_back(own, own);
-  if (!coupled_) return;
-  const std::vector<int> all = local_unknowns(window_);
-  const int end = std::min(rod_.vertices(), window_ + window_size);
-  const auto whole_row = [&](int row) {
-    for (const int column : all) entries.emplace_back(row, column);
-  };
-  // Balances and kinematics of the wire, balances of the body, and the own rows.
-  for (int i = window_; i < end; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (rod_.is_held(i, k)) continue;
-      whole_row(rod_.velocity_of(i) + k);
-      entries.emplace_back(rod_.position_of(i) + k, stabiliser_unknown());
+  if (has_bristle()) {
+    for (int k = 0; k < 2 * rod_.vertices(); ++k) entries.emplace_back(bristle_ + k, bristle_ + k);
+  }
+  for (int e = 0; e < search_.curve().elements(); ++e) {
+    if (!coupled_[base::at(e)]) continue;
+    std::vector<int> columns, rows;
+    const int first = search_.curve().first_vertex(e);
+    for (int i = first; i < first + 4; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        columns.push_back(rod_.position_of(i) + a);
+        columns.push_back(rod_.velocity_of(i) + a);
+        if (!rod_.is_held(i, a)) rows.push_back(rod_.velocity_of(i) + a);
+      }
+    }
+    for (int k = 0; k < BodyPart::coordinates; ++k) columns.push_back(body_.position() + k);
+    for (int k = 0; k < BodyPart::velocities; ++k) {
+      columns.push_back(body_.velocity() + k);
+      if (body_.moves_freely()) rows.push_back(body_.velocity() + k);
+    }
+    for (int k = 0; has_bristle() && k < 4; ++k) {
+      columns.push_back(bristle_of(e) + k);
+      rows.push_back(bristle_of(e) + k);
+    }
+    for (const int row : rows) {
+      for (const int column : columns) entries.emplace_back(row, column);
     }
   }
-  if (body_.moves_freely()) {
-    for (int k = 0; k < BodyPart::velocities; ++k) whole_row(body_.velocity() + k);
+}
+
+ContactPart::Node ContactPart::node(int element, double u, double weight) const {
+  const BezierWire& curve = search_.curve();
+  Node n;
+  n.element = element;
+  n.u = u;
+  n.weight = weight;
+  n.first = curve.first_vertex(element);
+  n.value = curve.value(element, u);
+  n.slope = curve.slope(element, u);
+  n.bend.setZero();
+  n.hats = {1.0 - u, u};
+  return n;
+}
+
+void ContactPart::find(const VectorView& y, Found& found) const {
+  found.nodes.clear();
+  found.stretches.clear();
+  found.elements.clear();
+  const Pose where = search_.X_WS(y);
+  const BezierWire& curve = search_.curve();
+  for (const int e : search_.candidates()) {
+    const BezierWire::Control c = search_.control(where, e, y);
+    const double length = curve.length(e);
+    const auto gap = [&](double u) {
+      const DistanceField field = search_.shape().at(c * bernstein(u));
+      return GapPlace{u, field.distance - contact_.wire_radius, field.normal.dot(c * bernstein_slope(u)) / length};
+    };
+    const double way = (c.rightCols<3>() - c.leftCols<3>()).colwise().norm().sum();
+    found.minima.clear();
+    const std::size_t before = found.stretches.size();
+    const GapPlace begin = gap(0.0), end = gap(1.0);
+    ClosedStretches(length, way, search_.resolution()).find(gap, begin, end, found.stretches, found.minima);
+    found.elements.resize(found.stretches.size(), e);
+    if (has_law()) {
+      if (e == 0 && begin.gap < 0.0 && begin.slope >= 0.0) found.minima.push_back(begin);
+      if (e + 1 == curve.elements() && end.gap < 0.0 && end.slope < 0.0) found.minima.push_back(end);
+      for (const GapPlace& m : found.minima) {
+        Node n = node(e, m.u, 1.0);
+        n.bend = curve_weights(rod_, curve.begin(e) + m.u * length).bend;
+        n.follows = m.u > 0.0 && m.u < 1.0;
+        found.nodes.push_back(n);
+      }
+      continue;
+    }
+    for (std::size_t k = before; k < found.stretches.size(); ++k) {
+      const ClosedStretch& s = found.stretches[k];
+      for (std::size_t q = 0; q < gauss_places.size(); ++q) {
+        found.nodes.push_back(
+            node(e, s.from + gauss_places[q] * (s.to - s.from), gauss_weights[q] * (s.to - s.from) * length));
+        found.nodes.back().stretch = k;
+      }
+    }
   }
-  for (const int own : own_unknowns()) whole_row(own);
 }
 
-void ContactPart::attach_pattern(const numerics::SparseMatrix& pattern) {
-  pattern_ = &pattern;
-}
-
-CurveWeights ContactPart::weights(const VectorView& y) const {
-  return curve_weights(rod_, std::clamp(y[coordinate_unknown()], 0.0, rod_.coordinate(rod_.vertices() - 1)));
-}
-
-ContactPart::Geometry ContactPart::geometry(const VectorView& y) const {
-  const CurveWeights w = weights(y);
+ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const {
   CurvePoint curve;
   for (int k = 0; k < 4; ++k) {
-    const Vector3d x = y.segment<3>(rod_.position_of(w.first + k));
-    const Vector3d v = y.segment<3>(rod_.velocity_of(w.first + k));
-    curve.x += w.value[k] * x;
-    curve.slope += w.slope[k] * x;
-    curve.bend += w.bend[k] * x;
-    curve.v += w.value[k] * v;
-    curve.slope_v += w.slope[k] * v;
+    const Vector3d x = y.segment<3>(rod_.position_of(n.first + k));
+    const Vector3d v = y.segment<3>(rod_.velocity_of(n.first + k));
+    curve.x += n.value[k] * x;
+    curve.slope += n.slope[k] * x;
+    curve.bend += n.bend[k] * x;
+    curve.v += n.value[k] * v;
+    curve.slope_v += n.slope[k] * v;
   }
-  const Vector2d bristle = has_bristle() ? Vector2d(y.segment<2>(bristle_unknown())) : Vector2d::Zero();
-  return {contact_geometry(contact_, mode_, curve, body_, y, y[force_unknown()], bristle), w};
+  Vector2d bristle = Vector2d::Zero();
+  for (int h = 0; has_bristle() && h < 2; ++h) bristle += n.hats[base::at(h)] * y.segment<2>(bristle_of(n.element + h));
+  return contact_geometry(contact_, search_.shape(), curve, body_, y, bristle);
 }
 
 void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  const double zeta = at.y[coordinate_unknown()], lambda = at.y[force_unknown()], mu = at.y[stabiliser_unknown()];
-  if (!closed_) {
-    rows[coordinate_unknown()] += zeta - kept_coordinate_;
-    rows[force_unknown()] += lambda;
-    rows[stabiliser_unknown()] += mu;
-    if (has_bristle()) rows.segment<2>(bristle_unknown()) += at.y.segment<2>(bristle_unknown());
-    return;
-  }
-  const Geometry g = geometry(at.y);
-  // The wire: m v_k' + ... - N_k f = 0,  x_k' - v_k - N_k n mu/m_k = 0, but for components that a mount holds.
-  for (int k = 0; k < 4; ++k) {
-    const int i = g.weights.first + k;
-    for (int a = 0; a < 3; ++a) {
-      if (rod_.is_held(i, a)) continue;
-      rows[rod_.velocity_of(i) + a] -= g.weights.value[k] * g.force[a];
-      rows[rod_.position_of(i) + a] -= g.weights.value[k] * g.normal[a] * mu / rod_.mass_of(i);
-    }
-  }
-  // The body: inertia less forces, + f in the world and + R^T (r x f) in the body.
-  if (body_.moves_freely()) {
-    rows.segment<3>(body_.velocity()) += g.force;
-    rows.segment<3>(body_.spin()) += g.R_WB.transpose() * g.arm.cross(g.force);
-  }
-  // The bristle: z' - rate of its mode = 0.
   if (has_bristle()) {
-    rows.segment<2>(bristle_unknown()) +=
-        at.rate.segment<2>(bristle_unknown()) - bristle_rate(contact_.friction, mode_, g.state);
+    const int count = 2 * rod_.vertices();
+    rows.segment(bristle_, count) +=
+        idle_load * (at.rate.segment(bristle_, count) + at.y.segment(bristle_, count) / idle_time);
   }
-  // zeta: n.X' = 0, or its material point. lambda and mu: g = 0 and dg/dt = 0, or the law and mu = 0.
-  rows[coordinate_unknown()] += fixed_ ? zeta - kept_coordinate_ : g.normal.dot(g.slope);
-  if (has_law()) {
-    rows[force_unknown()] += g.state.normal - contact_.law(-g.gap, -g.gap_rate)[0];
-    rows[stabiliser_unknown()] += mu;
-  } else {
-    rows[force_unknown()] += g.gap;
-    rows[stabiliser_unknown()] += g.gap_rate;
+  if (search_.candidates().empty()) return;
+  find(at.y, found_);
+  for (const Node& n : found_.nodes) {
+    const ContactGeometry g = geometry(n, at.y);
+    const Vector3d force = n.weight * g.force;
+    // The wire: m v_k' + ... - N_k f = 0, but for components that a mount holds.
+    for (int k = 0; k < 4; ++k) {
+      for (int a = 0; a < 3; ++a) {
+        if (!rod_.is_held(n.first + k, a)) rows[rod_.velocity_of(n.first + k) + a] -= n.value[k] * force[a];
+      }
+    }
+    // The body: inertia less forces, + f in the world and + R^T (r x f) in the body.
+    if (body_.moves_freely()) {
+      rows.segment<3>(body_.velocity()) += force;
+      rows.segment<3>(body_.spin()) += g.R_WB.transpose() * g.arm.cross(force);
+    }
+    for (int h = 0; has_bristle() && h < 2; ++h) {
+      const int z = bristle_of(n.element + h);
+      const Vector2d rate = bristle_rate(contact_.friction, {at.y.segment<2>(z), g.state.sliding, 0.0}).rate;
+      rows.segment<2>(z) += n.weight * g.state.normal * n.hats[base::at(h)] * (at.rate.segment<2>(z) - rate);
+    }
   }
 }
 
-// One column after another: the unknown's direction, and what changes along it in all rows.
-void ContactPart::jacobian(const DaePoint& at, double rate_factor, std::vector<double>& values) {
+void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(*pattern_, values);
-  if (!closed_) {
-    for (const int own : own_unknowns()) into.add(own, own, 1.0);
-    return;
+  for (int k = 0; has_bristle() && k < 2 * rod_.vertices(); ++k)
+    into.add(bristle_ + k, bristle_ + k, idle_load * (c + 1.0 / idle_time));
+  if (search_.candidates().empty()) return;
+  find(at.y, found_);
+  for (const Node& n : found_.nodes) add_node_jacobian(n, at, c, into);
+}
+
+// One column after another: the unknown's direction, and what changes along it in all rows.
+void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
+                                    const numerics::PatternValues& into) const {
+  const ContactGeometry g = geometry(n, at.y);
+  // A law's minimum follows the tangency n.X' = 0.
+  ContactDirection along;
+  along.zeta = 1.0;
+  const double curvature = n.follows ? contact_change(contact_.friction, g, along).tangency : 0.0;
+  const auto change = [&](ContactDirection d) {
+    if (curvature < least_curvature) return Change(contact_change(contact_.friction, g, d), 0.0);
+    d.zeta = -contact_change(contact_.friction, g, d).tangency / curvature;
+    return Change(contact_change(contact_.friction, g, d), d.zeta);
+  };
+  std::array<BristleRate, 2> bristles;
+  for (int h = 0; has_bristle() && h < 2; ++h) {
+    bristles[base::at(h)] =
+        bristle_rate(contact_.friction, {at.y.segment<2>(bristle_of(n.element + h)), g.state.sliding, 0.0});
   }
-  const Geometry g = geometry(at.y);
-  const Vector3d law = has_law() ? contact_.law(-g.gap, -g.gap_rate) : Vector3d::Zero();
-  const auto column = [&](int unknown, const ContactDirection& d) {
-    const ContactChange c = contact_change(contact_.friction, g, d);
+  const auto column = [&](int unknown, const Change& d) {
     // Wire and body: -d(N_k f) with dN_k = N_k' dzeta, + df, and -dm for the torque m on the body.
     for (int k = 0; k < 4; ++k) {
-      const Vector3d row = -g.weights.value[k] * c.force - g.weights.slope[k] * d.zeta * g.force;
+      const Vector3d row = -n.weight * (n.value[k] * d.force + n.slope[k] * d.zeta * g.force);
       for (int a = 0; a < 3; ++a) {
-        const int i = g.weights.first + k;
-        if (!rod_.is_held(i, a)) into.add(rod_.velocity_of(i) + a, unknown, row[a]);
+        if (!rod_.is_held(n.first + k, a)) into.add(rod_.velocity_of(n.first + k) + a, unknown, row[a]);
       }
     }
-    if (body_.moves_freely()) {
-      for (int a = 0; a < 3; ++a) {
-        into.add(body_.velocity() + a, unknown, c.force[a]);
-        into.add(body_.spin() + a, unknown, -c.torque[a]);
-      }
+    for (int a = 0; body_.moves_freely() && a < 3; ++a) {
+      into.add(body_.velocity() + a, unknown, n.weight * d.force[a]);
+      into.add(body_.spin() + a, unknown, -n.weight * d.torque[a]);
     }
-    // Bristle: its rate is the sliding while it sticks, (f/k - z)/tau while it slips.
-    for (int a = 0; has_bristle() && a < 2; ++a) {
-      const double rate =
-          mode_ == FrictionMode::stick
-              ? c.sliding[a]
-              : (c.friction[a] / contact_.friction.bristle_stiffness() - d.bristle[a]) / contact_.friction.bristle_time;
-      into.add(bristle_unknown() + a, unknown, -rate);
-    }
-    // Tangency, gap and its rate, or the law: lambda - law(-g, -dg/dt).
-    if (!fixed_) into.add(coordinate_unknown(), unknown, c.tangency);
-    if (has_law()) {
-      into.add(force_unknown(), unknown, d.lambda + law[1] * c.gap + law[2] * c.gap_rate);
-    } else {
-      into.add(force_unknown(), unknown, c.gap);
-      into.add(stabiliser_unknown(), unknown, c.gap_rate);
+    for (int h = 0; has_bristle() && h < 2; ++h) {
+      const int z = bristle_of(n.element + h);
+      const BristleRate& r = bristles[base::at(h)];
+      const Vector2d row = n.weight * n.hats[base::at(h)] *
+                           (d.load * (at.rate.segment<2>(z) - r.rate) - g.state.normal * r.by_sliding * d.sliding);
+      for (int a = 0; a < 2; ++a) into.add(z + a, unknown, row[a]);
     }
   };
-  // Vertices.
-  for (int k = 0; k < 4; ++k) {
-    const int i = g.weights.first + k;
-    for (int a = 0; a < 3; ++a) {
-      ContactDirection place;
-      place.x = g.weights.value[k] * Vector3d::Unit(a);
-      place.slope = g.weights.slope[k] * Vector3d::Unit(a);
-      // The velocity's share in N' zeta is in g.slope_v already.
-      column(rod_.position_of(i) + a, place);
-      ContactDirection velocity;
-      velocity.v = g.weights.value[k] * Vector3d::Unit(a);
-      column(rod_.velocity_of(i) + a, velocity);
-      if (!rod_.is_held(i, a)) {
-        into.add(rod_.position_of(i) + a, stabiliser_unknown(), -g.weights.value[k] * g.normal[a] / rod_.mass_of(i));
-      }
+  // Vertices: by N_k and N_k' of their places, by N_k of their velocities.
+  for (int a = 0; a < 3; ++a) {
+    ContactDirection place, slope, velocity;
+    place.x = slope.slope = velocity.v = Vector3d::Unit(a);
+    const Change by_place = change(place), by_slope = change(slope), by_velocity = change(velocity);
+    for (int k = 0; k < 4; ++k) {
+      Change whole = by_place.times(n.value[k]);
+      whole += by_slope.times(n.slope[k]);
+      column(rod_.position_of(n.first + k) + a, whole);
+      column(rod_.velocity_of(n.first + k) + a, by_velocity.times(n.value[k]));
     }
+    ContactDirection body_place, body_velocity, body_spin;
+    body_place.p = body_velocity.body_velocity = body_spin.spin = Vector3d::Unit(a);
+    column(body_.position() + a, change(body_place));
+    column(body_.velocity() + a, change(body_velocity));
+    column(body_.spin() + a, change(body_spin));
   }
-  // The body: dq turns it by 4 R Q^T dq in the world.
+  // dq turns the body by 4 R Q^T dq in the world.
   const Eigen::Matrix<double, 3, 4> turn =
       4.0 * g.R_WB * multibody::quaternion_rates(at.y.segment<4>(body_.quaternion())).transpose();
   for (int a = 0; a < 4; ++a) {
     ContactDirection d;
     d.turn = turn.col(a);
-    column(body_.quaternion() + a, d);
+    column(body_.quaternion() + a, change(d));
   }
-  for (int a = 0; a < 3; ++a) {
-    ContactDirection place;
-    place.p = Vector3d::Unit(a);
-    column(body_.position() + a, place);
-    ContactDirection velocity;
-    velocity.body_velocity = Vector3d::Unit(a);
-    column(body_.velocity() + a, velocity);
-    ContactDirection spin;
-    spin.spin = Vector3d::Unit(a);
-    column(body_.spin() + a, spin);
-  }
-  // The own unknowns.
-  ContactDirection zeta;
-  zeta.zeta = 1.0;
-  column(coordinate_unknown(), zeta);
-  ContactDirection lambda;
-  lambda.lambda = 1.0;
-  column(force_unknown(), lambda);
   for (int a = 0; has_bristle() && a < 2; ++a) {
-    ContactDirection z;
-    z.bristle = Vector2d::Unit(a);
-    column(bristle_unknown() + a, z);
-    into.add(bristle_unknown() + a, bristle_unknown() + a, rate_factor);
+    ContactDirection d;
+    d.bristle = Vector2d::Unit(a);
+    const Change by_bristle = change(d);
+    for (int h = 0; h < 2; ++h) column(bristle_of(n.element + h) + a, by_bristle.times(n.hats[base::at(h)]));
   }
-  if (has_law()) into.add(stabiliser_unknown(), stabiliser_unknown(), 1.0);
-  if (fixed_) into.add(coordinate_unknown(), coordinate_unknown(), 1.0);
+  // The bristles themselves.
+  for (int h = 0; has_bristle() && h < 2; ++h) {
+    const int z = bristle_of(n.element + h);
+    const double load = n.weight * g.state.normal * n.hats[base::at(h)];
+    for (int a = 0; a < 2; ++a) {
+      into.add(z + a, z + a, load * c);
+      for (int b = 0; b < 2; ++b) into.add(z + a, z + b, -load * bristles[base::at(h)].by_bristle(a, b));
+    }
+  }
 }
 
-void ContactPart::events(const DaePoint& at, std::span<double> values) {
-  if (!closed_)
-    values[0] = 1.0;
-  else
-    values[0] = has_law() ? -geometry(at.y).gap : at.y[force_unknown()] - least_force_;
-}
-
-ContactSample ContactPart::sample(const DaePoint& at) const {
-  ContactSample s;
-  const Geometry g = geometry(at.y);
-  s.closed = closed_;
-  s.gap = g.gap;
-  s.force = g.force;
-  s.normal_force = g.state.normal;
-  s.point = g.x;
-  s.arc = at.y[coordinate_unknown()];
-  s.slip_speed = g.state.sliding.norm();
-  s.sticking = has_bristle() && mode_ == FrictionMode::stick;
+ContactPart::Sums ContactPart::sums(const VectorView& y) const {
+  Sums s;
+  if (search_.candidates().empty()) return s;
+  Found found;
+  find(y, found);
+  for (const Node& n : found.nodes) {
+    const ContactGeometry g = geometry(n, y);
+    const Vector3d force = n.weight * g.force;
+    s.force += force;
+    s.normal += n.weight * g.state.normal;
+    s.moment += g.x.cross(force);
+    // What the pair of forces takes from wire and body together; of the foundation less what it stores.
+    const double stored = has_law() ? 0.0 : n.weight * contact_.foundation.elastic_load(g.gap) * g.gap_rate;
+    s.lost_power += stored - force.dot(g.relative);
+    if (!has_law()) s.energy += n.weight * contact_.foundation.energy(g.gap);
+    s.body_power += force.dot(g.body_velocity + g.omega.cross(g.arm));
+    for (int k = 0; k < 4; ++k) {
+      const int i = n.first + k;
+      if (i != 0 && i != rod_.vertices() - 1) continue;
+      for (int a = 0; a < 3; ++a) {
+        if (rod_.is_held(i, a)) s.on_mounts[i == 0 ? 0 : 1][a] += n.value[k] * force[a];
+      }
+    }
+  }
   return s;
 }
 
-double ContactPart::gap(const VectorView& y) const {
-  return geometry(y).gap;
+std::pair<double, double> ContactPart::gap_at(const VectorView& y, double coordinate) const {
+  const BezierWire& curve = search_.curve();
+  const int e = curve.element_at(coordinate);
+  const ContactGeometry g =
+      geometry(node(e, std::clamp((coordinate - curve.begin(e)) / curve.length(e), 0.0, 1.0), 1.0), y);
+  return {g.gap, g.gap_rate};
 }
 
-double ContactPart::gap_rate(const VectorView& y) const {
-  return geometry(y).gap_rate;
+void ContactPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
+  if (!has_bristle()) return;
+  const int count = 2 * rod_.vertices();
+  Eigen::VectorXd sum = -idle_load / idle_time * y.segment(bristle_, count);
+  Eigen::VectorXd load = Eigen::VectorXd::Constant(count, idle_load);
+  Found found;
+  find(y, found);
+  for (const Node& n : found.nodes) {
+    const ContactGeometry g = geometry(n, y);
+    for (int h = 0; h < 2; ++h) {
+      const int z = bristle_of(n.element + h);
+      const double share = n.weight * g.state.normal * n.hats[base::at(h)];
+      sum.segment<2>(z - bristle_) +=
+          share * bristle_rate(contact_.friction, {y.segment<2>(z), g.state.sliding, 0.0}).rate;
+      load.segment<2>(z - bristle_).array() += share;
+    }
+  }
+  rate.segment(bristle_, count) = sum.cwiseQuotient(load);
+}
+
+std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
+  std::vector<ContactSample> list;
+  if (search_.candidates().empty()) return list;
+  Found found;
+  find(y, found);
+  const BezierWire& curve = search_.curve();
+  // One after another along the wire; a stretch that goes on in the next element is one with it.
+  double reached = -1.0;
+  std::vector<std::size_t> of_stretch;
+  for (std::size_t k = 0; k < found.stretches.size(); ++k) {
+    const int e = found.elements[k];
+    const ClosedStretch& s = found.stretches[k];
+    const double from = curve.begin(e) + s.from * curve.length(e);
+    if (list.empty() || from > reached + 1e-9 * curve.longest()) {
+      list.emplace_back();
+      list.back().closed = true;
+    }
+    reached = curve.begin(e) + s.to * curve.length(e);
+    of_stretch.push_back(list.size() - 1);
+    list.back().gap = std::min(list.back().gap, s.deepest.gap);
+  }
+  for (const Node& n : found.nodes) {
+    const auto owner = has_law()
+                           ? std::find(found.elements.begin(), found.elements.end(), n.element) - found.elements.begin()
+                           : static_cast<std::ptrdiff_t>(n.stretch);
+    if (of_stretch.empty()) break;
+    ContactSample& s = list[of_stretch[std::min(static_cast<std::size_t>(owner), of_stretch.size() - 1)]];
+    const ContactGeometry g = geometry(n, y);
+    const double normal = n.weight * g.state.normal;
+    s.force += n.weight * g.force;
+    s.normal_force += normal;
+    s.point += normal * g.x;
+    s.arc += normal * (curve.begin(n.element) + n.u * curve.length(n.element));
+    s.slip_speed += normal * g.state.sliding.norm();
+    if (!has_bristle()) continue;
+    // The slider of what sticks stands still.
+    const Vector2d slides = g.state.sliding - bristle_rate(contact_.friction, g.state).rate;
+    if (slides.norm() <= standing) s.sticking = true;
+  }
+  std::erase_if(list, [](const ContactSample& s) { return s.normal_force <= 0.0; });
+  for (ContactSample& s : list) {
+    s.point /= s.normal_force;
+    s.arc /= s.normal_force;
+    s.slip_speed /= s.normal_force;
+  }
+  return list;
 }
 
 }  // namespace snare::coupling

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "coupling/contact/contact_law.hpp"
+#include "coupling/contact/foundation.hpp"
 #include "coupling/contact/friction.hpp"
 #include "coupling/contact/shape.hpp"
 #include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/strength.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
 #include "wire/rod_part.hpp"
@@ -23,6 +25,7 @@ struct MotionWire {
   wire::RodInMotion rod;        ///< constants, mounts, damping and mesh
   Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
   Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: at rest
+  WireStrength strength = {};
 };
 
 /// A free rigid body.
@@ -48,10 +51,10 @@ struct MotionContact {
   std::shared_ptr<const ContactShape> shape;  ///< in a frame S fixed to the body
   multibody::Pose X_BS;                       ///< of the shape's frame in the body's
   double wire_radius = 0.0;                   ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
-  int points = 4;                             ///< most that are closed at a time, >= 1; more are a failure of the run
+  ElasticFoundation foundation;
   MotionFriction friction;
-  /// The papers' contact laws in place of the constraint: normal force [N] of penetration [m] and its rate [m/s],
-  /// with the derivatives by both; never negative. Empty: the wire does not penetrate.
+  /// The papers' contact laws in place of the foundation: normal force [N] of the deepest penetration [m] and its rate
+  /// [m/s], with the derivatives by both; never negative. At every local minimum of the gap.
   ContactLaw law;
 };
 

@@ -12,10 +12,10 @@ using numerics::VectorView;
 
 namespace {
 
-// Unknowns of the half cell: two vertices, whose rates are unknowns themselves, and an angle.
+// Unknowns of the half cell: two vertices, whose rates are unknowns themselves, an angle, and of a rod of higher order
+// two curvatures.
 constexpr std::size_t cell_vertices = 6;
-constexpr std::size_t cell_size = 7;
-using CellVector = Eigen::Matrix<double, cell_size, 1>;
+using CellVector = Eigen::Matrix<double, wire::MountCell::count, 1>;
 
 /// Linear part of J times changes of the unknowns.
 Vector3d linear_change(const Matrix6X& J, const std::vector<int>& unknowns, const VectorXd& values) {
@@ -42,12 +42,18 @@ void MountPart::declare(numerics::DaeLayout& layout) {
   stabiliser_ = layout.add({name() + " stabiliser", axes, 3, DaeKind::algebraic, numerics::no_tolerance, 0});
 }
 
+void MountPart::append_curvatures(std::vector<int>& list) const {
+  if (!rod_.model().is_curved()) return;
+  for (int j = 0; j < 2; ++j) list.push_back(rod_.model().curvature_of(vertex()) + j);
+}
+
 std::vector<int> MountPart::places() const {
   const int i = vertex(), j = end_ == wire::End::left ? 1 : i - 1;
   std::vector<int> list;
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(j) + k);
   list.push_back(rod_.end_angle(end_));
+  append_curvatures(list);
   return list;
 }
 
@@ -57,6 +63,7 @@ std::vector<int> MountPart::balances() const {
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(j) + k);
   list.push_back(rod_.end_angle(end_));
+  append_curvatures(list);
   return list;
 }
 
@@ -114,7 +121,7 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
   const wire::MountCell cell = rod_.mount_cell(at, end_);
   const int end = rod_.position_of(vertex()), speed = rod_.velocity_of(vertex());
   const auto add_to_cell = [&](int column, const CellVector& by) {
-    for (std::size_t r = 0; r < cell_size; ++r) into.add(rows[r], column, by[static_cast<Eigen::Index>(r)]);
+    for (std::size_t r = 0; r < rows.size(); ++r) into.add(rows[r], column, by[static_cast<Eigen::Index>(r)]);
   };
   // The end and the constraint, by their own unknowns.
   for (int i = 0; i < 3; ++i) {
@@ -155,7 +162,7 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
     const auto row = static_cast<Eigen::Index>(r);
     for (std::size_t k = 0; k < q.size(); ++k) into.add(v[r], q[k], -by_q(row, static_cast<Eigen::Index>(k)));
     for (std::size_t k = 0; k < v.size(); ++k) into.add(v[r], v[k], -by_v(row, static_cast<Eigen::Index>(k)));
-    for (std::size_t k = 0; k < cell_size; ++k) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       // The rates of the vertices are the unknowns v, that of the angle is its y'.
       const bool angle = k >= cell_vertices;

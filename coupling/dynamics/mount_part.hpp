@@ -44,6 +44,7 @@ class MountPart final : public Constraint {
   /// the rows of their balances, which for the vertices are the unknowns v too.
   [[nodiscard]] std::vector<int> places() const;
   [[nodiscard]] std::vector<int> balances() const;
+  void append_curvatures(std::vector<int>& list) const;
   [[nodiscard]] int vertex() const { return rod_.model().vertex_at(end_); }
 
   // First of three multipliers each, and of the rows of the same index: place and velocity of the end.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/strength.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
@@ -22,8 +23,8 @@ struct ContactSample {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the wire's centreline [m]
   double arc = 0.0;                                 ///< material coordinate [m]
   double slip_speed = 0.0;                          ///< [m/s]
-  bool sticking = false;                            ///< closed, with a bristle that does not slide
-  /// Of a shape on a wire: its closed points, the one that presses most first. Then the forces above are their sums,
+  bool sticking = false;                            ///< closed, with bristles of which some do not slide
+  /// Of a shape on a wire: its closed stretches, the one that presses most first. Then the forces above are their sums,
   /// gap and place those of the first, or of the wire's nearest point while all are open.
   std::vector<ContactSample> points;
 };
@@ -31,12 +32,11 @@ struct ContactSample {
 /// Energies [J] of all wires, free bodies and arms.
 struct EnergyBalance {
   double kinetic = 0.0;
-  double strain = 0.0;  ///< of the wires, and of bristles
+  double strain = 0.0;  ///< of the wires, and of foundations
   double potential = 0.0;
   double dissipated = 0.0;  ///< by damping, drag, friction, contact laws and joints, integrated along the run
-  double impacts = 0.0;     ///< lost when local masses of the wire take on a body's velocity at once
   double work = 0.0;        ///< done by driven bodies, constant forces, drives and loads of arms
-  /// kinetic + strain + potential + dissipated + impacts - work - the same at the start: what the integrator gained
+  /// kinetic + strain + potential + dissipated - work - the same at the start: what the integrator gained
   /// (negative: lost).
   double integrator = 0.0;
 };
@@ -63,7 +63,6 @@ struct MotionSample {
 
 /// What happened at a contact.
 struct MotionEvent {
-  /// A touch begins in the stick; where it slides at once, `slip` follows at the same time.
   enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
   int contact = 0;   ///< index; springs count on after the contacts
@@ -79,18 +78,16 @@ struct MotionEvent {
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
-  std::vector<double> peak_force;    ///< of every contact and spring, at accepted steps [N]
-  double largest_penetration = 0.0;  ///< of closed contacts without law [m]
-  double largest_gap = 0.0;          ///< of the same, to either side: what the constraint drifts [m]
-  double largest_drift = 0.0;        ///< of quaternions' length from one, and of rigid mounts [-], [m]
-  double impacts = 0.0;              ///< energy lost at touches [J]
-  double start_energy = 0.0;         ///< kinetic + strain + potential [J]
+  std::vector<double> peak_force;     ///< of every contact and spring: see PeakForce [N]
+  std::vector<StrengthUse> strength;  ///< largest of every wire, at accepted steps
+  double largest_penetration = 0.0;   ///< into the foundations [m]
+  double largest_drift = 0.0;         ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  double start_energy = 0.0;          ///< kinetic + strain + potential [J]
   Eigen::Vector3d start_momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
   Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
   long samples = 0;                                                  ///< given to the observer
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
-  double search_seconds = 0.0;
 };
 
 /// All that a motion needs to go on from a time.
@@ -111,15 +108,14 @@ struct MotionResult {
   Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
   /// The same about the origin, less that of all outer moments [N m s].
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
-  std::vector<double> peak_force;        ///< of every contact and spring, at accepted steps [N]
+  std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
+  std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
   std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
-  double largest_penetration = 0.0;      ///< of closed contacts without law [m]
-  double largest_gap = 0.0;              ///< of the same, to either side: what the constraint drifts [m]
+  double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;
-  double search_seconds = 0.0;  ///< of them, in finding touches
-  MotionState last;             ///< to go on from; kept on failure too
+  MotionState last;  ///< to go on from; kept on failure too
 };
 
 /// Called at every output time, in order; true: stop.

@@ -25,11 +25,9 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   }
   for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
   for (const MotionContact& c : motion.contacts) {
-    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)],
-                           options);
+    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }
   for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
-  for (const ContactHandle& p : points()) friction_events_.emplace_back(*p.part);
   constraints_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -46,12 +44,12 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share;
   const auto touching = static_cast<int>(contacts_.size() + springs_.size());
-  integrals_ = VectorXd::Zero(integral::contacts + 3 * touching);
+  integrals_ = VectorXd::Zero(integral::contacts + 4 * touching);
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
-  ida_->watch([this](double from, const numerics::Ida& now) { return first_touch(from, now); });
+  peak_ = PeakForce(options.peak_window);
   sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
 }
 
@@ -59,9 +57,10 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
   std::vector<numerics::DaePart*> list;
   for (auto& r : rods_) list.push_back(&r);
   for (auto& b : bodies_) list.push_back(&b);
-  for (const ContactHandle& p : points()) list.push_back(p.part);
+  for (auto& c : contacts_) {
+    for (ContactPart& p : c.pieces()) list.push_back(&p);
+  }
   for (auto& s : springs_) list.push_back(&s);
-  for (auto& f : friction_events_) list.push_back(&f);
   constraints_->append(list);
   return list;
 }
@@ -71,8 +70,7 @@ void MotionRun::require_apart() {
   std::vector<base::InputProblem> problems;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const MotionContact& c = motion_.contacts[k];
-    const GapMinimum n = contacts_[k].nearest(y_);
-    for (ContactPart& p : contacts_[k].points()) p.wait_at(n.coordinate, y_);
+    const NearestPoint n = contacts_[k].nearest(y_);
     // The start may touch, up to a small part of the wire's radius.
     if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
       problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate),
@@ -98,12 +96,16 @@ bool MotionRun::write_until(double time) {
 }
 
 void MotionRun::begin() {
+  for (ContactGroup& c : contacts_) {
+    for (ContactPart& p : c.pieces()) {
+      if (p.look_around(y_)) system_->invalidate_pattern();
+    }
+  }
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
-  refused_ = close_touching();
   settle();
 }
 
@@ -119,7 +121,8 @@ void MotionRun::resume(const MotionState& from) {
   integrals_ = from.integrals;
   sums_ = from.sums;
   std::span<const double> memory = from.memory;
-  for (ContactPoints& c : contacts_) c.restore_state(memory);
+  for (ContactGroup& c : contacts_) c.restore_state(memory);
+  peak_.restore_state(memory);
   constraints_->restore_state(time_, y_, memory);
   system_->restore_state(y_, memory);
   ida_->set_integrals(integrals_);
@@ -130,45 +133,27 @@ MotionResult MotionRun::go(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
   bool stopped = write_until(time_);
-  while (!stopped && !refused_ && !reached(time_, limit)) {
+  while (!stopped && !broken_ && !reached(time_, limit)) {
+    ida_->set_max_step(std::min(options_.max_step, longest_step()));
     const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()));
     report = ida_->report();
-    if (advance == numerics::IdaAdvance::failed) {
-      if (!rest_lost_minima()) break;
-      settle();
-      continue;
-    }
-    time_ = ida_->time();
+    if (advance == numerics::IdaAdvance::failed) break;
+    const double before = std::exchange(time_, ida_->time());
+    std::swap(before_, y_);
     y_ = ida_->y();
     rate_ = ida_->rate();
     integrals_ = ida_->integrals();
-    watch();
+    watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
-    bool changed = leave_broken_modes(advance == numerics::IdaAdvance::event);
     const std::vector<int> found = ida_->events_found();
     const auto arms = static_cast<std::size_t>(constraints_->event_count());  // the last of the events
-    changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_) || changed;
+    bool changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
     if (constraints_->stuck()) {
       report.termination = numerics::Termination::step_too_small;
       report.message = *constraints_->stuck();
       break;
     }
-    if (advance != numerics::IdaAdvance::event) {
-      if (changed) settle();
-      continue;
-    }
-    // The watch stops a step at a touch, without an event of the integrator.
-    if (std::none_of(found.begin(), found.end(), [](int f) { return f != 0; })) {
-      refused_ = close_touching();
-      if (refused_) break;
-      changed = true;
-    }
     std::size_t event = 0;
-    for (const ContactHandle& p : points()) {
-      if (found[event++] >= 0) continue;  // only a falling force is an event
-      changed = true;
-      open(p);
-    }
     for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
       if (found[event] == 0) continue;
       changed = true;
@@ -177,15 +162,10 @@ MotionResult MotionRun::go(double limit) {
                               touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
     if (changed) settle();
-    if (static_cast<int>(sums_.events.size()) > options_.max_events) {
-      report.termination = numerics::Termination::iteration_limit;
-      report.message = fmt::format("more than {} contact events by {:.9g} s", options_.max_events, time_);
-      break;
-    }
   }
-  if (refused_) {
+  if (broken_) {
     report.termination = numerics::Termination::iteration_limit;
-    report.message = *refused_;
+    report.message = *broken_;
   }
   if (stopped && report.usable()) {
     report.termination = numerics::Termination::interrupted;
@@ -209,14 +189,14 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
     r.impulse.emplace_back(integrals_.segment<3>(integral::contacts + 3 * k));
   r.events = sums_.events;
   r.peak_force = sums_.peak_force;
+  r.strength = sums_.strength;
   r.largest_penetration = sums_.largest_penetration;
-  r.largest_gap = sums_.largest_gap;
   r.largest_drift = sums_.largest_drift;
   r.statistics = sums_.statistics;
   r.wall_seconds = sums_.wall_seconds;
-  r.search_seconds = sums_.search_seconds;
   std::vector<double> memory;
-  for (const ContactPoints& c : contacts_) c.save_state(memory);
+  for (const ContactGroup& c : contacts_) c.save_state(memory);
+  peak_.save_state(memory);
   constraints_->save_state(memory);
   const std::vector<double> parts = system_->memory();
   memory.insert(memory.end(), parts.begin(), parts.end());

@@ -2,11 +2,11 @@
 
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
-#include "coupling/dynamics/contact_part.hpp"
-#include "coupling/dynamics/contact_points.hpp"
+#include "coupling/dynamics/contact_group.hpp"
 #include "coupling/dynamics/law_part.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/peak_force.hpp"
 #include "coupling/dynamics/result.hpp"
 #include "numerics/ida.hpp"
 
@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,7 +22,8 @@
 namespace snare::coupling {
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, and the force of every contact on its wire and of every body on its spring [N].
+/// wires and free bodies, the force of every contact on its wire and of every body on its spring [N], and behind them the
+/// normal force of each.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
@@ -37,12 +37,6 @@ constexpr Eigen::Index contacts = 8;
   constexpr double round_off = 1e-13;
   return time >= limit - round_off * std::max(1.0, limit);
 }
-
-/// A point of a contact.
-struct ContactHandle {
-  std::size_t contact = 0, point = 0;
-  ContactPart* part = nullptr;
-};
 
 /// One leg of a motion, from its start or from a state: parts, integrator, what happens at events, balances.
 class MotionRun {
@@ -59,28 +53,17 @@ class MotionRun {
   [[nodiscard]] bool write_until(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
-  // Events (events.cpp).
-  [[nodiscard]] std::vector<ContactHandle> points();
-  [[nodiscard]] std::vector<ContactHandle> constraints();
-  [[nodiscard]] Eigen::MatrixXd flexibility(const std::vector<ContactHandle>& constraints, bool with_friction) const;
-  void note(const ContactHandle& point, MotionEvent::Kind kind, double speed);
-  void open(const ContactHandle& point);
+  // Starts (start_rates.cpp).
   void make_rates();
-  [[nodiscard]] std::optional<double> first_touch(double from, const numerics::Ida& ida);
-  [[nodiscard]] Eigen::VectorXd allowed_tension(const std::vector<ContactHandle>& constraints,
-                                                const Eigen::VectorXd& flexibility) const;
-  [[nodiscard]] std::optional<std::string> close_touching();
-  void switch_friction(const ContactHandle& point);
-  [[nodiscard]] bool leave_broken_modes(bool at_event);
-  [[nodiscard]] bool rest_lost_minima();
   void settle();
 
   // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
-  void add_reactions(const ContactHandle& point, const Eigen::Vector3d& force, const numerics::DaePoint& at,
+  void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
                      Eigen::Ref<Eigen::VectorXd> rates) const;
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
-  void watch();
+  void watch(double time_before, const Eigen::VectorXd& before);
+  [[nodiscard]] double longest_step() const;
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
 
   const Motion& motion_;
@@ -88,19 +71,18 @@ class MotionRun {
   const MotionObserver& observer_;
   std::deque<wire::RodPart> rods_;
   std::deque<BodyPart> bodies_;
-  std::deque<ContactPoints> contacts_;
+  std::deque<ContactGroup> contacts_;
   std::deque<LawPart> springs_;
-  std::deque<FrictionEvent> friction_events_;  // behind all other events
   std::optional<ConstraintSet> constraints_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   Eigen::VectorXd y_, rate_;
+  Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
+  PeakForce peak_;
   double time_ = 0.0;
-  double rested_ = -std::numeric_limits<double>::infinity();  // when points were last made to rest on the wire [s]
-  int trials_ = 0;                                            // of that, one soon after the other
   MotionSums sums_;
-  std::optional<std::string> refused_;  // a touch that cannot be taken
+  std::optional<std::string> broken_;  // a wire at its strength
 };
 
 }  // namespace snare::coupling

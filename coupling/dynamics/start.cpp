@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "wire/loose_wire.hpp"
+#include "wire/rod_rest.hpp"
 
 namespace snare::coupling {
 
@@ -36,7 +37,11 @@ Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
     const Eigen::Vector2d p = wire::vertex(loose.state, i);
     x.col(i) = from + p.x() * along + p.y() * up;
   }
-  return x;
+  if (rod.formulation == wire::Formulation::vertices) return x;
+  // From there to the equilibrium of the rod of higher order, in its plane.
+  const wire::RodRest rest = wire::find_rest(rod, x);
+  if (!rest.report.usable()) throw base::InputError({"", 0, "wire", "", rest.report.message});
+  return rest.positions;
 }
 
 }  // namespace snare::coupling

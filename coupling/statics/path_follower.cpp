@@ -5,8 +5,7 @@
 namespace snare::coupling {
 
 numerics::SolveReport follow(FollowedPath& path, double target, const StepControl& control) {
-  // A remainder shorter than a tenth of the step is taken with it: points too near each other spoil a
-  // predictor.
+  // A remainder shorter than a tenth of the step is taken with it: points too near each other spoil a predictor.
   constexpr double with_remainder = 1.1;
   constexpr double to_event = 1.000001;  // not beyond it
   double step = target - path.parameter();

@@ -32,9 +32,8 @@ class FollowedPath {
   [[nodiscard]] virtual numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) = 0;
 };
 
-/// Of which length the next step is the double, or after a failure the half. The two differ by round-off, and
-/// at the target by the remainder that is taken with the last step; the points that a path passes depend on
-/// it.
+/// Of which length the next step is the double, or after a failure the half. The two differ by round-off, and at the
+/// target by the remainder that is taken with the last step; the points that a path passes depend on it.
 enum class StepMeasure {
   attempted,  ///< the distance between the two values of the parameter
   planned     ///< the step before a remainder was added
@@ -45,9 +44,8 @@ struct StepControl {
   StepMeasure measure = StepMeasure::attempted;
 };
 
-/// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled,
-/// one with an event inside ends there. Returns the report of the last step, usable when the target is
-/// reached.
+/// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled, one with
+/// an event inside ends there. Returns the report of the last step, usable when the target is reached.
 [[nodiscard]] numerics::SolveReport follow(FollowedPath& path, double target, const StepControl& control);
 
 }  // namespace snare::coupling

@@ -9,7 +9,6 @@ namespace snare::coupling {
 
 namespace {
 
-using Eigen::Matrix2d;
 using Eigen::RowVector2d;
 using Eigen::Vector2d;
 

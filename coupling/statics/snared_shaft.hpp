@@ -9,8 +9,7 @@
 
 namespace snare::coupling {
 
-/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its
-/// axis z.
+/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its axis z.
 ///
 /// Every wire is the wire of `wire`, pushed outward at mid-span by `seat` from first touch before the
 /// friction acts: the state in which closing rings leave it. The chords lie in one plane; wires do not touch

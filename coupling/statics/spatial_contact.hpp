@@ -40,8 +40,7 @@ class SpatialContact {
     int iterations = 0;                    ///< of all
     std::optional<PushEvent::Kind> event;  ///< the last change of the contact, touch or lift-off
   };
-  /// Newton's method with the contact settled: it opens where it would pull, closes where it would be
-  /// entered.
+  /// Newton's method with the contact settled: it opens where it would pull, closes where it would be entered.
   [[nodiscard]] Settled settle(numerics::PathPoint& trial, int max_iterations);
 
   /// Whether a vertex beside the contact is inside the pin: a wire bent sharper than the pin would lie on it

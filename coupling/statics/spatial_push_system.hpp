@@ -26,11 +26,9 @@ struct SpatialPin {
   double last_zeta = 0.0;  ///< [m]
 };
 
-/// Equilibrium of a spatial rod with one pin, Coulomb friction in both directions of its surface by the
-/// projection
+/// Equilibrium of a spatial rod with one pin, Coulomb friction in both directions of its surface by the projection
 ///   f_T = P(f_T - r v),  P onto the disc of radius mu N                              theory.md (C.11)
-/// (Alart and Curnier 1991), v the slip since the last accepted state: sticking is inside the disc, sliding
-/// on its rim.
+/// (Alart and Curnier 1991), v the slip since the last accepted state: sticking is inside the disc, sliding on its rim.
 /// The parameter is the travel.
 class SpatialPushSystem final : public numerics::PathProblem {
  public:

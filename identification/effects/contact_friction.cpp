@@ -23,15 +23,13 @@ std::vector<std::vector<double>> trial_coefficients(const TrialContext&) {
 
 /// Coulomb friction between wire and pusher (on supports: between wire and supports).
 Effect contact_friction_effect() {
-  Effect e;
-  e.name = "contact_friction";
-  e.channel = Channel::contact;
-  e.meaning = "the wire rubs on the pusher";
-  e.numbers = {{coefficient(), 0.0, 1.0}};
-  e.one_sided = true;
-  e.trials = trial_coefficients;
-  e.independent_check = "load and unload with a lubricated and with a dry pusher";
-  return e;
+  return {.name = "contact_friction",
+          .channel = Channel::contact,
+          .meaning = "the wire rubs on the pusher",
+          .numbers = {{coefficient(), 0.0, 1.0}},
+          .one_sided = true,
+          .trials = trial_coefficients,
+          .independent_check = "load and unload with a lubricated and with a dry pusher"};
 }
 
 }  // namespace snare::identification

@@ -20,13 +20,11 @@ Parameter gain() {
 
 /// The recorded force is a multiple of the true one.
 Effect force_gain_effect() {
-  Effect e;
-  e.name = "force_gain";
-  e.channel = Channel::sensor;
-  e.meaning = "the load cell's calibration factor is wrong";
-  e.numbers = {{gain(), 0.5, 2.0}};
-  e.independent_check = "hang a known weight on the load cell";
-  return e;
+  return {.name = "force_gain",
+          .channel = Channel::sensor,
+          .meaning = "the load cell's calibration factor is wrong",
+          .numbers = {{gain(), 0.5, 2.0}},
+          .independent_check = "hang a known weight on the load cell"};
 }
 
 }  // namespace snare::identification

@@ -20,13 +20,11 @@ Parameter offset() {
 
 /// The recorded force is not zero without contact.
 Effect force_offset_effect() {
-  Effect e;
-  e.name = "force_offset";
-  e.channel = Channel::sensor;
-  e.meaning = "the load cell does not read zero without load";
-  e.numbers = {{offset(), -1e3, 1e3}};
-  e.independent_check = "record some readings before the touch";
-  return e;
+  return {.name = "force_offset",
+          .channel = Channel::sensor,
+          .meaning = "the load cell does not read zero without load",
+          .numbers = {{offset(), -1e3, 1e3}},
+          .independent_check = "record some readings before the touch"};
 }
 
 }  // namespace snare::identification

@@ -19,13 +19,11 @@ Parameter along_bulge() {
 
 /// Weight along the bulge: the wire does not hang as declared.
 Effect gravity_effect() {
-  Effect e;
-  e.name = "gravity";
-  e.channel = Channel::geometry;
-  e.meaning = "the wire's weight acts along the bulge";
-  e.numbers = {{along_bulge(), -9.9, 9.9}};
-  e.independent_check = "turn the bench over and repeat";
-  return e;
+  return {.name = "gravity",
+          .channel = Channel::geometry,
+          .meaning = "the wire's weight acts along the bulge",
+          .numbers = {{along_bulge(), -9.9, 9.9}},
+          .independent_check = "turn the bench over and repeat"};
 }
 
 }  // namespace snare::identification

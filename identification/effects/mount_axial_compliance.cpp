@@ -20,15 +20,13 @@ Parameter axial_compliance() {
 
 /// Both mounts give along the chord like springs.
 Effect mount_axial_compliance_effect() {
-  Effect e;
-  e.name = "mount_axial_compliance";
-  e.channel = Channel::mount;
-  e.meaning = "the mounts give way along the wire";
-  e.numbers = {{axial_compliance(), 0.0, 1e-4}};
-  e.one_sided = true;
-  e.unobservable = needs_mounts;
-  e.independent_check = "put a dial gauge between the mounts and read their approach under tension";
-  return e;
+  return {.name = "mount_axial_compliance",
+          .channel = Channel::mount,
+          .meaning = "the mounts give way along the wire",
+          .numbers = {{axial_compliance(), 0.0, 1e-4}},
+          .one_sided = true,
+          .unobservable = needs_mounts,
+          .independent_check = "put a dial gauge between the mounts and read their approach under tension"};
 }
 
 }  // namespace snare::identification

@@ -31,15 +31,13 @@ std::string needs_clamps(const std::vector<Series>& series) {
 
 /// Both clamps give in rotation like springs.
 Effect mount_rotational_compliance_effect() {
-  Effect e;
-  e.name = "mount_rotational_compliance";
-  e.channel = Channel::mount;
-  e.meaning = "the clamps turn with the wire";
-  e.numbers = {{rotational_compliance(), 0.0, 10.0}};
-  e.one_sided = true;
-  e.unobservable = needs_clamps;
-  e.independent_check = "glue a small mirror or pointer on a clamp and read its rotation";
-  return e;
+  return {.name = "mount_rotational_compliance",
+          .channel = Channel::mount,
+          .meaning = "the clamps turn with the wire",
+          .numbers = {{rotational_compliance(), 0.0, 10.0}},
+          .one_sided = true,
+          .unobservable = needs_clamps,
+          .independent_check = "glue a small mirror or pointer on a clamp and read its rotation"};
 }
 
 }  // namespace snare::identification

@@ -36,16 +36,14 @@ std::vector<std::vector<double>> trial_tensions(const TrialContext& context) {
 
 /// The wire feeds through the left mount by Coulomb's law when its tension passes a limit.
 Effect mount_slip_effect() {
-  Effect e;
-  e.name = "mount_slip";
-  e.channel = Channel::mount;
-  e.meaning = "the wire slips through a mount beyond a certain tension";
-  e.numbers = {{tension(), 1e-3, 1e5}};
-  e.one_sided = true;
-  e.trials = trial_tensions;
-  e.unobservable = needs_mounts;
-  e.independent_check = "mark the wire at the mounts and look for a shift of the marks after the test";
-  return e;
+  return {.name = "mount_slip",
+          .channel = Channel::mount,
+          .meaning = "the wire slips through a mount beyond a certain tension",
+          .numbers = {{tension(), 1e-3, 1e5}},
+          .one_sided = true,
+          .trials = trial_tensions,
+          .unobservable = needs_mounts,
+          .independent_check = "mark the wire at the mounts and look for a shift of the marks after the test"};
 }
 
 }  // namespace snare::identification

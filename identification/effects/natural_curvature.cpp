@@ -28,14 +28,12 @@ std::string rigid_clamps(const std::vector<Series>& series) {
 
 /// The wire is naturally curved, uniformly, in the plane of the bulge (as it comes from the reel).
 Effect natural_curvature_effect() {
-  Effect e;
-  e.name = "natural_curvature";
-  e.channel = Channel::wire;
-  e.meaning = "the free wire is curved";
-  e.numbers = {{natural_curvature(), -50.0, 50.0}};
-  e.unobservable = rigid_clamps;
-  e.independent_check = "lay the free wire on a table and measure its curvature";
-  return e;
+  return {.name = "natural_curvature",
+          .channel = Channel::wire,
+          .meaning = "the free wire is curved",
+          .numbers = {{natural_curvature(), -50.0, 50.0}},
+          .unobservable = rigid_clamps,
+          .independent_check = "lay the free wire on a table and measure its curvature"};
 }
 
 }  // namespace snare::identification

@@ -61,15 +61,13 @@ std::vector<std::vector<double>> trial_stresses(const TrialContext& context) {
 
 /// The metal yields, in bending from the outer fibres inwards and in tension.
 Effect plasticity_effect() {
-  Effect e;
-  e.name = "plasticity";
-  e.channel = Channel::wire;
-  e.meaning = "the metal of the wire yields";
-  e.numbers = {{yield_stress(), 1.0, 4000.0}, {hardening_ratio(), 0.0, 0.5, true}};
-  e.one_sided = true;
-  e.trials = trial_stresses;
-  e.independent_check = "look for a lasting kink or elongation of the wire after the test";
-  return e;
+  return {.name = "plasticity",
+          .channel = Channel::wire,
+          .meaning = "the metal of the wire yields",
+          .numbers = {{yield_stress(), 1.0, 4000.0}, {hardening_ratio(), 0.0, 0.5, true}},
+          .one_sided = true,
+          .trials = trial_stresses,
+          .independent_check = "look for a lasting kink or elongation of the wire after the test"};
 }
 
 }  // namespace snare::identification

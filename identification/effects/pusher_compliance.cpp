@@ -19,14 +19,12 @@ Parameter pusher_compliance() {
 
 /// The machine behind the pusher gives way like a spring: the pusher travels less than recorded.
 Effect pusher_compliance_effect() {
-  Effect e;
-  e.name = "pusher_compliance";
-  e.channel = Channel::pusher;
-  e.meaning = "the machine behind the pusher gives way under load";
-  e.numbers = {{pusher_compliance(), 0.0, 1e-4}};
-  e.one_sided = true;
-  e.independent_check = "push against a stiff block and read the apparent travel";
-  return e;
+  return {.name = "pusher_compliance",
+          .channel = Channel::pusher,
+          .meaning = "the machine behind the pusher gives way under load",
+          .numbers = {{pusher_compliance(), 0.0, 1e-4}},
+          .one_sided = true,
+          .independent_check = "push against a stiff block and read the apparent travel"};
 }
 
 }  // namespace snare::identification

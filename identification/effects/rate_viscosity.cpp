@@ -27,15 +27,13 @@ std::string needs_times(const std::vector<Series>& series) {
 
 /// The wire resists the rate of its deformation (Kelvin-Voigt), to first order in the relaxation time.
 Effect rate_viscosity_effect() {
-  Effect e;
-  e.name = "rate_viscosity";
-  e.channel = Channel::wire;
-  e.meaning = "the wire resists the rate at which it is deformed";
-  e.numbers = {{relaxation_time(), 0.0, 1e3}};
-  e.one_sided = true;
-  e.unobservable = needs_times;
-  e.independent_check = "push at a tenth and at ten times the speed";
-  return e;
+  return {.name = "rate_viscosity",
+          .channel = Channel::wire,
+          .meaning = "the wire resists the rate at which it is deformed",
+          .numbers = {{relaxation_time(), 0.0, 1e3}},
+          .one_sided = true,
+          .unobservable = needs_times,
+          .independent_check = "push at a tenth and at ten times the speed"};
 }
 
 }  // namespace snare::identification

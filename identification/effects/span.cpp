@@ -22,13 +22,11 @@ Parameter span() {
 
 /// The mounts (or the supports) stand at another distance than declared.
 Effect span_effect() {
-  Effect e;
-  e.name = "span";
-  e.channel = Channel::geometry;
-  e.meaning = "the distance of the mounts is not as declared";
-  e.numbers = {{span(), 0.0, 1e6}};
-  e.independent_check = "measure the distance of the mounts with a calliper under no load";
-  return e;
+  return {.name = "span",
+          .channel = Channel::geometry,
+          .meaning = "the distance of the mounts is not as declared",
+          .numbers = {{span(), 0.0, 1e6}},
+          .independent_check = "measure the distance of the mounts with a calliper under no load"};
 }
 
 }  // namespace snare::identification

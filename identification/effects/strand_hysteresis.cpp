@@ -65,16 +65,14 @@ std::string needs_strand(const std::vector<Series>& series) {
 
 /// The strands stick to each other up to a curvature and slide then: stiff at first, soft later, with a loop.
 Effect strand_hysteresis_effect() {
-  Effect e;
-  e.name = "strand_hysteresis";
-  e.channel = Channel::wire;
-  e.meaning = "the strands of the wire stick together and slip when it bends";
-  e.numbers = {{extra_stiffness(), 0.0, 10.0}, {slip_curvature(), 1e-3, 500.0}};
-  e.one_sided = true;
-  e.trials = trial_slips;
-  e.unobservable = needs_strand;
-  e.independent_check = "bend a free piece forth and back and look for a loop in moment against curvature";
-  return e;
+  return {.name = "strand_hysteresis",
+          .channel = Channel::wire,
+          .meaning = "the strands of the wire stick together and slip when it bends",
+          .numbers = {{extra_stiffness(), 0.0, 10.0}, {slip_curvature(), 1e-3, 500.0}},
+          .one_sided = true,
+          .trials = trial_slips,
+          .unobservable = needs_strand,
+          .independent_check = "bend a free piece forth and back and look for a loop in moment against curvature"};
 }
 
 }  // namespace snare::identification

@@ -17,7 +17,6 @@ namespace snare::identification {
 
 namespace {
 
-using base::Choice;
 using base::CsvColumn;
 using base::InputError;
 using base::InputProblem;
@@ -51,8 +50,7 @@ double read_contact_position(const TomlTable& series, double span) {
   return position;
 }
 
-/// `points` values from `from` to `to`, both included, evenly spread; the first is left out where `skip` is
-/// 1.
+/// `points` values from `from` to `to`, both included, evenly spread; the first is left out where `skip` is 1.
 void append_leg(std::vector<double>& travel, double from, double to, int points, int skip) {
   const double step = (to - from) / (points - 1);
   for (int i = skip; i < points - 1; ++i) travel.push_back(from + i * step);

@@ -181,8 +181,7 @@ void fail(const std::string& message, Fit& fit) {
   fit.report.message = message;
 }
 
-/// The unknown is the coordinate over a scale by which it changes the residual by about one standard
-/// deviation in all.
+/// The unknown is the coordinate over a scale by which it changes the residual by about one standard deviation in all.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& jacobian) {
   Eigen::VectorXd scale(jacobian.cols());
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
@@ -192,8 +191,7 @@ Eigen::VectorXd scale_of(const Eigen::MatrixXd& jacobian) {
   return scale;
 }
 
-/// Gives the bounds of the numbers to the problem and moves the unknowns inside. Whether one of them had to
-/// move.
+/// Gives the bounds of the numbers to the problem and moves the unknowns inside. Whether one of them had to move.
 bool bound(const Model& model, const Fit& fit, const Eigen::VectorXd& scale, Eigen::VectorXd& unknown,
            ceres::Problem& problem) {
   bool moved = false;

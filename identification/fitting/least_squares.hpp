@@ -52,9 +52,8 @@ struct FitOptions {
 [[nodiscard]] Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
                       const std::vector<Setting>& fixed = {}, const FitOptions& options = {});
 
-/// Ends of the interval of one coordinate in which the profile of chi2 (all others refitted) stays within
-/// `rise` of its minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is
-/// absent.
+/// Ends of the interval of one coordinate in which the profile of chi2 (all others refitted) stays within `rise` of its
+/// minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is absent.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;

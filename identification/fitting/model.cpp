@@ -52,8 +52,7 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
   return variations;
 }
 
-/// Derivatives of the recorded forces of a series, F = offset + gain (F_wire + tau v k_viscous), by every
-/// number.
+/// Derivatives of the recorded forces of a series, F = offset + gain (F_wire + tau v k_viscous), by every number.
 Eigen::MatrixXd record_derivatives(const Series& series, const Prediction& prediction, const Eigen::VectorXd& force,
                                    const ReadingModel& reading, const std::vector<const Parameter*>& by) {
   const Eigen::Index rows = force.size();

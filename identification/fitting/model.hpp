@@ -49,8 +49,7 @@ class Model {
   };
   [[nodiscard]] Applied apply(const std::vector<Setting>& settings) const;
 
-  /// Forces, and their derivatives by the coordinates of `by` (settings, or further numbers at their declared
-  /// values).
+  /// Forces, and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values).
   /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no.
   [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings,
                                     const std::vector<const Parameter*>& by = {}) const;

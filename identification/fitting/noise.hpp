@@ -30,15 +30,13 @@ struct Noise {
 /// Series that repeat each other: the same test and overlapping travel. Groups of two or more, as indices.
 [[nodiscard]] std::vector<std::vector<std::size_t>> replicates(const std::vector<Series>& series);
 
-/// The noise that the file declares (every series has force_sigma_N or a law), else that of replicates about
-/// their mean (independent part from second differences, the rest smooth, its length where the correlation
-/// has fallen to 1/e; records of more than 2000 readings count as independent), else (sigma empty) none is
-/// known before a fit.
+/// The noise that the file declares (every series has force_sigma_N or a law), else that of replicates about their mean
+/// (independent part from second differences, the rest smooth, its length where the correlation has fallen to 1/e;
+/// records of more than 2000 readings count as independent), else (sigma empty) none is known before a fit.
 [[nodiscard]] Noise known_noise(const std::vector<Series>& series);
 
 /// Noise of records from the residuals of a fit, whatever smooth misfit they have: from second differences,
-/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 (Gasser, Sroka and Jennen-Steinmetz 1986), all series
-/// together.
+/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 (Gasser, Sroka and Jennen-Steinmetz 1986), all series together.
 /// Never 0: at least 1e-9 of the range of the forces.
 [[nodiscard]] Noise noise_from_residuals(const std::vector<Series>& series,
                                          const std::vector<Eigen::VectorXd>& residuals);

@@ -95,8 +95,7 @@ std::vector<double> speeds(const Series& series) {
   std::vector<double> result(d.size(), 0.0);
   if (!series.readings || series.readings->time.size() != d.size()) return result;
   const std::vector<double>& t = series.readings->time;
-  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after
-  // it.
+  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
   for (std::size_t i = 0; i < d.size(); ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1;
     const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;

@@ -34,8 +34,7 @@ struct PredictionOptions {
   bool thin = false;
 };
 
-/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without
-/// times.
+/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without times.
 [[nodiscard]] std::vector<double> speeds(const Series& series);
 
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes

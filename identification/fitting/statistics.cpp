@@ -49,8 +49,7 @@ double normal_quantile(double p) {
 }
 
 double runs_p(const std::vector<Eigen::VectorXd>& residuals) {
-  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m
-  // the mean.
+  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m the mean.
   double excess = 0.0;
   double variance = 0.0;
   for (const Eigen::VectorXd& r : residuals) {

@@ -10,8 +10,7 @@ namespace snare::identification {
 [[nodiscard]] double chi_square_tail(double x, double dof);
 
 /// P(sum_k weight_k X_k^2 > x), X_k independent standard normal, weights >= 0 (negative round-off counts as
-/// 0): by the noncentral chi-square of the same first moments (Liu, Tang and Zhang 2009). 1 where all weights
-/// vanish.
+/// 0): by the noncentral chi-square of the same first moments (Liu, Tang and Zhang 2009). 1 where all weights vanish.
 [[nodiscard]] double chi_square_mixture_tail(double x, const Eigen::VectorXd& weights);
 
 /// P(standard normal > z).

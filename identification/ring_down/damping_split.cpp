@@ -65,10 +65,8 @@ DampingSplit not_separated(const Line& line, const std::vector<DecayOfMode>& dec
   split.mass_rate = alone(mass_rate);
   split.correlation = -1.0;
   split.statement = fmt::format(
-      "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} "
-      "1/s, its "
-      "split is not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = "
-      "{:.4g}. A "
+      "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} 1/s, its "
+      "split is not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = {:.4g}. A "
       "second mode, or the same wire at another span, separates them",
       decays[line.surest].natural / (2.0 * std::numbers::pi), split.mass_rate.value, split.bending_time.value,
       split.mass_rate.value);
@@ -90,8 +88,7 @@ std::string statement_of(const DampingSplit& split, std::size_t modes) {
   constexpr double unlikely = 0.01;
   if (split.misfit_p < unlikely) {
     text += fmt::format(
-        "; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a bending_share "
-        "is wrong",
+        "; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a bending_share is wrong",
         modes, split.misfit_p);
   }
   return text;

@@ -90,8 +90,7 @@ Solution solve(const OscillationLayout& layout, const VectorXd& start, const Vec
   return solution;
 }
 
-/// Angular frequency of the largest peak of the spectrum of the readings, carried over to even times; padded
-/// fourfold.
+/// Angular frequency of the largest peak of the spectrum of the readings, carried over to even times; padded fourfold.
 double peak_frequency(const VectorXd& time, const VectorXd& values) {
   std::size_t count = 16;
   while (count < static_cast<std::size_t>(time.size())) count *= 2;

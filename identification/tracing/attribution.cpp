@@ -51,8 +51,7 @@ Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const 
   return {x.tail(m), inverse.bottomRightCorner(m, m) / (size * size), x.head(p)};
 }
 
-/// Groups of series of one position, or of one slack: a function must hold in each when it was found without
-/// it.
+/// Groups of series of one position, or of one slack: a function must hold in each when it was found without it.
 std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const Data& data) {
   const auto group_by = [&](const std::function<double(const Series&)>& key) {
     std::map<double, std::vector<Eigen::Index>> groups;
@@ -83,8 +82,7 @@ std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const D
 }
 
 std::string describe(const ChannelFunction& f) {
-  // Stretches in which the function stands out by more than three deviations and a quarter of its largest
-  // value.
+  // Stretches in which the function stands out by more than three deviations and a quarter of its largest value.
   double largest = 0.0;
   for (const double v : f.value) largest = std::max(largest, std::abs(v));
   std::string text;
@@ -106,8 +104,7 @@ std::string describe(const ChannelFunction& f) {
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
 
-/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone
-/// leave there.
+/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
 struct Fold {
   std::vector<Eigen::Index> in, out;
   Eigen::MatrixXd free_in, free_out;

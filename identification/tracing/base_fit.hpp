@@ -9,8 +9,7 @@
 namespace snare::identification {
 
 /// Fits the declared model by the numbers `free` (keys; none: those that the experiment names, else the two
-/// stiffnesses).
-/// Throws base::InputError for unknown keys, thresholds that the declared model does not have, too few
+/// stiffnesses). Throws base::InputError for unknown keys, thresholds that the declared model does not have, too few
 /// readings. Gives unit noise to data of unknown noise.
 [[nodiscard]] Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model,
                            Data& data, Progress& progress);

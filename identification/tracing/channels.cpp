@@ -27,8 +27,7 @@ void add_hats(double u, double weight, Eigen::Ref<Eigen::MatrixXd> out, Eigen::I
   out(row, j + 1) += weight * part;
 }
 
-/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the
-/// argument.
+/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the argument.
 ChannelColumns function_of(const Data& data, const std::function<double(std::size_t, Eigen::Index)>& argument,
                            const std::function<double(std::size_t, Eigen::Index)>& weight, double argument_unit) {
   double low = std::numeric_limits<double>::max();

@@ -47,8 +47,7 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
   return best;
 }
 
-/// Whether the refitted numbers of an effect make sense: inside their plausible ranges, and not driven to a
-/// bound.
+/// Whether the refitted numbers of an effect make sense: inside their plausible ranges, and not driven to a bound.
 void judge_plausibility(const Model& model, const Fit& current, const Fit& refitted, Candidate& candidate) {
   const Effect& effect = *candidate.score.effect;
   for (std::size_t k = 0; k < candidate.numbers.size(); ++k) {
@@ -139,8 +138,7 @@ std::vector<Candidate> by_score(std::vector<Score> scores) {
   return result;
 }
 
-/// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there
-/// was none.
+/// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
                             std::vector<Candidate>& candidates, const std::string& round, Progress& progress) {
   std::vector<Fit> fits(candidates.size());

@@ -40,8 +40,7 @@ struct RoundFits {
   std::vector<std::string> rival_names;  ///< of their effects
 };
 
-/// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if
-/// any.
+/// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
                                         const Fit& current, std::size_t number, double significance,

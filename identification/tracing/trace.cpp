@@ -144,16 +144,14 @@ void Tracer::add_effects() {
     current_ = std::move(found.better);
     rounds_.push_back(std::move(found));
     tests_ = test_residuals(data_, current_);
-    // Where one cause that the catalogue does not have carries over, several effects would be rejected in the
-    // end.
+    // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
     if (!tests_.acceptable() && options_.attribute && !rivals().empty()) break;
   }
   result_.significant = !result_.base_tests.acceptable() || !added_.empty();
 }
 
 // Whether the effects explain the residual: they leave no more than noise, and no cause that the catalogue
-// does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md
-// (I.8).
+// does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md (I.8).
 bool Tracer::accept() {
   if (!tests_.acceptable()) return false;
   if (added_.empty() || !options_.attribute || !progress_.go_on("causes outside the catalogue")) return true;

@@ -58,8 +58,7 @@ struct TraceOptions {
   std::function<bool(const std::string& stage)> progress;  ///< false stops
 };
 
-/// Closes the loop of model and measurement: fits the declared model, tests what is left, finds the effect or
-/// the class
+/// Closes the loop of model and measurement: fits the declared model, tests what is left, finds the effect or the class
 /// of effects that the model lacks, adds it, one at a time.                           theory.md (I.1)-(I.7)
 /// Throws base::InputError for series that cannot be traced (no readings, fewer than the numbers to fit, all
 /// forces equal, never in contact).

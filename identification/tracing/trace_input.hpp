@@ -13,9 +13,8 @@ namespace snare::identification {
 /// noise was drawn.
 [[nodiscard]] bool replace_laws(std::vector<Series>& series, bool draw, unsigned seed);
 
-/// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that
-/// do not follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only
-/// readings.
+/// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that do not
+/// follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only readings.
 void check_readings(const std::filesystem::path& file, const std::vector<Series>& series,
                     const std::vector<bool>& heldout);
 

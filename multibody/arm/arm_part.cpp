@@ -63,14 +63,15 @@ ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives,
 
 void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   const int m = arm_.motors();
-  const double motion = tolerances_.motion;
-  q_ = layout.add({"arm coordinate", {}, arm_.tree.coordinates(), numerics::DaeKind::differential, motion});
-  v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), numerics::DaeKind::differential, motion});
-  motor_ = layout.add({"motor angle [rad]", {}, m, numerics::DaeKind::differential, motion});
-  rate_ = layout.add({"motor rate [rad/s]", {}, m, numerics::DaeKind::differential, motion});
-  work_ = layout.add({"work [J]", {"motors", "loads", "lost"}, 3, numerics::DaeKind::differential, tolerances_.work});
+  const ArmTolerances& t = tolerances_;
+  constexpr auto kind = numerics::DaeKind::differential;
+  q_ = layout.add({"arm coordinate", {}, arm_.tree.coordinates(), kind, t.coordinate, 0, t.relative_coordinates});
+  v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), kind, t.rate});
+  motor_ = layout.add({"motor angle [rad]", {}, m, kind, t.coordinate, 0, t.relative_coordinates});
+  rate_ = layout.add({"motor rate [rad/s]", {}, m, kind, t.rate});
+  work_ = layout.add({"work [J]", {"motors", "loads", "lost"}, 3, kind, t.work});
   if (base_ == BaseEquations::momentum) {
-    momentum_ = layout.add({"momentum", {}, 6, numerics::DaeKind::differential, motion * arm_.tree.mass()});
+    momentum_ = layout.add({"momentum", {}, 6, kind, t.rate * arm_.tree.mass()});
   }
 }
 
@@ -356,8 +357,7 @@ void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& valu
       }
     }
     // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates of
-    // coordinates,
-    // and with the turn of the angular velocity by the axis.
+    // coordinates, and with the turn of the angular velocity by the axis.
     for (const TreeBody& body : tree.bodies()) {
       for (int l = 0; l < body.velocities(); ++l) {
         const int j = body.v_index + l;

@@ -58,8 +58,10 @@ enum class BaseEquations {
 
 /// Absolute tolerances of the integration.
 struct ArmTolerances {
-  double motion = 1e-7;  ///< of coordinates [rad, m] and rates [rad/s, m/s], > 0
-  double work = 1e-6;    ///< [J], > 0
+  double coordinate = 1e-7;          ///< [rad, m], > 0
+  double rate = 1e-7;                ///< [rad/s, m/s], > 0
+  double work = 1e-6;                ///< [J], > 0
+  bool relative_coordinates = true;  ///< the relative tolerance acts on coordinates too
 };
 
 /// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.          theory.md (A.9), (A.14)

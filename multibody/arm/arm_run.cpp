@@ -1,6 +1,5 @@
 #include "multibody/arm/arm_run.hpp"
 
-#include "base/index.hpp"
 #include "multibody/arm/arm_stepper.hpp"
 
 #include <algorithm>
@@ -10,8 +9,6 @@
 namespace snare::multibody {
 
 namespace {
-
-using base::at;
 
 const char* name_of_event(int event) {
   switch (ElasticArmPart::kind_of_event(event)) {
@@ -28,6 +25,12 @@ const char* name_of_event(int event) {
   return "servo limit";
 }
 
+/// An arm alone is asked for its energy to many digits: it begins as IDA does.
+numerics::IdaOptions cautious(numerics::IdaOptions options) {
+  options.cautious_start = true;
+  return options;
+}
+
 /// One run: the part, the integrator, and what has been kept.
 class Run {
  public:
@@ -36,7 +39,7 @@ class Run {
         part_(scenario.arm, scenario.drives, scenario.loads, scenario.tolerances,
               best_base_equations(scenario.arm.tree)),
         system_({&part_}),
-        ida_(system_, scenario.ida),
+        ida_(system_, cautious(scenario.ida)),
         y_(Eigen::VectorXd::Zero(system_.size())),
         rate_(Eigen::VectorXd::Zero(system_.size())),
         stepper_(part_, scenario.switches) {}

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace snare::multibody {
 
@@ -52,8 +53,8 @@ std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd&
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + m, n + m), K = M;
   DynamicsWorkspace workspace(arm.tree);
   M.topLeftCorner(n, n) = mass_matrix(arm.tree, q, workspace);
-  std::vector<int> taking_part;
-  for (int i = 0; i < n; ++i) taking_part.push_back(i);
+  std::vector<int> taking_part(at(n));
+  std::iota(taking_part.begin(), taking_part.end(), 0);
   for (int k = 0; k < m; ++k) {
     const ElasticJoint& joint = arm.joints[at(k)];
     const int i = arm.tree.body(joint.body).v_index;

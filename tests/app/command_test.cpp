@@ -1,16 +1,11 @@
 // The command as its users see it: exit status, messages, files.
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
+#include "tests/app/command_fixture.hpp"
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 namespace snare::app {
@@ -56,29 +51,14 @@ struct Result {
   std::string err;
 };
 
-class Command : public testing::Test {
+class Command : public CommandFixture {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "snare_command_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    write("x.toml", experiment_text);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write("x.toml", experiment_text); }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-  [[nodiscard]] static std::string read(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-  }
   [[nodiscard]] Result run(const std::string& arguments) const {
-    const std::string line =
-        "cd '" + folder_.string() + "' && '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"), read(folder_ / "err.txt")};
+    return {CommandFixture::run(arguments), contents("out.txt"), contents("err.txt")};
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Command, HelpOfEveryVerbHasAnExample) {
@@ -121,7 +101,7 @@ TEST_F(Command, PushWritesTheCurves) {
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(result.err, "");
-  const std::string csv = read(folder_ / "here" / "curves.csv");
+  const std::string csv = contents("here/curves.csv");
   EXPECT_EQ(
       csv.rfind("series,displacement_mm,force_N,tension_left_N,tension_right_N,contact_arc_mm,iterations,converged", 0),
       0u);
@@ -146,7 +126,7 @@ TEST_F(Command, JsonAloneOnStandardOutputAndOverridesApply) {
 TEST_F(Command, SameFilesForAnyNumberOfThreads) {
   ASSERT_EQ(run("push x.toml --out one --threads 1").status, 0);
   ASSERT_EQ(run("push x.toml --out two --threads 2").status, 0);
-  EXPECT_EQ(read(folder_ / "one" / "curves.csv"), read(folder_ / "two" / "curves.csv"));
+  EXPECT_EQ(contents("one/curves.csv"), contents("two/curves.csv"));
 }
 
 TEST_F(Command, WireThatCannotBeSolvedKeepsWhatItReached) {
@@ -156,7 +136,7 @@ TEST_F(Command, WireThatCannotBeSolvedKeepsWhatItReached) {
           "--set wire.axial_stiffness_N=114000 --set series[s90].travel_mm=6 --set series[s90].points=25");
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_NE(result.err.find("series s90: the wire begins to wrap"), std::string::npos) << result.err;
-  const std::string csv = read(folder_ / "here" / "curves.csv");
+  const std::string csv = contents("here/curves.csv");
   EXPECT_NE(csv.find("\ns90,1,"), std::string::npos) << "the points before must be there";
   EXPECT_EQ(csv.find("\ns90,6,"), std::string::npos);
 }
@@ -175,7 +155,7 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
       "reproduce --out here --quiet --set solver.elements=16 --set series[s40].points=12 --set series[s65].points=12 "
       "--set series[s90].points=12");
   ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json json = nlohmann::json::parse(read(folder_ / "here" / "reproduce.json"));
+  const nlohmann::json json = parsed("here/reproduce.json");
   EXPECT_EQ(json["schema"], "snare-reproduce/1");
   EXPECT_EQ(json["series"].size(), 3u);
   ASSERT_GE(json["models"].size(), 2u);
@@ -184,9 +164,9 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
   // The declared model is far off, the fitted one is not: both are said.
   EXPECT_GT(json["models"][0]["rmse_N"].get<double>(), 100.0);
   EXPECT_LT(json["models"][1]["rmse_N"].get<double>(), 1.0);
-  const std::string csv = read(folder_ / "here" / "curves.csv");
+  const std::string csv = contents("here/curves.csv");
   EXPECT_NE(csv.substr(0, csv.find('\n')).find("measured_N,base_N,final_N"), std::string::npos);
-  const std::string page = read(folder_ / "here" / "report.html");
+  const std::string page = contents("here/report.html");
   for (const nlohmann::json& model : json["models"]) {
     EXPECT_NE(page.find("Error of the " + model["label"].get<std::string>()), std::string::npos) << model["label"];
   }

@@ -1,19 +1,14 @@
 // The verbs distil and compare as their users see them: files, exports that compile alone and agree, resuming.
 
 #include "coupling/contact/force_table.hpp"
+#include "tests/app/command_fixture.hpp"
 #include "tests/support/traced_wire_text.hpp"
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -32,30 +27,21 @@ most_points = [5, 3, 3]
 positions_mm = [40.0, 52.5]
 )");
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-class DistilCommand : public testing::Test {
+class DistilCommand : public CommandFixture {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "snare_distil_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    std::ofstream(folder_ / "w.toml") << wire_text;
+  void SetUp() override { std::ofstream(folder_ / "w.toml") << wire_text; }
+  /// Runs o/run.cpp, run.c and run.py with the exports beside them; what they print goes to o/cpp.txt, c.txt and py.txt.
+  void run_exports() const {
+    ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
+    ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+    ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
+                    "exec(open('run.py').read())\" > py.txt"),
+              0);
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] int shell(const std::string& command) const {
-    const int status = std::system(("cd '" + folder_.string() + "' && " + command).c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  [[nodiscard]] std::vector<double> numbers(const fs::path& file) const {
+    std::ifstream in(folder_ / file);
+    return {std::istream_iterator<double>(in), {}};
   }
-  [[nodiscard]] int run(const std::string& arguments) const {
-    return shell(std::string("'") + SNARE_COMMAND + "' " + arguments + " 2>log.txt");
-  }
-  fs::path folder_;
 };
 
 /// The table as law.json holds it, by the library.
@@ -75,8 +61,8 @@ double library_force(const json& table, double d, double s, double e) {
 
 // The exports compile and run alone, and say what the library says: to 1e-12 of the force, some hundred roundings.
 TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
-  ASSERT_EQ(run("distil w.toml --out o --quiet"), 0) << contents(folder_ / "log.txt");
-  const json law = json::parse(contents(folder_ / "o" / "law.json"));
+  ASSERT_EQ(run("distil w.toml --out o --quiet"), 0) << contents("err.txt");
+  const json law = parsed("o/law.json");
   const json& table = law["cases"][0]["table"];
   EXPECT_GT(table["error"]["bound_N"].get<double>(), table["error"]["largest_N"].get<double>());
   EXPECT_FALSE(fs::exists(folder_ / "o" / "distil.journal"));
@@ -114,15 +100,9 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
   }
   c << "int main(void) {\n" << calls_c << "  return 0;\n}\n";
   c.close();
-  ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-  ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
-  ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
-                  "exec(open('run.py').read())\" > py.txt"),
-            0);
+  run_exports();
   for (const char* file : {"cpp.txt", "c.txt", "py.txt"}) {
-    std::ifstream in(folder_ / "o" / file);
-    std::vector<double> values;
-    for (double v = 0.0; in >> v;) values.push_back(v);
+    const std::vector<double> values = numbers(fs::path("o") / file);
     ASSERT_EQ(values.size(), expected.size() + 14) << file;
     for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_NEAR(values[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i]))) << file << i;
@@ -135,36 +115,34 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
     EXPECT_NEAR(values[46], number(3, "k") * std::pow(0.002, number(3, "p")), 1e-12 * values[46]);
     EXPECT_GT(values[48], 0.0);  // stretched wire
   }
-  EXPECT_NE(contents(folder_ / "o" / "law_adams.adm").find("SPLINE/3"), std::string::npos);
-  EXPECT_EQ(contents(folder_ / "o" / "law_mujoco.xml").find("-- with"),
+  EXPECT_NE(contents("o/law_adams.adm").find("SPLINE/3"), std::string::npos);
+  EXPECT_EQ(contents("o/law_mujoco.xml").find("-- with"),
             std::string::npos);  // no double hyphen in a comment
   EXPECT_EQ(shell("python3 -c \"import xml.dom.minidom as m; m.parse('o/law_mujoco.xml')\""), 0);
 }
 
 // Killed in the middle, the journal torn, resumed with another number of threads: the same bytes.
 TEST_F(DistilCommand, ResumesToTheSameBytes) {
-  ASSERT_EQ(run("distil w.toml --out whole --quiet --threads 2"), 0) << contents(folder_ / "log.txt");
+  ASSERT_EQ(run("distil w.toml --out whole --quiet --threads 2"), 0) << contents("err.txt");
   // An interrupted run keeps its journal; kill it as soon as there is some of it.
   ASSERT_EQ(shell(std::string("( '") + SNARE_COMMAND +
-                  "' distil w.toml --out part --quiet --threads 1 & pid=$!; "
-                  "for i in $(seq 2000); do [ $(stat -c %s part/distil.journal 2>/dev/null || echo 0) -gt "
-                  "60000 ] && break; sleep 0.005; done; "
-                  "kill -9 $pid; wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e "
-                  "part/law.json"),
+                  "' distil w.toml --out part --quiet --threads 1 & pid=$!; for i in $(seq 2000); do [ $(stat -c %s "
+                  "part/distil.journal 2>/dev/null || echo 0) -gt 60000 ] && break; sleep 0.005; done; kill -9 $pid; "
+                  "wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e part/law.json"),
             0);
   fs::resize_file(folder_ / "part" / "distil.journal", fs::file_size(folder_ / "part" / "distil.journal") - 37);
-  ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents(folder_ / "log.txt");
+  ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents("err.txt");
   for (const char* file :
        {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml", "law_adams.adm", "report.html"}) {
-    EXPECT_EQ(contents(folder_ / "whole" / file), contents(folder_ / "part" / file)) << file;
+    EXPECT_EQ(contents(fs::path("whole") / file), contents(fs::path("part") / file)) << file;
   }
 }
 
 // Friction: the way back is exported too, and a law with its memory; both are followed here through a turn.
 TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
   ASSERT_EQ(run("distil w.toml --out o --quiet --set pusher.friction=0.3 --set laws.positions_mm=[40.0]"), 0)
-      << contents(folder_ / "log.txt");
-  const json law = json::parse(contents(folder_ / "o" / "law.json"));
+      << contents("err.txt");
+  const json law = parsed("o/law.json");
   const json& place = law["cases"][0]["positions"][0];
   const json& table = law["cases"][0]["table"];
   EXPECT_GT(place["damping"]["loop_J"].get<double>(), 0.0);
@@ -202,15 +180,9 @@ TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
       << "#include <stdio.h>\n#define N\ndouble load_unload_s40(double, double*, double*);\n"
       << "double force_unloading(double, double, double);\nint main(void) {\n  double z = 1.0, l = 0.0;\n"
       << calls_c << "  return 0;\n}\n";
-  ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-  ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
-  ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
-                  "exec(open('run.py').read())\" > py.txt"),
-            0);
+  run_exports();
   for (const char* file : {"cpp.txt", "c.txt", "py.txt"}) {
-    std::ifstream in(folder_ / "o" / file);
-    std::vector<double> values;
-    for (double v = 0.0; in >> v;) values.push_back(v);
+    const std::vector<double> values = numbers(fs::path("o") / file);
     ASSERT_EQ(values.size(), expected.size()) << file;
     for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_NEAR(values[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i]))) << file << i;
@@ -221,35 +193,35 @@ TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
 TEST_F(DistilCommand, DampingIsDistilledFromImpacts) {
   std::ofstream(folder_ / "w.toml", std::ios::app)
       << "[damping]\nimpact_mass_kg = 8.9\nimpact_speeds_m_s = [0.02]\nelements = 16\n";
-  ASSERT_EQ(run("distil w.toml --out o --quiet --set laws.positions_mm=[52.5]"), 0) << contents(folder_ / "log.txt");
-  const json law = json::parse(contents(folder_ / "o" / "law.json"));
+  ASSERT_EQ(run("distil w.toml --out o --quiet --set laws.positions_mm=[52.5]"), 0) << contents("err.txt");
+  const json law = parsed("o/law.json");
   const json& impact = law["cases"][0]["positions"][0]["impacts"][0];
   EXPECT_GT(impact["restitution"].get<double>(), 0.9);
   EXPECT_LT(impact["restitution"].get<double>(), 1.0);
   EXPECT_GT(impact["damping_Ns_m"].get<double>(), 0.0);
-  EXPECT_NE(contents(folder_ / "o" / "law_mujoco.xml").find("damping=\"" + impact["damping_Ns_m"].dump().substr(0, 6)),
+  EXPECT_NE(contents("o/law_mujoco.xml").find("damping=\"" + impact["damping_Ns_m"].dump().substr(0, 6)),
             std::string::npos);
   EXPECT_EQ(run("distil w.toml --out p --set damping.impact_mass_kg=-1 --set mount.slip_tension_N=5"), 2);
-  const std::string log = contents(folder_ / "log.txt");
+  const std::string log = contents("err.txt");
   EXPECT_NE(log.find("damping.impact_mass_kg = -1"), std::string::npos) << log;
   EXPECT_NE(log.find("mounts are rigid in motion"), std::string::npos) << log;
 }
 
 TEST_F(DistilCommand, WrongInputWritesNothing) {
   EXPECT_EQ(run("distil w.toml --out o --set ranges.travel_mm=-1 --set table.tolerance=3"), 2);
-  const std::string log = contents(folder_ / "log.txt");
+  const std::string log = contents("err.txt");
   EXPECT_NE(log.find("ranges.travel_mm = -1, must be > 0 and <= 1000"), std::string::npos) << log;
   EXPECT_NE(log.find("table.tolerance = 3"), std::string::npos) << log;
   EXPECT_FALSE(fs::exists(folder_ / "o"));
   EXPECT_EQ(run("compare missing.toml --out o"), 2);
   std::ofstream(folder_ / "s.toml") << "schema = \"snare-nothing/1\"\n";
   EXPECT_EQ(run("compare s.toml --out o"), 2);
-  EXPECT_NE(contents(folder_ / "log.txt").find("s.toml:1: schema = "), std::string::npos);
+  EXPECT_NE(contents("err.txt").find("s.toml:1: schema = "), std::string::npos);
 }
 
 TEST_F(DistilCommand, ComparesModelsOfAWireAndOfAnExperiment) {
-  ASSERT_EQ(run("compare w.toml --out o --quiet"), 0) << contents(folder_ / "log.txt");
-  const json wire = json::parse(contents(folder_ / "o" / "compare.json"));
+  ASSERT_EQ(run("compare w.toml --out o --quiet"), 0) << contents("err.txt");
+  const json wire = parsed("o/compare.json");
   ASSERT_EQ(wire["cases"].size(), 2u);
   const json& models = wire["cases"][0]["models"];
   EXPECT_EQ(models[0]["model"], "full_wire");
@@ -267,8 +239,8 @@ TEST_F(DistilCommand, ComparesModelsOfAWireAndOfAnExperiment) {
       "[[series]]\nname = \"s40\"\ncontact_position_mm = 40.0\n"
       "law = { A_N_m2 = 719880.0, B_N_m = -13.578, C_N = 0.0533, R2 = 0.9976, to_mm = 4.0 }\n";
   std::ofstream(folder_ / "e.toml") << experiment;
-  ASSERT_EQ(run("compare e.toml --out e --quiet"), 0) << contents(folder_ / "log.txt");
-  const json compared = json::parse(contents(folder_ / "e" / "compare.json"))["cases"][0];
+  ASSERT_EQ(run("compare e.toml --out e --quiet"), 0) << contents("err.txt");
+  const json compared = parsed("e/compare.json")["cases"][0];
   EXPECT_EQ(compared["models"].back()["model"], "published_quadratic");
   // The published law stands for the readings: no distance between them but rounding.
   EXPECT_LT(compared["models"].back()["error_measured"]["rms_N"].get<double>(), 1e-9);

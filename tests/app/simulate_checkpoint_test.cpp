@@ -1,7 +1,6 @@
 // Killed, interrupted and failing runs of `snare simulate` of the kinds with wires in motion.
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+#include "tests/app/command_fixture.hpp"
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -9,11 +8,9 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,14 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class SimulateCheckpoint : public testing::Test {
+class SimulateCheckpoint : public CommandFixture {
  protected:
-  SimulateCheckpoint() : folder_(fs::temp_directory_path() / ("snare_checkpoint_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~SimulateCheckpoint() override { fs::remove_all(folder_); }
-
   /// Arguments of a scenario that writes its checkpoints at every chance.
   [[nodiscard]] static std::vector<std::string> arguments_of(const std::string& scenario, const fs::path& out,
                                                              const std::vector<std::string>& settings) {
@@ -72,15 +63,9 @@ class SimulateCheckpoint : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
   [[nodiscard]] int run(const std::vector<std::string>& list) const { return finish(start(list)); }
-  [[nodiscard]] std::string contents(const fs::path& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
   /// summary.json without what depends on the clock.
   [[nodiscard]] json timeless(const fs::path& out) const {
-    json summary = json::parse(contents(out / "summary.json"));
+    json summary = parsed(out / "summary.json");
     const auto strip = [](json& object) {
       object.erase("wall_s");
       object.erase("real_time_factor");
@@ -91,8 +76,6 @@ class SimulateCheckpoint : public testing::Test {
     }
     return summary;
   }
-
-  fs::path folder_;
 };
 
 struct Killed {

@@ -1,12 +1,8 @@
 // The verbs fit and trace as their users see them: files, fields that others rely on, exit status.
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
+#include "tests/app/command_fixture.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -19,14 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class TraceCommand : public testing::Test {
+class TraceCommand : public CommandFixture {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "snare_trace_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// A short experiment whose readings are the computed curve of the declared wire, plus what `change` makes of it.
   void make_experiment(double (*change)(double displacement_mm, double force)) const {
     std::string text = R"(schema = "snare-experiment/1"
@@ -76,26 +66,12 @@ elements = 32
       files[name == "s65" ? 0 : 1] << d << ',' << change(std::stod(d), std::stod(f)) + noise(random) << '\n';
     }
   }
-  [[nodiscard]] int run(const std::string& arguments) const {
-    const std::string line =
-        "cd '" + folder_.string() + "' && '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  [[nodiscard]] json read(const fs::path& file) const { return json::parse(std::ifstream(folder_ / file)); }
-  [[nodiscard]] std::string text(const fs::path& file) const {
-    std::ostringstream all;
-    all << std::ifstream(folder_ / file).rdbuf();
-    return all.str();
-  }
-
-  fs::path folder_;
 };
 
 TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   make_experiment([](double, double f) { return f + 3.0; });
-  ASSERT_EQ(run("trace x.toml --out t --quiet"), 0) << text("err.txt");
-  const json t = read("t/trace.json");
+  ASSERT_EQ(run("trace x.toml --out t --quiet"), 0) << contents("err.txt");
+  const json t = parsed("t/trace.json");
   EXPECT_EQ(t["schema"], "snare-trace/1");
   EXPECT_EQ(t["noise"]["source"], "declared");
   EXPECT_NEAR(t["noise"]["sigma_N"].get<double>(), 0.2, 1e-12);
@@ -124,12 +100,12 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   EXPECT_TRUE(t["heldout"].contains("rmse_base_N"));
   EXPECT_TRUE(t["next_experiment"].contains("what"));
   EXPECT_TRUE(t["next_experiment"]["separates"].is_array());
-  const std::string curves = text("t/curves.csv");
+  const std::string curves = contents("t/curves.csv");
   EXPECT_EQ(curves.substr(0, curves.find('\n')).substr(curves.substr(0, curves.find('\n')).size() - 25),
             "measured_N,base_N,final_N");
   EXPECT_EQ(curves.find("nan"), std::string::npos);
-  EXPECT_EQ(text("t/trace.json").find("nan,"), std::string::npos);
-  const std::string page = text("t/report.html");
+  EXPECT_EQ(contents("t/trace.json").find("nan,"), std::string::npos);
+  const std::string page = contents("t/report.html");
   EXPECT_NE(page.find("<h1>short</h1>"), std::string::npos);
   EXPECT_NE(page.find("<p class=\"callout good\">Explained"), std::string::npos) << t["verdict"];
   for (const char* series : {"s65", "s90"}) {
@@ -142,9 +118,9 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
 
 TEST_F(TraceCommand, FitWritesItsNumbers) {
   make_experiment([](double, double f) { return f; });
-  ASSERT_EQ(run("fit x.toml --out f --json"), 0) << text("err.txt");
-  const json f = read("f/fit.json");
-  EXPECT_EQ(json::parse(text("out.txt")), f);
+  ASSERT_EQ(run("fit x.toml --out f --json"), 0) << contents("err.txt");
+  const json f = parsed("f/fit.json");
+  EXPECT_EQ(json::parse(contents("out.txt")), f);
   EXPECT_EQ(f["schema"], "snare-fit/1");
   EXPECT_TRUE(f["fit"]["parameters"].contains("wire.bending_stiffness_Nm2"));
   EXPECT_TRUE(f["residual"]["acceptable"].get<bool>());
@@ -156,7 +132,8 @@ TEST_F(TraceCommand, RecordsThatSayNothingAreRefusedAndNothingIsWritten) {
   std::ofstream(folder_ / "s65.csv") << "displacement_mm,force_N\n0,1\n0.5,1\n1,1\n1.5,1\n";
   for (const char* verb : {"fit", "trace"}) {
     EXPECT_EQ(run(std::string(verb) + " x.toml --out t"), 2);
-    EXPECT_NE(text("err.txt").find("series[s65], force_N is 1 in every reading"), std::string::npos) << text("err.txt");
+    EXPECT_NE(contents("err.txt").find("series[s65], force_N is 1 in every reading"), std::string::npos)
+        << contents("err.txt");
     EXPECT_FALSE(fs::exists(folder_ / "t"));
   }
   EXPECT_EQ(run("trace plain.toml --out t"), 2);  // nothing but predictions

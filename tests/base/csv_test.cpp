@@ -127,8 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"displacement_mm,force_N\n", "m.csv: has a header but no rows"},
         Wrong{"# a\ndisplacement_mm,force\n1,2\n", "m.csv:2: force_N, no such column"},
         Wrong{"1.0,2.0\n3.0,4.0\n",
-              "m.csv:1: displacement_mm, no such column; the first line that is not a comment must name the "
-              "columns\n"
+              "m.csv:1: displacement_mm, no such column; the first line that is not a comment must name the columns\n"
               "m.csv:1: force_N, no such column; the first line that is not a comment must name the columns"},
         Wrong{"displacement_mm;force_N\n1;2\n",
               "m.csv:1: displacement_mm, no such column; columns must be separated by commas\n"

@@ -1,5 +1,4 @@
-// Entry point for libFuzzer. Not part of the build, which uses GCC; with clang, from the root of the repository
-// (bash):
+// Entry point for libFuzzer. Not part of the build, which uses GCC; with clang, from the root of the repository (bash):
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -I. tests/fuzz/readers_libfuzzer.cpp
 //     base/{errors,range,files,csv,toml_tree,toml_reader}.cpp wire/specification.cpp scenario/push_reader.cpp
 //     identification/{fitting/{experiment,parameter,parameter_set,construction_numbers},effects/*}.cpp

@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 
 // Against DART, which shares no code with ours. Both solve problems of order one (condition of the mass matrix up to
-// some
-// 1e4) in double precision: 1e-10 is above what rounding leaves, and below any error of a formula.
+// some 1e4) in double precision: 1e-10 is above what rounding leaves, and below any error of a formula.
 
 namespace snare {
 

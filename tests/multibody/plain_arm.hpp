@@ -47,18 +47,6 @@ inline multibody::ElasticArm chain_arm(int links, Base base, double stiffness) {
   return arm;
 }
 
-inline multibody::ArmScenario scenario(const multibody::ElasticArm& arm, const multibody::Drive& drive, double end,
-                                       double tolerance) {
-  multibody::ArmScenario s;
-  s.arm = arm;
-  s.initial = multibody::resting(arm, multibody::zero_state(arm.tree).q);
-  s.drives.assign(arm.joints.size(), drive);
-  s.end = end;
-  s.ida.relative_tolerance = tolerance;
-  s.tolerances = {tolerance, tolerance};
-  return s;
-}
-
 /// Table 2 of Abiko et al. in SI, as the digest converts it.
 inline multibody::DeflectionLaw table2(double damping_factor,
                                        multibody::StiffnessReading reading = multibody::StiffnessReading::continuous) {

@@ -82,6 +82,20 @@ TEST(ArmContactScenario, ALawNeedsAWireThatStands) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(ArmContactScenario, ADragAgainstTheWorldNeedsAWireThatStands) {
+  const auto read = [](const char* name) {
+    return first_run(shipped(name), {{"contact.damping.mass_rate_1_s", "5.0"}});
+  };
+  EXPECT_EQ(read("jemrms_payload_on_wire.toml").motion.wires[0].rod.damping.mass_rate, 5.0);
+  try {
+    static_cast<void>(read("jemrms_capture.toml"));
+    FAIL() << "accepted";
+  } catch (const base::InputError& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("contact = \"jemrms_capture_contact.toml\", has damping.mass_rate_1_s"));
+  }
+}
+
 /// A short run of the shipped capture, begun just before the touch.
 coupling::MotionResult run(const std::string& name, double duration, double& arm_moved) {
   const NamedMotion asked = first_run(shipped(name), {{"contact.solver.elements", "24"},

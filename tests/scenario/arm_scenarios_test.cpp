@@ -104,7 +104,7 @@ TEST(ArmScenarios, LiteralTable2AtAllJointsRunsThrough) {
   }
   auto run = scenario::joint_step(arm, arm.poses[1].angles, 2, 0.5 * degree, 20.0);
   run.ida.relative_tolerance = 1e-6;
-  run.tolerances.motion = 1e-8;
+  run.tolerances.coordinate = run.tolerances.rate = 1e-8;
   const auto history = multibody::simulate(run);
   ASSERT_TRUE(history.report.usable()) << history.report.message;
   EXPECT_GT(history.events.size(), 10U);

@@ -38,6 +38,8 @@ density_kg_m3 = 7930.0
 from_mm = [0.0, 0.0, 0.0]
 to_mm = [0.0, 0.0, 99.0]
 bulge = [1.0, 0.0, 0.2]
+strength_N = 5000.0
+at_strength = "stop"
 mount = "pinned"
 elements = 20
 [[bodies]]
@@ -96,6 +98,34 @@ body = "target"
 kind = "mesh"
 file = "box.stl"
 unit = "mm"
+[[shapes]]
+name = "housing"
+body = "target"
+kind = "ring"
+inner_radius_mm = 100.0
+outer_radius_mm = 104.0
+length_mm = 50.0
+rounding_mm = 2.0
+[[shapes]]
+name = "end"
+body = "target"
+kind = "cup"
+inner_radius_mm = 100.0
+depth_mm = 50.0
+thickness_mm = 4.0
+rounding_mm = 1.0
+fillet_mm = 3.0
+[[shapes]]
+name = "ground"
+body = "target"
+kind = "plane"
+[[shapes]]
+name = "spool"
+body = "target"
+kind = "revolved"
+radius_mm = [0.0, 20.0, 20.0, 10.0, 10.0, 20.0, 20.0, 0.0]
+height_mm = [0.0, 0.0, 5.0, 5.0, 25.0, 25.0, 30.0, 30.0]
+rounding_mm = [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.0]
 )";
 
 class MotionScenarios : public testing::Test {
@@ -118,7 +148,7 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   const NamedMotion s = read({});
   ASSERT_EQ(s.motion.wires.size(), 1u);
   ASSERT_EQ(s.motion.bodies.size(), 2u);
-  ASSERT_EQ(s.motion.contacts.size(), 7u);
+  ASSERT_EQ(s.motion.contacts.size(), 11u);
   const auto shape = [&s](std::size_t k) -> const coupling::ContactShape& { return *s.motion.contacts[k].shape; };
   EXPECT_NEAR(shape(0).distance({0.0, 4e-3, 5e-3}), 4e-3, 1e-15);
   EXPECT_NEAR(shape(1).distance({0.0, 7e-3, 8e-3}), 5e-3, 1e-15);
@@ -127,7 +157,14 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   EXPECT_NEAR(shape(4).distance({0.0, 0.0, 6e-3}), 1e-3, 1e-15);
   EXPECT_NEAR(shape(5).distance({0.0, 7e-3, 30e-3}), 1e-3, 1e-15);
   EXPECT_NEAR(shape(6).distance({0.0, 0.0, 7e-3}), 5e-3, 1e-15);
-  EXPECT_EQ(s.motion.contacts[1].points, 2);
+  EXPECT_NEAR(shape(7).distance({0.0, 90e-3, 5e-3}), 10e-3, 1e-15);
+  EXPECT_NEAR(shape(8).distance({0.0, 80e-3, 5e-3}), 5e-3, 1e-15);
+  EXPECT_NEAR(shape(9).distance({0.0, 80e-3, 5e-3}), 5e-3, 1e-15);
+  EXPECT_NEAR(shape(10).distance({0.0, 12e-3, 15e-3}), 2e-3, 1e-15);
+  // A thin wire lies in the fillets, one of 2.5 mm does not.
+  EXPECT_EQ(coupling::pieces_of(s.motion.contacts[10].shape, 1e-3).size(), 1u);
+  EXPECT_EQ(coupling::pieces_of(s.motion.contacts[10].shape, 2.5e-3).size(), 3u);
+  EXPECT_EQ(coupling::pieces_of(s.motion.contacts[5].shape, 1e-3).size(), 2u);
   EXPECT_EQ(s.motion.contacts[2].body, 1);
   EXPECT_EQ(s.motion.contacts[2].friction.static_coefficient, 0.3);
   EXPECT_EQ(s.motion.contacts[2].name, "ball on a");
@@ -138,6 +175,8 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   EXPECT_EQ(s.motion.gravity, Vector3d(0.0, 0.0, -9.81));
   // The wire stands between its mounts and bulges where it was told, across its chord.
   const coupling::MotionWire& w = s.motion.wires[0];
+  EXPECT_EQ(w.strength.breaking_tension, 5000.0);
+  EXPECT_TRUE(w.strength.ends_run);
   EXPECT_LT(w.positions.col(0).norm(), 1e-15);
   EXPECT_LT((w.positions.col(20) - Vector3d(0.0, 0.0, 0.099)).norm(), 1e-15);
   EXPECT_GT(w.positions(0, 10), 5e-3);
@@ -171,6 +210,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
       {"wires[a].yield_stress_MPa=500", "the wire is elastic and naturally straight in motion"},
       {"wires[a].elements=4", "wires[a].elements = 4"},
+      {"wires[a].formulation=\"cubic\"", "wires[a].formulation = \"cubic\", must be \"vertices\""},
       {"bodies[target].mass_kg=0", "bodies[target].mass_kg = 0, must be > 0"},
       {"bodies[target].inertia_kg_m2=[1.0, 1.0, 3.0]", "triangle inequality"},
       {"bodies[machine].mass_kg=1", "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
@@ -186,6 +226,16 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"shapes[taper].lower_radius_mm=0",
        "shapes[taper].upper_radius_mm = 0.0, must be > 0 where lower_radius_mm is 0"},
       {"shapes[shaft].cam_radius_mm=5", "grapple shaft cam_radius = 0.005, must be > shaft_radius"},
+      {"shapes[housing].outer_radius_mm=90", "ring outer_radius = 0.09, must be > inner_radius"},
+      {"shapes[housing].length_mm=0", "shapes[housing].length_mm = 0, must be > 0"},
+      {"shapes[end].fillet_mm=60", "cup fillet = 0.06, must be >= 0 and <= 0.049"},
+      {"shapes[ground].drawn_mm=-1", "shapes[ground].drawn_mm = -1, must be > 0"},
+      {"shapes[spool].height_mm=[0.0, 1.0]", "shapes[spool].height_mm"},
+      {"shapes[spool].radius_mm=[5.0, 20.0]", "shapes[spool].radius_mm"},
+      {"shapes[spool].rounding_mm=[0.0, 0.0, 1.0, 9.5, 2.0, 1.0, 0.0, 0.0]",
+       "rounding[4] = 0.0095, the arcs at the ends of the side before it must fit into its 0.01 m"},
+      {"wires[a].strength_N=0", "wires[a].strength_N = 0, must be > 0"},
+      {"wires[a].at_strength=\"break\"", "wires[a].at_strength = \"break\", must be \"flag\" or \"stop\""},
       {"shapes[box].file=\"none.stl\"", "none.stl"},
       {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},
       {"gravity.vector_m_s2=[1.0]", "gravity.vector_m_s2"},

@@ -76,9 +76,9 @@ TEST(ContactScenario, SaysWhatIsWrong) {
       {"friction.static_friction=0.05", "must be at least pusher.friction"},
       {"friction.bristle_displacement_m=0", "friction.bristle_displacement_m = 0, must be"},
       {"friction.bristle_time_s=-1e-5", "friction.bristle_time_s = -1e-5, must be"},
-      {"friction.bristle_force_N=0", "friction.bristle_force_N = 0, must be > 0"},
       {"friction.bristle_m=1", "unknown"},
       {"solver.elements=2", "elements = 2"},
+      {"solver.formulation=\"cubic\"", "solver.formulation = \"cubic\", must be \"vertices\" or \"higher_order\""},
       {"wire.diameter_mm=0", "diameter_mm = 0"},
   };
   for (const auto& [setting, message] : wrong) {
@@ -89,6 +89,12 @@ TEST(ContactScenario, SaysWhatIsWrong) {
       EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
     }
   }
+}
+
+TEST(ContactScenario, NamesTheFormulationOfItsWire) {
+  const auto of = [](const ContactScenario& s) { return motion_of(s, s.models[0]).wires[0].rod.formulation; };
+  EXPECT_EQ(of(air_table_with({})), wire::Formulation::vertices);
+  EXPECT_EQ(of(air_table_with({"solver.formulation=\"higher_order\""})), wire::Formulation::higher_order);
 }
 
 // Digest of Table 4: the quadratic at s = 90 mm, head-on, without damping: 8.9 kg at 0.1 m/s.

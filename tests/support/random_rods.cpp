@@ -4,9 +4,6 @@
 
 namespace snare::test {
 
-using wire::PlanarEnd;
-using wire::SpatialEnd;
-
 wire::PlanarRodProperties planar_properties() {
   wire::PlanarRodProperties p;
   p.bending_stiffness = 0.7;

@@ -25,6 +25,17 @@ namespace snare::test {
   return rod;
 }
 
+/// Tolerances that follow the vibration of such a wire, for balances of small bodies.
+[[nodiscard]] inline coupling::MotionOptions fine_tolerances() {
+  coupling::MotionOptions options;
+  options.relative_tolerance = 1e-7;
+  options.position_tolerance = 1e-8;
+  options.velocity_tolerance = 1e-4;
+  options.body_position_tolerance = options.angle_tolerance = 1e-9;
+  options.newton_share = 0.003;
+  return options;
+}
+
 /// The wire and a body of `mass` that carries a shape at its centre and moves along y.
 [[nodiscard]] inline coupling::Motion body_below(const wire::RodInMotion& rod,
                                                  std::shared_ptr<const coupling::ContactShape> shape,

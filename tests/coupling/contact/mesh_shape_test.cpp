@@ -1,7 +1,7 @@
 #include "coupling/contact/mesh_shape.hpp"
 
 #include "base/errors.hpp"
-#include "coupling/contact/revolved_shape.hpp"
+#include "coupling/contact/revolved_solids.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/mesh_files.hpp"
 
@@ -207,7 +207,8 @@ TEST(MeshShapes, TessellatedShaftIsTheShaftWithinItsTessellation) {
   const auto shaft = grapple_shaft(dimensions);
   constexpr int around = 48;
   constexpr int divisions = 24;
-  const MeshShape mesh(revolved_mesh(shaft->outline(divisions), around));
+  const Profile profile = grapple_profile(dimensions);
+  const MeshShape mesh(revolved_mesh(profile.outline(profile.whole(), divisions), around));
   std::mt19937 random(17);
   std::uniform_real_distribution<double> place(-1.0, 1.0);
   // Chords lie inside circles by at most the sagitta of the largest, and the bulged arc's chords by less.

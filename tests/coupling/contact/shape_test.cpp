@@ -1,4 +1,4 @@
-#include "coupling/contact/revolved_shape.hpp"
+#include "coupling/contact/revolved_solids.hpp"
 
 #include "base/errors.hpp"
 #include "tests/support/derivatives.hpp"
@@ -123,10 +123,23 @@ std::vector<Sampled> sampled_shapes() {
   waist.emplace_back(0.0, 0.4);
   list.push_back({"waist",
                   std::make_shared<RevolvedShape>(
-                      -0.4, std::vector<ProfilePiece>{{{0.6, -0.4}, 0.0}, {{0.6, 0.4}, -2.0}, {{0.0, 0.4}, 0.0}}),
+                      Profile({0.0, -0.4}, {{{0.6, -0.4}, 0.0}, {{0.6, 0.4}, -2.0}, {{0.0, 0.4}, 0.0}})),
                   revolve(waist, spacing), spacing, [](const Vector3d& p) {
                     const double r = radius_of(p);
                     return std::abs(p.z()) < 0.4 && r < 0.6 && std::hypot(r - 0.9, p.z()) > 0.5;
+                  }});
+  list.push_back({"cup", cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.2}),
+                  revolve({{0.0, -0.2}, {0.7, -0.2}, {0.7, 0.6}, {0.5, 0.6}, {0.5, 0.0}, {0.0, 0.0}}, spacing), spacing,
+                  [](const Vector3d& p) {
+                    return p.z() > -0.2 && p.z() < 0.6 && radius_of(p) < 0.7 && (p.z() < 0.0 || radius_of(p) > 0.5);
+                  }});
+  // A ring rounded to half its wall: all within 0.15 of a cylinder's wall.
+  std::vector<Vector2d> ring{{0.4, -0.25}};
+  for (const Vector2d& p : arc({0.55, -0.25}, 0.15, -pi, 0.0)) ring.push_back(p);
+  for (const Vector2d& p : arc({0.55, 0.25}, 0.15, 0.0, pi)) ring.push_back(p);
+  ring.emplace_back(0.4, -0.25);
+  list.push_back({"ring", hollow_cylinder(0.4, 0.7, 0.8, 0.15), revolve(ring, spacing), spacing, [](const Vector3d& p) {
+                    return std::hypot(radius_of(p) - 0.55, p.z() - std::clamp(p.z(), -0.25, 0.25)) < 0.15;
                   }});
   return list;
 }
@@ -241,7 +254,7 @@ TEST(ContactShapes, AreOnceDifferentiableAcrossARim) {
 TEST(ContactShapes, KnowTheirAxis) {
   // On the axis of a ball-ended profile: the limit of both curvatures.
   const double k = 1.0 / 0.8;
-  const RevolvedShape ball(-0.8, {{{0.8, 0.0}, k}, {{0.0, 0.8}, k}});
+  const RevolvedShape ball(Profile({0.0, -0.8}, {{{0.8, 0.0}, k}, {{0.0, 0.8}, k}}));
   const Ball same(0.8);
   for (const Vector3d& p : {Vector3d(0.0, 0.0, 1.1), Vector3d(1e-9, 0.0, 1.1), Vector3d(0.3, 0.4, -0.9)}) {
     EXPECT_NEAR(ball.distance(p), same.distance(p), 1e-15);
@@ -250,23 +263,29 @@ TEST(ContactShapes, KnowTheirAxis) {
 }
 
 TEST(ContactShapes, WrongProfilesAreNamed) {
-  using Pieces = std::vector<ProfilePiece>;
-  const std::tuple<double, Pieces, const char*> wrong[] = {
-      {0.0, Pieces{{{0.0, 1.0}, 0.0}}, "profile = 1 pieces, must have two or more"},
-      {0.0, Pieces{{{-1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
+  using Edges = std::vector<ProfileEdge>;
+  const std::tuple<Vector2d, Edges, const char*> wrong[] = {
+      {{0.0, 0.0}, Edges{{{0.0, 1.0}, 0.0}}, "profile = 1 edges, must have two or more"},
+      {{0.0, 0.0},
+       Edges{{{-1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
        "profile[1] = (-1, 0), must be finite and right of the axis"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
-       "profile[2] = (1, 0), must not be where the piece begins"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{0.5, 1.0}, 0.0}}, "profile[2] = (0.5, 1), must end on the axis"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 2.0}, 1.5}, {{0.0, 2.0}, 0.0}},
+      {{0.0, 0.0},
+       Edges{{{1.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
+       "profile[2] = (1, 0), must not be where the edge begins"},
+      {{0.0, 0.0}, Edges{{{1.0, 0.0}, 0.0}, {{0.5, 1.0}, 0.0}}, "profile[2] = (0.5, 1), must end on the axis"},
+      {{0.0, 0.0},
+       Edges{{{1.0, 0.0}, 0.0}, {{1.0, 2.0}, 1.5}, {{0.0, 2.0}, 0.0}},
        "needs a radius of curvature of half its chord of 2 m"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{0.0, -1.0}, 0.0}}, "must run upward"},
-      {0.0, Pieces{{{1.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}, {{0.5, -1.0}, 0.0}, {{0.5, 2.0}, 0.0}, {{0.0, 2.0}, 0.0}},
+      {{0.0, 0.0}, Edges{{{1.0, 0.0}, 0.0}, {{0.0, -1.0}, 0.0}}, "must run upward"},
+      {{1.0, 0.0}, Edges{{{2.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}}, "profile[2] = (1, 1), must end where it began"},
+      {{-1.0, 0.0}, Edges{{{2.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}}, "must begin on the axis or right of it"},
+      {{0.0, 0.0},
+       Edges{{{1.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}, {{0.5, -1.0}, 0.0}, {{0.5, 2.0}, 0.0}, {{0.0, 2.0}, 0.0}},
        "must not cross itself"},
   };
-  for (const auto& [start, pieces, message] : wrong) {
+  for (const auto& [start, edges, message] : wrong) {
     try {
-      const RevolvedShape shape(start, pieces);
+      const Profile profile(start, edges);
       ADD_FAILURE() << message;
     } catch (const base::InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(message));

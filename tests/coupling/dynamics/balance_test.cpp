@@ -50,7 +50,7 @@ Motion oblique_impact(const wire::RodInMotion& rod) {
 using End = wire::SpatialEnd::Kind;
 class MotionReactions : public testing::TestWithParam<std::pair<End, End>> {};
 
-// At default tolerances: with friction, weight, damping in the wire and against the world, drag, constant forces.
+// With friction, weight, damping in the wire and against the world, drag, constant forces.
 TEST_P(MotionReactions, BalanceMomentumAndAngularMomentum) {
   wire::RodInMotion rod = soft_rod(GetParam().first, GetParam().second);
   rod.damping.mass_rate = 5.0;
@@ -60,7 +60,7 @@ TEST_P(MotionReactions, BalanceMomentumAndAngularMomentum) {
   motion.bodies[0].linear_drag = 0.01;
   motion.bodies[0].angular_drag = 1e-5;
   motion.bodies[0].start.spin = {1.0, -2.0, 3.0};
-  MotionOptions options;
+  MotionOptions options = test::fine_tolerances();
   options.duration = 0.08;
   const MotionResult result = simulate(motion, options);
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -80,7 +80,9 @@ TEST(MotionBalance, ADrivenBodyIsAccountedFor) {
   Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
   motion.bodies[0].driven = true;
   motion.contacts[0].friction = {};
-  MotionOptions options;
+  MotionOptions options = test::fine_tolerances();
+  options.newton_share =
+      1e-8;  // what Newton's method leaves, times the stiffness of the contact, is missing from its force
   options.duration = 0.03;
   const MotionResult result = simulate(motion, options);
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -112,6 +114,7 @@ TEST(MotionBalance, AFreeDampedWireKeepsItsAngularMomentum) {
     options.velocity_tolerance = 1e-10;
     options.twist_tolerance = 1e-12;
     options.max_order = 5;
+    options.newton_share = 0.01;  // round-off bounds the rest
     options.duration = 0.02;
     options.output_interval = 0.002;
     Vector3d start;
@@ -137,7 +140,7 @@ TEST(MotionBalance, EnergyOfAConservativeImpactStays) {
   rod.damping = {};
   Motion motion = oblique_impact(rod);
   motion.contacts[0].friction = {};
-  MotionOptions options;
+  MotionOptions options = test::fine_tolerances();
   options.duration = 0.1;
   const MotionResult result = simulate(motion, options);
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -167,9 +170,8 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
     return false;
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
-  EXPECT_GT(closed, 55.0);  // [s]: it is a test of the constraint,
+  EXPECT_GT(closed, 55.0);  // [s]: it is a test of the contact,
   EXPECT_GT(swing, 0.1);    // and of one that moves [rad/s]
-  EXPECT_LT(result.largest_gap, 1e-9);
   EXPECT_LT(result.largest_drift, 1e-9);
   EXPECT_LT(result.largest_penetration, 1e-6);
   const double weight = 0.052 * 9.81;
@@ -223,7 +225,7 @@ TEST(MotionState, GoingOnFromACheckpointGivesTheSameBits) {
     EXPECT_EQ(on.last.memory, through.last.memory);
     EXPECT_EQ(on.statistics.steps, through.statistics.steps);
     EXPECT_EQ(on.events.size(), through.events.size());
-    EXPECT_EQ(on.largest_gap, through.largest_gap);
+    EXPECT_EQ(on.largest_penetration, through.largest_penetration);
     EXPECT_EQ(on.peak_force, through.peak_force);
   }
 }
@@ -282,8 +284,7 @@ TEST(MotionState, AFailureKeepsWhatWasReached) {
   EXPECT_NEAR(written, result.report.time, options.output_interval);
   EXPECT_EQ(result.last.time, result.report.time);
   EXPECT_TRUE(result.last.unknowns.allFinite());
-  EXPECT_THAT(result.report.message,
-              testing::AllOf(testing::HasSubstr(" s, step "), testing::HasSubstr("contact point 1 normal force")));
+  EXPECT_THAT(result.report.message, testing::HasSubstr(" s, step "));
 }
 
 TEST(MotionState, OfAnotherMotionIsRefused) {

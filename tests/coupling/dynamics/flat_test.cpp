@@ -25,7 +25,6 @@ Motion block_below(int elements, double gap, double tilt) {
   const auto block = std::make_shared<MeshShape>(test::cuboid(0.04, 0.01, 0.04));
   Motion motion = body_below(soft_wire(elements), block, {0.1, -0.006 - gap, 0.0}, 0.05, 0.2);
   motion.bodies[0].start.orientation = Eigen::AngleAxisd(tilt, Vector3d::UnitZ());
-  motion.contacts[0].points = 60;
   return motion;
 }
 
@@ -36,7 +35,7 @@ struct Seen {
 };
 
 MotionResult run(const Motion& motion, double duration, Seen& seen) {
-  MotionOptions options;
+  MotionOptions options = test::fine_tolerances();
   options.duration = duration;
   options.output_interval = duration / 400.0;
   const MotionContact& contact = motion.contacts[0];
@@ -55,26 +54,16 @@ MotionResult run(const Motion& motion, double duration, Seen& seen) {
 
 class FlatFace : public testing::TestWithParam<int> {};
 
-TEST_P(FlatFace, TakesAStraightWireInAllOfItsVerticesAtOnce) {
+TEST_P(FlatFace, TakesAStraightWireAlongAllOfItsLength) {
   const int elements = GetParam();
   Seen seen;
   const MotionResult r = run(block_below(elements, 1e-4, 0.0), 0.25, seen);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
-  // The vertices over the face, and one of its ends where none is there.
-  const auto together = std::count_if(r.events.begin(), r.events.end(), [&](const MotionEvent& e) {
-    return e.kind == MotionEvent::Kind::touch && e.time == r.events.front().time;
-  });
-  const double h = 0.2 / elements;
-  const double over_the_face = std::floor(0.12 / h + 1e-9) - std::ceil(0.08 / h - 1e-9) + 1.0;
-  EXPECT_GE(static_cast<double>(together), over_the_face);
-  EXPECT_LE(static_cast<double>(together), over_the_face + 2.0);
-  EXPECT_NEAR(r.events.front().time, 1e-4 / 0.05, 1e-8);
+  EXPECT_NEAR(r.events.front().time, 1e-4 / 0.05, 1e-6);
   // It lets go again: all of the block's energy but what the damping took.
   EXPECT_EQ(r.events.back().kind, MotionEvent::Kind::lift_off);
-  EXPECT_GT(seen.most_points, 1u);
-  EXPECT_LT(r.events.size(), 600u);
   EXPECT_LT(seen.largest_spin, 0.05);  // one edge alone would give 5 rad/s
-  EXPECT_GT(seen.least_force, -0.03);  // twice the tolerance of the forces, and what a step adds
+  EXPECT_GE(seen.least_force, 0.0);
   EXPECT_LT(r.largest_penetration, 1e-6);
   EXPECT_LT(seen.deepest_vertex, 1e-6);
   EXPECT_LT(std::abs(r.energy.integrator), 1e-3 * 0.5 * 0.2 * 0.05 * 0.05);
@@ -87,9 +76,7 @@ TEST(MotionOnEdges, ATiltedBlockRestsOnBothOfItsEdges) {
   const MotionResult r = run(block_below(40, 1e-3, std::numbers::pi / 90.0), 0.25, seen);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   EXPECT_EQ(seen.most_points, 2u);
-  // One impulse drives the other end apart by nanometres a second, which is no parting.
-  EXPECT_LT(r.events.size(), 20u);
-  EXPECT_GT(seen.least_force, -0.03);
+  EXPECT_GE(seen.least_force, 0.0);
   EXPECT_LT(r.largest_penetration, 1e-6);
   EXPECT_LT(seen.deepest_vertex, 1e-6);
   EXPECT_LT(std::abs(r.energy.integrator), 1e-3 * 0.5 * 0.2 * 0.05 * 0.05);

@@ -1,12 +1,11 @@
-// Stick and slip with events: derivatives, frames, energy, directions. Closed forms: validation/friction_checks.
+// Stick and slip: derivatives, frames, energy, directions. Closed forms: validation/friction_checks.
 
 #include "base/errors.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/contact_part.hpp"
-#include "coupling/dynamics/contact_points.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
-#include "tests/support/derivatives.hpp"
+#include "tests/support/dae_jacobian.hpp"
 #include "tests/support/soft_wire.hpp"
 #include "wire/rod_constants.hpp"
 
@@ -28,26 +27,32 @@ MotionFriction papers_friction() {
   return {0.3, 0.1, 0.01, 1.0};
 }
 
-TEST(MotionFriction, ForceHasExactDerivatives) {
+// Bristles that stick, slide, and have been stretched too far.
+TEST(MotionFriction, ForceAndRateHaveExactDerivatives) {
   MotionFriction smooth = papers_friction();
   smooth.law = ContactFriction::smooth;
-  const std::pair<MotionFriction, FrictionMode> cases[] = {
-      {papers_friction(), FrictionMode::stick}, {papers_friction(), FrictionMode::slip}, {smooth, FrictionMode::stick}};
-  for (const auto& [friction, mode] : cases) {
+  for (const MotionFriction& friction : {papers_friction(), smooth}) {
     for (const double speed : {0.004, 0.3, 2.0}) {
-      // Of order one: z in micrometres, w in units of its size.
-      const auto force = [&friction = friction, &mode = mode, speed](const VectorXd& x) -> VectorXd {
-        const BristleState s{1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]};
-        return tangent_force(friction, mode, s).force;
-      };
-      VectorXd x(5);
-      x << 0.4, -0.7, 0.8, 0.3, 1.1;
-      const TangentForce t =
-          tangent_force(friction, mode, {1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]});
-      Eigen::MatrixXd analytic(2, 5);
-      analytic << 1e-6 * t.by_bristle, speed * t.by_sliding, 10.0 * t.by_normal;
-      const test::DerivativeError error = test::compare_jacobian(force, x, analytic);
-      EXPECT_LT(error.relative, 1e-9) << error.worst;
+      for (const double stretch : {0.5, 0.9995, 1.2}) {
+        // Of order one: z in micrometres, w in units of its size.
+        const auto state = [&](const VectorXd& x) {
+          return BristleState{1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]};
+        };
+        const auto values = [&](const VectorXd& x) -> VectorXd {
+          VectorXd v(4);
+          v << tangent_force(friction, state(x)).force, bristle_rate(friction, state(x)).rate / speed;
+          return v;
+        };
+        VectorXd x(5);
+        x << 0.6 * stretch, -0.8 * stretch, 0.8, -0.3, 1.1;
+        const TangentForce t = tangent_force(friction, state(x));
+        const BristleRate r = bristle_rate(friction, state(x));
+        Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(4, 5);
+        analytic.topRows<2>() << 1e-6 * t.by_bristle, speed * t.by_sliding, 10.0 * t.by_normal;
+        analytic.bottomLeftCorner<2, 4>() << 1e-6 * r.by_bristle / speed, r.by_sliding;
+        const test::DerivativeError error = test::compare_jacobian(values, x, analytic);
+        EXPECT_LT(error.relative, 1e-8) << error.worst;
+      }
     }
   }
 }
@@ -58,30 +63,45 @@ TEST(MotionFriction, CoefficientIsThatOfThePapers) {
   EXPECT_DOUBLE_EQ(slip_coefficient(f, 0.01), 0.3);
   EXPECT_DOUBLE_EQ(slip_coefficient(f, 0.505), 0.2);
   EXPECT_DOUBLE_EQ(slip_coefficient(f, 1.0), 0.1);
-  EXPECT_DOUBLE_EQ(f.bristle_stiffness(), 0.3 * 10.0 / 1e-6);
 }
 
-// Heat is never negative where the mode holds: random states on their side of the margin.
+// Under a constant load and coefficient what goes in is what the bristle stores and what becomes heat, never negative; below
+// 99.9 % of its reach it does not creep.
 TEST(MotionFriction, HeatIsNeverNegative) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const MotionFriction f = papers_friction();
-  int slips = 0;
+  MotionFriction f = papers_friction();
+  f.dynamic_coefficient = f.static_coefficient;
+  int slides = 0;
   for (int k = 0; k < 10000; ++k) {
-    const BristleState s{2e-6 * Vector2d(unit(random), unit(random)),
-                         std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)),
-                         10.0 * (1.0 + unit(random))};
-    for (const FrictionMode mode : {FrictionMode::stick, FrictionMode::slip}) {
-      if (friction_margin(f, mode, s) < 0.0) continue;
-      slips += mode == FrictionMode::slip ? 1 : 0;
-      EXPECT_GE(friction_heat(f, mode, s), -1e-12);  // round-off of powers up to 100 W
-      // What goes in is what the bristle stores and what becomes heat.
-      const double in = tangent_force(f, mode, s).force.dot(s.sliding);
-      const double stored = f.bristle_stiffness() * s.bristle.dot(bristle_rate(f, mode, s));
-      EXPECT_NEAR(in, stored + friction_heat(f, mode, s), 1e-9 * (std::abs(in) + std::abs(stored)) + 1e-12);
+    BristleState s{f.bristle_displacement * Vector2d(unit(random), unit(random)),
+                   std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)), 10.0};
+    // Half of them where it slides.
+    if (k % 2 == 0) s.bristle = (1.0 - 5e-4 * (1.0 + unit(random))) * f.bristle_displacement * s.bristle.normalized();
+    if (s.bristle.norm() > f.bristle_displacement) continue;
+    const Vector2d rate = bristle_rate(f, s).rate;
+    if (s.bristle.norm() < 0.999 * f.bristle_displacement) {
+      EXPECT_EQ(rate, s.sliding);
+    } else {
+      ++slides;
     }
+    const double stored = f.static_coefficient * s.normal / f.bristle_displacement * s.bristle.dot(rate);
+    EXPECT_GE(tangent_force(f, s).force.dot(s.sliding) - stored, -1e-12);
   }
-  EXPECT_GT(slips, 1000);
+  EXPECT_GT(slides, 1000);
+}
+
+// Steady sliding: Coulomb's force along the velocity, also after it has turned.
+TEST(MotionFriction, SlidesAlongItsVelocity) {
+  const MotionFriction f = papers_friction();
+  BristleState s;
+  s.normal = 10.0;
+  for (const Vector2d& w : {Vector2d(0.3, 0.0), Vector2d(-0.1, 0.2)}) {
+    s.sliding = w;
+    const double dt = 1e-4 * f.bristle_displacement / w.norm();
+    for (int k = 0; k < 400000; ++k) s.bristle += dt * bristle_rate(f, s).rate;
+    EXPECT_LT((tangent_force(f, s).force - slip_coefficient(f, w.norm()) * s.normal * w.normalized()).norm(), 1e-6);
+  }
 }
 
 /// A soft wire of 0.2 m between clamps, bent at random, and a ball of a spinning body in contact with it.
@@ -111,13 +131,14 @@ struct Touching {
     c.X_BS.p = {0.015, 0.0, -0.004};
     c.wire_radius = 0.001;
     c.friction = friction;
+    c.foundation = {3e8, 1.0};
     return c;
   }
 
   explicit Touching(const MotionFriction& friction)
       : rod("wire", soft_rod(), {}),
         body(ball(), Vector3d::Zero(), {}),
-        contact(touch(friction), rod, body, {}),
+        contact(touch(friction), touch(friction).shape, rod, body),
         system({&rod, &body, &contact}),
         y(VectorXd::Zero(system.size())) {
     std::mt19937 random(7);
@@ -132,54 +153,41 @@ struct Touching {
     body.place(y);
     y.segment<4>(body.quaternion()) = Eigen::Vector4d(0.98, 0.1, -0.12, 0.11).normalized();
     y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
-    const VectorXd placed = y;
-    const double nearest = ContactPoints(touch(friction), rod, body, {}).nearest(y).coordinate;
-    (void)contact.close(nearest, y);
-    y.head(27) = placed.head(27);  // not moved out of the ball: the rod's frames stay in their plane
-    y[contact.force_unknown()] = 2.0;
+    // 2 um deep: a fifth of a newton.
+    y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
+    contact.look_around(y);
+    system.invalidate_pattern();
   }
 };
 
 TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
-  for (const FrictionMode mode : {FrictionMode::stick, FrictionMode::slip}) {
+  for (const double stretch : {0.3, 0.9995}) {
     MotionFriction soft = papers_friction();
     // A bristle as soft as the wire's axial stiffness of 1e3/0.025, so that no row drowns the others.
     soft.bristle_displacement = 1e-4;
     soft.bristle_time = 1e-3;
     Touching t(soft);
-    t.contact.set_friction_mode(mode);
-    t.y.segment<2>(t.contact.bristle_unknown()) << 3e-5, -1e-5;
-    t.system.invalidate_pattern();
+    for (int i = 0; i < t.rod.vertices(); ++i)
+      t.y.segment<2>(t.contact.bristle_of(i)) = stretch * soft.bristle_displacement * Vector2d(0.6, -0.8);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     VectorXd rate(t.y.size());
     for (double& r : rate) r = 0.1 * unit(random);
-    constexpr double c = 50.0;
-    const numerics::SparseMatrix& sparse = t.system.jacobian({0.0, t.y, rate}, c);
     const Eigen::Vector4d q = t.y.segment<4>(t.body.quaternion());
     Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(t.y.size(), t.y.size());
     directions.block<4, 4>(t.body.quaternion(), t.body.quaternion()) -= q * q.transpose();
-    Eigen::MatrixXd analytic(t.y.size(), t.y.size());
-    for (Eigen::Index j = 0; j < t.y.size(); ++j) analytic.col(j) = sparse * VectorXd(directions.col(j));
-    const auto f = [&](const VectorXd& s) {
-      VectorXd rows(t.y.size());
-      const VectorXd moved = t.y + directions * s;
-      const VectorXd moved_rate = rate + c * (directions * s);
-      t.system.residual({0.0, moved, moved_rate}, rows);
-      return rows;
-    };
-    const test::DerivativeError error = test::compare_jacobian(f, VectorXd::Zero(t.y.size()), analytic, 1e-4);
-    // Fourth-order differences of a wire of 1e3/0.025 N/m that turns its edges of 25 mm: as without a bristle.
-    EXPECT_LT(error.relative, 1e-7) << error.worst;
+    const test::DerivativeError error = test::compare_dae_jacobian(t.system, t.y, rate, directions, 1e-4);
+    // The derivative's integral by Gauss's rule, not that of the rule, beside differences of the force.
+    EXPECT_LT(error.relative, 1e-4) << error.worst;
   }
 }
 
 // A superposed rigid rotation, with its velocities, turns the force and leaves the bristle's rate alone.
 TEST(MotionFriction, BristleIsObjective) {
-  for (const FrictionMode mode : {FrictionMode::stick, FrictionMode::slip}) {
+  for (const double stretch : {0.3, 0.9995}) {
     Touching t(papers_friction());
-    t.contact.set_friction_mode(mode);
-    t.y.segment<2>(t.contact.bristle_unknown()) << 3e-7, -1e-7;
+    for (int i = 0; i < t.rod.vertices(); ++i)
+      t.y.segment<2>(t.contact.bristle_of(i)) = stretch * 1e-6 * Vector2d(0.6, -0.8);
     const Eigen::AngleAxisd turn(0.7, Vector3d(1.0, -2.0, 0.5).normalized());
     const Vector3d spin(20.0, -30.0, 10.0);
     const Eigen::Matrix3d r = turn.toRotationMatrix();
@@ -195,15 +203,15 @@ TEST(MotionFriction, BristleIsObjective) {
     z.segment<4>(t.body.quaternion()) << body.w(), body.x(), body.y(), body.z();
     z.segment<3>(t.body.spin()) += body.conjugate() * spin;
     const VectorXd rate = VectorXd::Zero(t.y.size());
-    const ContactSample before = t.contact.sample({0.0, t.y, rate});
-    const ContactSample after = t.contact.sample({0.0, z, rate});
-    EXPECT_LT((after.force - r * before.force).norm(), 1e-11 * before.force.norm());
+    const Vector3d before = t.contact.sums(t.y).force, after = t.contact.sums(z).force;
+    EXPECT_GT(before.norm(), 0.05);
+    EXPECT_LT((after - r * before).norm(), 1e-7 * before.norm());
     VectorXd rate_before = rate;
     VectorXd rate_after = rate;
-    t.contact.set_bristle_rate(t.y, rate_before);
-    t.contact.set_bristle_rate(z, rate_after);
+    t.contact.set_bristle_rates(t.y, rate_before);
+    t.contact.set_bristle_rates(z, rate_after);
     EXPECT_GT(rate_before.norm(), 1e-3);
-    EXPECT_LT((rate_after - rate_before).norm(), 1e-9 * rate_before.norm());
+    EXPECT_LT((rate_after - rate_before).norm(), 1e-7 * rate_before.norm());
   }
 }
 
@@ -273,12 +281,9 @@ TEST(MotionFriction, ObliqueBlockStopsOnItsLine) {
   options.velocity_tolerance = 1e-6;
   Vector3d end;
   bool sticks = false;
-  double heat = 0.0;
   const MotionResult r = simulate(motion, options, [&](const MotionSample& s) {
     end = s.bodies[0].position;
     sticks = s.contacts[0].sticking;
-    EXPECT_GE(s.energy.dissipated, heat - 1e-12);
-    heat = s.energy.dissipated;
     return false;
   });
   ASSERT_TRUE(r.report.usable()) << r.report.message;
@@ -287,10 +292,9 @@ TEST(MotionFriction, ObliqueBlockStopsOnItsLine) {
   // The arch gives by some micrometres, and so does the bristle.
   EXPECT_NEAR(end.x(), 0.6 * path, 1e-3 * path);
   EXPECT_NEAR(end.z(), 0.8 * path, 1e-3 * path);
-  EXPECT_NEAR(r.energy.dissipated + r.energy.impacts, 0.5 * speed * speed, 2e-3 * 0.5 * speed * speed);
-  ASSERT_GE(r.events.size(), 3u);
+  EXPECT_NEAR(r.energy.dissipated, 0.5 * speed * speed, 2e-3 * 0.5 * speed * speed);
+  ASSERT_FALSE(r.events.empty());
   EXPECT_EQ(r.events[0].kind, MotionEvent::Kind::touch);
-  EXPECT_EQ(r.events.back().kind, MotionEvent::Kind::stick);
 }
 
 TEST(MotionFriction, WrongNumbersAreNamed) {

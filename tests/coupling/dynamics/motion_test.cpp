@@ -2,10 +2,10 @@
 #include "coupling/dynamics/start.hpp"
 
 #include "base/errors.hpp"
+#include "coupling/contact/curve.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/contact_part.hpp"
-#include "coupling/dynamics/contact_search.hpp"
-#include "tests/support/derivatives.hpp"
+#include "tests/support/dae_jacobian.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
@@ -80,7 +80,8 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   const MotionOptions options;
   wire::RodPart rod("wire", motion.wires[0].rod, {});
   BodyPart body(motion.bodies[0], Vector3d::Zero(), options);
-  ContactPart contact(motion.contacts[0], rod, body, options);
+  motion.contacts[0].foundation = {3e8, 1.0};  // as soft as the wire, so that no row drowns the others
+  ContactPart contact(motion.contacts[0], motion.contacts[0].shape, rod, body);
   numerics::DaeSystem system({&rod, &body, &contact});
   VectorXd y = VectorXd::Zero(system.size());
   std::mt19937 random(7);
@@ -95,35 +96,19 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   body.place(y);
   y.segment<4>(body.quaternion()) = Eigen::Vector4d(0.98, 0.1, -0.12, 0.11).normalized();
   y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
-  EXPECT_FALSE(contact.has_law());
-  const VectorXd placed = y;
-  const ContactSearch search(motion.contacts[0], rod, body, 1e-7);
-  (void)contact.close(search.nearest(y).coordinate, y);
-  // Closing moves the wire out of the ball; back, to the plane in which the rod's frames have no holonomy.
-  y.head(27) = placed.head(27);
+  y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
+  contact.look_around(y);
+  ASSERT_GT(contact.sums(y).force.norm(), 0.05);
   system.invalidate_pattern();
-  y[contact.force_unknown()] = 2.0;
-  y[contact.stabiliser_unknown()] = 0.0;
   VectorXd rate(y.size());
   for (double& r : rate) r = 0.1 * unit(random);
-  constexpr double c = 50.0;
-  const numerics::SparseMatrix& sparse = system.jacobian({0.0, y, rate}, c);
   // Directions of a size that suits each unknown; the quaternion moves along the sphere, as it does in a motion.
   const Eigen::Vector4d q = y.segment<4>(body.quaternion());
   Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
   directions.block<4, 4>(body.quaternion(), body.quaternion()) -= q * q.transpose();
-  Eigen::MatrixXd analytic(y.size(), y.size());
-  for (Eigen::Index j = 0; j < y.size(); ++j) analytic.col(j) = sparse * VectorXd(directions.col(j));
-  const auto f = [&](const VectorXd& s) {
-    VectorXd rows(y.size());
-    const VectorXd moved = y + directions * s;
-    const VectorXd moved_rate = rate + c * (directions * s);
-    system.residual({0.0, moved, moved_rate}, rows);
-    return rows;
-  };
-  const test::DerivativeError error = test::compare_jacobian(f, VectorXd::Zero(y.size()), analytic, 1e-3);
-  // Curvature over one step of differences, against the axial stiffness of 1e3/0.025.
-  EXPECT_LT(error.relative, 1e-7) << error.worst;
+  const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
+  // The derivative's integral by Gauss's rule, not that of the rule, beside differences of the force.
+  EXPECT_LT(error.relative, 1e-4) << error.worst;
 }
 
 TEST(Motion, MomentumOfAFreeWireAndABodyStays) {
@@ -174,14 +159,13 @@ TEST(Motion, EnergyOfADampedImpactIsAccountedFor) {
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   const double energy = 0.5 * 0.05 * (0.09 + 0.04);
   EXPECT_GT(result.energy.dissipated, 1e-3 * energy);
-  EXPECT_GT(result.energy.impacts, 0.0);
   EXPECT_LT(std::abs(result.energy.integrator), 1e-3 * energy);
-  EXPECT_LT(result.largest_gap, 1e-9);
+  EXPECT_LT(result.largest_penetration, 1e-6);
   EXPECT_GT(result.peak_force[0], 0.0);
   EXPECT_LT(result.momentum_error.norm(), 1e-6 * result.impulse[0].norm());
 }
 
-TEST(Motion, ALawTakesThePlaceOfTheConstraint) {
+TEST(Motion, ALawTakesThePlaceOfTheFoundation) {
   Motion motion = ball_below(soft_rod(16, wire::SpatialEnd::Kind::clamp), 0.3);
   const double stiffness = 2e4;
   motion.contacts[0].law = [stiffness](double depth, double) -> Vector3d {

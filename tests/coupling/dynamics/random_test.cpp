@@ -2,7 +2,7 @@
 
 #include "base/units.hpp"
 #include "coupling/contact/mesh_shape.hpp"
-#include "coupling/contact/revolved_shape.hpp"
+#include "coupling/contact/revolved_solids.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
 #include "tests/support/mesh_files.hpp"
@@ -81,7 +81,6 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
     MotionContact contact;
     contact.shape = random_shape(k % 7, between);
     contact.wire_radius = wire_radius;
-    contact.points = 30;
     const double friction = one_of({0.0, 0.1, 0.3});
     contact.friction = {friction, friction, 0.01, 1.0};
     motion.contacts.push_back(contact);

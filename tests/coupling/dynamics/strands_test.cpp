@@ -3,7 +3,7 @@
 #include "base/errors.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
-#include "tests/support/derivatives.hpp"
+#include "tests/support/dae_jacobian.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
@@ -60,18 +60,7 @@ TEST(MotionStrands, JacobianMatchesDifferences) {
       if (!plane) directions.middleCols(rod.position_of(i), 2).setZero();
       directions.col(rod.angle_of(i)).setZero();
     }
-    constexpr double c = 50.0;
-    const numerics::SparseMatrix& sparse = system.jacobian({0.0, y, rate}, c);
-    Eigen::MatrixXd analytic(y.size(), y.size());
-    for (Eigen::Index j = 0; j < y.size(); ++j) analytic.col(j) = sparse * VectorXd(directions.col(j));
-    const auto f = [&](const VectorXd& s) {
-      VectorXd rows(y.size());
-      const VectorXd moved = y + directions * s;
-      const VectorXd moved_rate = rate + c * (directions * s);
-      system.residual({0.0, moved, moved_rate}, rows);
-      return rows;
-    };
-    const test::DerivativeError error = test::compare_jacobian(f, VectorXd::Zero(y.size()), analytic, 1e-4);
+    const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-4);
     // As for the rod without strands (MotionJacobian).
     EXPECT_LT(error.relative, 1e-7) << error.worst;
   }

@@ -6,7 +6,7 @@
 #include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/mount_part.hpp"
 #include "multibody/arm/arm_run.hpp"
-#include "tests/support/derivatives.hpp"
+#include "tests/support/dae_jacobian.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
@@ -84,23 +84,12 @@ MotionOptions fine(double duration) {
 /// `quaternions`.
 void expect_jacobian(numerics::DaeSystem& system, const VectorXd& y, const VectorXd& rate,
                      const std::vector<int>& quaternions, double limit) {
-  constexpr double c = 50.0;
-  const numerics::SparseMatrix& sparse = system.jacobian({0.0, y, rate}, c);
   Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
   for (const int first : quaternions) {
     const Eigen::Vector4d q = y.segment<4>(first);
     directions.block<4, 4>(first, first) -= q * q.transpose();
   }
-  Eigen::MatrixXd analytic(y.size(), y.size());
-  for (Eigen::Index j = 0; j < y.size(); ++j) analytic.col(j) = sparse * VectorXd(directions.col(j));
-  const auto f = [&](const VectorXd& s) {
-    VectorXd rows(y.size());
-    const VectorXd moved = y + directions * s;
-    const VectorXd moved_rate = rate + c * (directions * s);
-    system.residual({0.0, moved, moved_rate}, rows);
-    return rows;
-  };
-  const test::DerivativeError error = test::compare_jacobian(f, VectorXd::Zero(y.size()), analytic, 1e-3);
+  const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
   EXPECT_LT(error.relative, limit) << error.worst;
 }
 
@@ -130,11 +119,13 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
   }
 }
 
-TEST(MotionLink, MountJacobianMatchesDifferences) {
+void expect_mount_jacobian(wire::Formulation formulation) {
   for (const wire::End end : wire::ends) {
     for (const bool driven : {false, true}) {
       const MotionOptions options;
-      wire::RodPart rod("wire", test::soft_wire(6), {});
+      wire::RodInMotion soft = test::soft_wire(6);
+      soft.formulation = formulation;
+      wire::RodPart rod("wire", soft, {});
       MotionBody frame = block(0.05, {2e-3, 3e-3, 4e-3}, Vector3d::Zero());
       frame.driven = driven;
       BodyPart body(frame, Vector3d::Zero(), options);
@@ -160,6 +151,13 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
       expect_jacobian(system, y, rate, {body.quaternion()}, 1e-7);
     }
   }
+}
+
+TEST(MotionLink, MountJacobianMatchesDifferences) {
+  expect_mount_jacobian(wire::Formulation::vertices);
+}
+TEST(MotionLink, MountJacobianOfHigherOrderMatchesDifferences) {
+  expect_mount_jacobian(wire::Formulation::higher_order);
 }
 
 TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {

@@ -1,5 +1,4 @@
-// Every effect: what holds for all of them (EachEffect), then facts that follow from mechanics, whatever the
-// data.
+// Every effect: what holds for all of them (EachEffect), then facts that follow from mechanics, whatever the data.
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/least_squares.hpp"
@@ -201,8 +200,7 @@ TEST(Effects, GainLiesInTheSpanOfTheStiffnesses) {
   EXPECT_LT(Projection(base).without(gain).norm(), 1e-5 * gain.norm());
 }
 
-// Where the wire is a string, its stretch and that of the mounts add up, and a gain is nothing else: one
-// class.
+// Where the wire is a string, its stretch and that of the mounts add up, and a gain is nothing else: one class.
 TEST(Effects, AxialStiffnessMountComplianceAndGainAreAlikeForAString) {
   std::vector<Series> taut;
   for (const double position : {40.0 * mm, 65.0 * mm, 90.0 * mm}) {
@@ -216,9 +214,8 @@ TEST(Effects, AxialStiffnessMountComplianceAndGainAreAlikeForAString) {
   EXPECT_GT(std::abs(cosine(axial, column(model, data, "reading.force_gain"))), 0.999);
 }
 
-// A stretched string hands half of its weight to the pusher, whatever the travel: a force offset at one
-// position. It also sags before the touch, from which the travel counts: a zero of the travel, which the fit
-// must be free to move.
+// A stretched string hands half of its weight to the pusher, whatever the travel: a force offset at one position. It
+// also sags before the touch, from which the travel counts: a zero of the travel, which the fit must be free to move.
 TEST(Effects, GravityIsAForceOffsetAtOnePosition) {
   std::vector<Series> taut{series_at(65.0 * mm, 176.4 * mm, 15)};
   taut.front().test.wire.bending_stiffness_override = 1e-4;

@@ -98,8 +98,7 @@ const WrongFile wrong_files[] = {
     {"travel_mm = 2.0", "path_mm = [0]",
      "x.toml:25: series[s40].path_mm = [0], must be an array of 2 to 10000 numbers"},
     {"travel_mm = 2.0\npoints = 21", "path_mm = [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]\npoints = 1_000_000",
-     "x.toml:26: series[s40].points = 1_000_000, gives 11999989 points on the path, must give at most "
-     "10000000"},
+     "x.toml:26: series[s40].points = 1_000_000, gives 11999989 points on the path, must give at most 10000000"},
     {"R2 = 0.998", "R2 = 0.0", "x.toml:31: series[s65].law.R2 = 0.0, must be > 0 and <= 1"},
     {"title = \"a loose wire\"", "solver = { elements = 65 }",
      "x.toml:2: solver.elements = 65, must be a multiple of 4"},
@@ -153,11 +152,9 @@ const WrongFile wrong_files[] = {
     {"heldout = [\"s65\"]", "heldout = \"s65\"",
      "x.toml:35: fit.heldout = \"s65\", must be an array of texts in quotes"},
     {"\"reading.force_gain\"", "\"wire.construction\"",
-     "x.toml:34: fit.free[2] = \"wire.construction\", must be a number that can be "
-     "fitted"},
+     "x.toml:34: fit.free[2] = \"wire.construction\", must be a number that can be fitted"},
     {"\"reading.force_gain\"", "\"wire.lenght_mm\"",
-     "x.toml:34: fit.free[2] = \"wire.lenght_mm\", must be a number that can be fitted; "
-     "did you mean wire.length_mm?"},
+     "x.toml:34: fit.free[2] = \"wire.lenght_mm\", must be a number that can be fitted; did you mean wire.length_mm?"},
     {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nhardening_ratio = 0.1",
      "x.toml:11: wire.hardening_ratio = 0.1, only beside yield_stress_MPa"},
     {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nstrand_slip_curvature_1_m = 0.1",
@@ -180,8 +177,7 @@ const WrongFile wrong_files[] = {
     {"length_mm = 180.0", "length_mm = 180,0",
      "x.toml:7: not TOML: Error while parsing key-value pair: expected a comment or whitespace, saw ','"},
     {"length_mm = 180.0", "length_mm = 180.0\nlength_mm = 181.0",
-     "x.toml:8: not TOML: Error while parsing key-value pair: cannot redefine existing floating-point "
-     "'length_mm'"},
+     "x.toml:8: not TOML: Error while parsing key-value pair: cannot redefine existing floating-point 'length_mm'"},
     {"[mount]", "[mount", "x.toml:12: not TOML: Error while parsing table header: expected ']', saw '\\n'"},
     {"a loose wire", "a loose \xff wire", "x.toml:2: byte 0xff is not UTF-8"},
     {"title", "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a",

@@ -118,8 +118,7 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
       "rotational_stiffness_Nm_rad = 20\nslip_tension_N = 30\n"
       "[pusher]\nshape = 'cylinder'\nradius_mm = 0\nfriction = 0.3\ndirection = 'inward'\ntilt_deg = "
       "2\nmisalignment_deg = -1\n"
-      "[[series]]\nname = 'a'\ncontact_position_mm = 90\nforce_sigma_N = 0.05\npath_mm = [0, 2, 1]\npoints = "
-      "3\n";
+      "[[series]]\nname = 'a'\ncontact_position_mm = 90\nforce_sigma_N = 0.05\npath_mm = [0, 2, 1]\npoints = 3\n";
   const Experiment experiment = parse_experiment("x.toml", text, parameters());
   const coupling::PushProblem& test = experiment.series.at(0).test;
   EXPECT_EQ(test.gravity, (std::array<double, 3>{0.0, -9.81, 1.0}));
@@ -214,8 +213,7 @@ TEST_F(ExperimentFiles, WrongReadingsHaveTheirMessage) {
   const std::string header = "displacement_mm,force_N\n";
   EXPECT_EQ(message(), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: no such file");
   EXPECT_EQ(message_of_csv(""),
-            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is empty, must have a header that names the "
-            "columns");
+            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is empty, must have a header that names the columns");
   EXPECT_EQ(message_of_csv(header), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has a header but no rows");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,1\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has 2 rows, must have at least 3");
@@ -271,8 +269,7 @@ TEST(QuadraticLaw, ScatterIsThatOfReadingsWithThisR2) {
 }
 
 TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
-  // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last
-  // digit.
+  // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last digit.
   const wire::WireSpecification wire = parse_experiment("x.toml", valid_experiment, parameters()).series[0].test.wire;
   EXPECT_NEAR(wire.bending_stiffness(), 0.04796, 0.5e-5);
   EXPECT_NEAR(wire.axial_stiffness(), 341.06e3, 5.0);

@@ -123,8 +123,7 @@ TEST(Model, SettingsMoveEverySeriesFromItsOwnDeclaration) {
   EXPECT_EQ(parameters().find("series[a].nothing"), nullptr);
 }
 
-// Numbers of the record, whose derivatives are written by hand; those of the test are compared in
-// tests/coupling.
+// Numbers of the record, whose derivatives are written by hand; those of the test are compared in tests/coupling.
 TEST(Model, DerivativesOfTheRecordMatchDifferences) {
   Series s = series_of(test::declared_wire(65.0 * mm, 6.0 * mm), 0.0, 0.0, 1);
   for (std::size_t i = 0; i < s.readings->displacement.size(); ++i)

@@ -18,16 +18,14 @@ TEST(Statistics, TailsOfTables) {
   EXPECT_NEAR(normal_quantile(0.025), 1.959964, 1e-5);
 }
 
-// Equal weights are a scaled chi-square; two pairs of weights have the tail (a e^(-x/2a) - b e^(-x/2b))/(a -
-// b).
+// Equal weights are a scaled chi-square; two pairs of weights have the tail (a e^(-x/2a) - b e^(-x/2b))/(a - b).
 TEST(Statistics, TailOfAMixtureOfChiSquares) {
   EXPECT_NEAR(chi_square_mixture_tail(2.0 * 18.307038, Eigen::VectorXd::Constant(10, 2.0)), 0.05, 1e-6);
   const double a = 1.0;
   const double b = 0.2;
   for (const double x : {6.0, 10.0, 14.0}) {
     const double exact = (a * std::exp(-0.5 * x / a) - b * std::exp(-0.5 * x / b)) / (a - b);
-    // Moments are matched, the tail is not: the approximation is good to a tenth of P (Liu, Tang and Zhang,
-    // Table 1).
+    // Moments are matched, the tail is not: the approximation is good to a tenth of P (Liu, Tang and Zhang, Table 1).
     EXPECT_NEAR(chi_square_mixture_tail(x, Eigen::Vector4d(a, a, b, b)), exact, 0.1 * exact) << x;
   }
   EXPECT_EQ(chi_square_mixture_tail(1.0, Eigen::VectorXd::Zero(3)), 1.0);
@@ -42,8 +40,7 @@ TEST(Statistics, HolmByHand) {
   EXPECT_TRUE(holm({}).empty());
 }
 
-// With white noise the p values are uniform: a share of about 5 % is below 0.05; a smooth wave is found at
-// once.
+// With white noise the p values are uniform: a share of about 5 % is below 0.05; a smooth wave is found at once.
 TEST(Statistics, WhitenessTestsHoldTheirLevel) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

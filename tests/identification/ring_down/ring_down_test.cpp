@@ -211,8 +211,7 @@ TEST(RingDown, RecoversTheDampingOfTheFullWire) {
   EXPECT_NEAR(split.mass_rate.value, rate, 0.05 * rate);
 }
 
-// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the
-// damping back.
+// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the damping back.
 TEST(RingDown, RecoversTheDampingOfALooseWire) {
   const double time = 2e-5;
   const double rate = 8.0;

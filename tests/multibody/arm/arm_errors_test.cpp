@@ -59,8 +59,7 @@ const WrongFile wrong_urdfs[] = {
     {"<robot name=\"two_links\">", "<machine name=\"two_links\">", "x.urdf:35: is no XML: Error reading end tag"},
     {"<robot name=\"two_links\">", "<robot>", "x.urdf:2: robot.name, must be given"},
     {"  <link name=\"base\"/>\n", "  <link/>\n",
-     "x.urdf:3: link.name, must be given\nx.urdf:19: joint[shoulder].parent = \"base\", must be a link of "
-     "this file"},
+     "x.urdf:3: link.name, must be given\nx.urdf:19: joint[shoulder].parent = \"base\", must be a link of this file"},
     {"<link name=\"tip\"/>", "<link name=\"upper\"/>",
      "x.urdf:17: link[upper], must not be given twice; the first is in line 4\nx.urdf:32: joint[tool].child "
      "= \"tip\", must be a link of this file"},
@@ -76,8 +75,7 @@ const WrongFile wrong_urdfs[] = {
     {"iyy=\"0.9\" iyz=\"0\" izz=\"0.9\"", "iyy=\"0.9\" izz=\"0.9\"",
      "x.urdf:8: link[upper].inertial.inertia.iyz, must be a number"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"2\" ixz=\"0\" iyy=\"0.9\"",
-     "x.urdf:8: link[upper].inertial.inertia = principal moments -1.54, 0.9, 2.54, must be positive "
-     "definite"},
+     "x.urdf:8: link[upper].inertial.inertia = principal moments -1.54, 0.9, 2.54, must be positive definite"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\"",
      "x.urdf:8: link[upper].inertial.inertia = principal moments 0.1, 0.1, 0.9, must satisfy the triangle "
      "inequality: none larger than the sum of the others"},
@@ -104,8 +102,7 @@ const WrongFile wrong_urdfs[] = {
     {"<child link=\"lower\"/>", "<child link=\"upper\"/>",
      "x.urdf:24: joint[elbow].child = \"upper\", must not be the parent"},
     {"<child link=\"tip\"/>", "<child link=\"upper\"/>",
-     "x.urdf:30: joint[tool].child = \"upper\", must not have a second parent: joint \"shoulder\" carries it "
-     "already"},
+     "x.urdf:30: joint[tool].child = \"upper\", must not have a second parent: joint \"shoulder\" carries it already"},
     {"<parent link=\"base\"/>", "<parent link=\"tip\"/>",
      "x.urdf:11: link[lower], must not be in a closed loop of joints"},
     {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>", "x.urdf:28: joint[elbow].axis = \"0 0 0\", must not be zero"},
@@ -120,8 +117,7 @@ const WrongFile wrong_urdfs[] = {
     {"<inertial>\n      <mass value=\"5\"/>\n      <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.3\" "
      "iyz=\"0\" izz=\"0.3\"/>\n    </inertial>",
      "",
-     "x.urdf: joint[elbow].child = \"lower\", must carry mass: neither this link nor any behind it has an "
-     "<inertial>"},
+     "x.urdf: joint[elbow].child = \"lower\", must carry mass: neither this link nor any behind it has an <inertial>"},
     {"  <joint name=\"tool\" type=\"fixed\">\n    <parent link=\"lower\"/>\n    <child link=\"tip\"/>\n    "
      "<origin xyz=\"0.7 0 0\"/>\n  </joint>\n",
      "", "x.urdf: robot = \"base\", \"tip\", must have one root link; these are carried by no joint"},
@@ -177,8 +173,7 @@ const WrongFile wrong_arms[] = {
     {"tip    = \"tip\"", "tip    = \"tip\"\nbase = { kind = \"floating\" }",
      "x.toml:6: base.kind = \"floating\", must be \"fixed\" or \"free\""},
     {"[[pose]]", "[[payload]]\nurdf = \"two_links.urdf\"\non = \"tip\"\n\n[[pose]]",
-     "x.toml:24: payload[1].urdf = \"two_links.urdf\", must not have a link \"base\": another file has it "
-     "already"},
+     "x.toml:24: payload[1].urdf = \"two_links.urdf\", must not have a link \"base\": another file has it already"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, WrongUrdf, testing::ValuesIn(wrong_urdfs));

@@ -95,11 +95,9 @@ TEST(ArmFile, JointsOfTheJemrmsAreThoseOfTable2) {
 TEST(ArmFile, ThePoseOfAUrdfIsRollPitchYaw) {
   // A link turned by 90 deg about z, then one metre along its own x.
   const std::string text =
-      "<robot name='r'><link name='a'/><link name='b'/>"
-      "<joint name='j' type='fixed'><parent link='a'/><child link='b'/><origin xyz='1 2 3' rpy='0 0 "
-      "1.5707963267948966'/></joint>"
-      "<link name='c'/><joint name='k' type='fixed'><parent link='b'/><child link='c'/><origin xyz='1 0 "
-      "0'/></joint></robot>";
+      "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/><child "
+      "link='b'/><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/></joint><link name='c'/><joint name='k' "
+      "type='fixed'><parent link='b'/><child link='c'/><origin xyz='1 0 0'/></joint></robot>";
   multibody::Tree tree;
   multibody::add_robot(tree, 0, multibody::RootJoint::fixed, multibody::parse_urdf("r.urdf", text));
   const Eigen::Vector3d p = tree.frame(tree.find_frame("c")).X_BF.p;

@@ -1,6 +1,7 @@
 #include "multibody/dynamics.hpp"
 #include "tests/multibody/plain_arm.hpp"
 #include "tests/support/derivatives.hpp"
+#include "validation/planar_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +100,7 @@ TEST(ElasticArm, FrequenciesOfAChainAreThoseOfTheMassMatrix) {
 }
 
 TEST(ElasticArm, UndampedEnergyStaysOverAHundredSeconds) {
-  auto run = test::scenario(test::chain_arm(3, Base::on_the_world, 400.0), Drive::locked(), 100.0, 1e-11);
+  auto run = validation::at_rest(test::chain_arm(3, Base::on_the_world, 400.0), Drive::locked(), 100.0, 1e-11);
   run.initial.q << 0.3, -0.2, 0.25;
   run.sample = 0.5;
   const auto history = multibody::simulate(run);
@@ -110,7 +111,7 @@ TEST(ElasticArm, UndampedEnergyStaysOverAHundredSeconds) {
 }
 
 TEST(ElasticArm, MomentumOfAFloatingArmStays) {
-  auto run = test::scenario(test::chain_arm(3, Base::floating, 400.0), Drive::limp(), 10.0, 1e-12);
+  auto run = validation::at_rest(test::chain_arm(3, Base::floating, 400.0), Drive::limp(), 10.0, 1e-12);
   run.initial.q.tail<3>() << 0.3, -0.2, 0.25;  // springs wound up
   run.initial.v << 0.1, -0.05, 0.2, 0.03, 0.02, -0.04, 0.5, -0.4, 0.3;
   run.sample = 0.1;
@@ -154,7 +155,7 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
   std::vector<double> differences;
   for (const double stiffness : {1e4, 1e5, 1e6}) {
     auto arm = test::chain_arm(3, Base::on_the_world, stiffness);
-    auto run = test::scenario(arm, Drive::limp(), end, 1e-9);
+    auto run = validation::at_rest(arm, Drive::limp(), end, 1e-9);
     for (int k = 0; k < 3; ++k) {  // a servo at its limit is a constant torque; a critical damper lets the gear settle
       const auto i = static_cast<std::size_t>(k);
       run.arm.joints[i].spring = multibody::DeflectionLaw::linear(stiffness, 2.0 * std::sqrt(2.0 * stiffness));

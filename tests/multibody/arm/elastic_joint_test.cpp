@@ -1,4 +1,5 @@
 #include "tests/multibody/plain_arm.hpp"
+#include "validation/planar_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -110,8 +111,8 @@ TEST(ElasticJoint, LoadBetweenTheTorquesOfAJumpRestsOnIt) {
   for (const double width : {0.0, 4e-5, 4e-4, 4e-3}) {
     const multibody::DeflectionLaw law(test::table2(1.0).pieces(), multibody::StiffnessReading::literal,
                                        multibody::DampingRate::deflection, width * degree);
-    auto run = test::scenario(test::one_joint(200.0, 1.0, law), Drive::locked(), 20.0, 1e-7);
-    run.tolerances.motion = 1e-12;
+    auto run = validation::at_rest(test::one_joint(200.0, 1.0, law), Drive::locked(), 20.0, 1e-7);
+    run.tolerances.coordinate = run.tolerances.rate = 1e-12;
     run.loads.push_back(
         {1, {{0.0, 0.0, 10.0}, Eigen::Vector3d::Zero()}, 0.0, 100.0, multibody::TimedLoad::Shape::constant});
     const auto history = multibody::simulate(run);
@@ -148,7 +149,7 @@ TEST(ElasticJoint, FrequenciesAreThoseOfTwoMasses) {
   EXPECT_NEAR(held[1].frequency, std::sqrt(half + std::sqrt(half * half - product)) / (2 * pi), 1e-12);
 
   // The same in time: the free pair swings at its own frequency.
-  auto run = test::scenario(arm, Drive::limp(), 5.0, 1e-9);
+  auto run = validation::at_rest(arm, Drive::limp(), 5.0, 1e-9);
   run.initial.motor[0] = 0.01;
   const auto history = multibody::simulate(run);
   ASSERT_TRUE(history.report.usable()) << history.report.message;
@@ -162,10 +163,10 @@ TEST(ElasticJoint, FrequenciesAreThoseOfTwoMasses) {
 TEST(ElasticJoint, PeriodFollowsTheAmplitudeOfThePiecewiseLaw) {
   const double degree = pi / 180.0, H = 5000.0;
   for (const double amplitude : {0.03, 0.041, 0.06, 0.1, 0.5}) {
-    auto run = test::scenario(test::one_joint(H, 1.0, test::table2(0.0)), Drive::locked(), 40.0, 1e-10);
+    auto run = validation::at_rest(test::one_joint(H, 1.0, test::table2(0.0)), Drive::locked(), 40.0, 1e-10);
     run.initial.q[0] = amplitude * degree;
     run.sample = 0.01;
-    run.tolerances.motion = 1e-13;  // of angles of 1e-3
+    run.tolerances.coordinate = run.tolerances.rate = 1e-13;  // of angles of 1e-3
     const auto history = multibody::simulate(run);
     ASSERT_TRUE(history.report.usable()) << history.report.message;
     const auto zeros = rising_zeros(history);
@@ -180,13 +181,13 @@ TEST(ElasticJoint, PeriodFollowsTheAmplitudeOfThePiecewiseLaw) {
 
 TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
   // Each crossing of 0.04 or 0.06 deg is one event and one restart, with the damping that jumps at both, and in the
-  // literal
-  // reading with a torque that jumps by 18.5 N m.
+  // literal reading with a torque that jumps by 18.5 N m.
   for (const auto reading : {multibody::StiffnessReading::continuous, multibody::StiffnessReading::literal}) {
     const double degree = pi / 180.0;
-    auto run = test::scenario(test::one_joint(20000.0, 1.0, test::table2(1.0, reading)), Drive::locked(), 60.0, 1e-7);
+    auto run =
+        validation::at_rest(test::one_joint(20000.0, 1.0, test::table2(1.0, reading)), Drive::locked(), 60.0, 1e-7);
     run.initial.q[0] = 0.5 * degree;
-    run.tolerances.motion = 1e-11;
+    run.tolerances.coordinate = run.tolerances.rate = 1e-11;
     const auto history = multibody::simulate(run);
     ASSERT_TRUE(history.report.usable()) << history.report.message;
     int crossings = 0;
@@ -207,8 +208,8 @@ TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
 
 TEST(ElasticJoint, BacklashLetsTheLinkFlyFreely) {
   const double gap = 0.01, speed = 0.02, H = 2.0, K = 50.0;
-  auto run = test::scenario(test::one_joint(H, 1.0, multibody::DeflectionLaw::backlash(gap, K, 0.0)), Drive::locked(),
-                            20.0, 1e-11);
+  auto run = validation::at_rest(test::one_joint(H, 1.0, multibody::DeflectionLaw::backlash(gap, K, 0.0)),
+                                 Drive::locked(), 20.0, 1e-11);
   run.initial.v[0] = speed;
   run.tolerances = {1e-13, 1e-13};  // of angles of 1e-2 and an energy of 4e-4 J
   const auto history = multibody::simulate(run);
@@ -226,7 +227,7 @@ TEST(ElasticJoint, DryFrictionStopsTheMotorAndKeepsIt) {
   const double B = 4.0, T = 3.0, w = 0.6;
   auto arm = test::one_joint(1.0, B, multibody::DeflectionLaw::linear(0.0, 0.0));
   arm.joints[0].friction = {T, T, 1e-3, 0.0};
-  auto run = test::scenario(arm, Drive::limp(), 10.0, 1e-9);
+  auto run = validation::at_rest(arm, Drive::limp(), 10.0, 1e-9);
   run.initial.motor_rate[0] = w;
   const auto history = multibody::simulate(run);
   ASSERT_TRUE(history.report.usable()) << history.report.message;
@@ -243,7 +244,7 @@ TEST(ElasticJoint, BackDriveTorqueHoldsALimpJointUntilTheLoadExceedsIt) {
   auto arm = test::one_joint(2.0, 4.0, multibody::DeflectionLaw::linear(K, 20.0));
   arm.joints[0].back_drive = back_drive;
   for (const double moment : {4.9, 20.0}) {
-    auto run = test::scenario(arm, Drive::limp(), 4.0, 1e-8);
+    auto run = validation::at_rest(arm, Drive::limp(), 4.0, 1e-8);
     // A constant moment on a spring swings to twice its static deflection, so 4.9 N m stays below 10 and 20 does not.
     run.loads.push_back(
         {1, {{0.0, 0.0, moment}, Eigen::Vector3d::Zero()}, 0.5, 100.0, multibody::TimedLoad::Shape::constant});
@@ -263,7 +264,7 @@ TEST(ElasticJoint, ServoAtItsLimitPushesWithTheLimit) {
   // Rigidly geared: 2 + 4 kg m^2 under the limit of 3 N m accelerate with 0.5 rad/s^2, while the course is far away.
   auto arm = test::one_joint(2.0, 4.0, multibody::DeflectionLaw::linear(1e5, 1e3));
   Drive drive = Drive::holding(100.0, 50.0, 20.0, 3.0);
-  auto run = test::scenario(arm, drive, 4.0, 1e-8);
+  auto run = validation::at_rest(arm, drive, 4.0, 1e-8);
   const auto history = multibody::simulate(run);
   ASSERT_TRUE(history.report.usable()) << history.report.message;
   EXPECT_NEAR(history.samples.back().drive_torque[0], 3.0, 1e-12);
@@ -274,7 +275,7 @@ TEST(ElasticJoint, ServoAtItsLimitPushesWithTheLimit) {
 
 TEST(ElasticJoint, DrivesSwitchAtATimeOrATorque) {
   auto arm = test::one_joint(2.0, 4.0, multibody::DeflectionLaw::linear(1000.0, 10.0));
-  auto run = test::scenario(arm, Drive::locked(), 3.0, 1e-8);
+  auto run = validation::at_rest(arm, Drive::locked(), 3.0, 1e-8);
   run.initial.v[0] = 0.1;
   run.tolerances = {1e-11, 1e-11};  // the energy is 0.01 J
   multibody::DriveSwitch to_limp;

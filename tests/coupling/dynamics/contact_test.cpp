@@ -1,10 +1,11 @@
-// Several points of contact, shapes of every kind in motion, and touches that no step may pass by.
+// Where a wire touches, shapes of every kind in motion, and touches that no step may pass by.
 
-#include "coupling/dynamics/contact_points.hpp"
 #include "base/errors.hpp"
-#include "coupling/contact/complementarity.hpp"
+#include "coupling/contact/curve.hpp"
 #include "coupling/contact/mesh_shape.hpp"
-#include "coupling/contact/revolved_shape.hpp"
+#include "coupling/contact/revolved_solids.hpp"
+#include "coupling/dynamics/contact_part.hpp"
+#include "coupling/dynamics/simulate.hpp"
 #include "tests/support/mesh_files.hpp"
 #include "tests/support/soft_wire.hpp"
 
@@ -22,7 +23,6 @@ namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::body_below;
@@ -35,97 +35,86 @@ Matrix3d along_the_wire() {
   return AngleAxisd(0.5 * pi, Vector3d::UnitY()).toRotationMatrix();
 }
 
-TEST(ComplementaryImpulses, AreTheOneThatEveryChoiceOfContactsConfirms) {
-  std::mt19937 random(23);
-  std::normal_distribution<double> normal;
-  for (int trial = 0; trial < 200; ++trial) {
-    const Eigen::Index n = 1 + trial % 5;
-    MatrixXd root(n, n + 2);
-    for (double& x : root.reshaped()) x = normal(random);
-    const MatrixXd a = root * root.transpose();
-    VectorXd b(n);
-    for (double& x : b) x = normal(random);
-    const VectorXd p = complementary_impulses(a, b, VectorXd::Zero(b.size()));
-    // Enumeration: the only choice of pushing contacts that is right everywhere.
-    int right = 0;
-    for (int choice = 0; choice < (1 << n); ++choice) {
-      MatrixXd system = MatrixXd::Identity(n, n);
-      VectorXd rhs = VectorXd::Zero(n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if ((choice >> i) % 2 == 0) continue;
-        system.row(i) = a.row(i);
-        rhs[i] = -b[i];
-      }
-      const VectorXd q = system.partialPivLu().solve(rhs);
-      if (q.minCoeff() < -1e-12 || (a * q + b).minCoeff() < -1e-10) continue;
-      ++right;
-      EXPECT_LT((p - q).norm(), 1e-9 * (1.0 + q.norm()));
-    }
-    EXPECT_EQ(right, 1);
-  }
-  // Two contacts at one place: each bears half.
-  const VectorXd shared = complementary_impulses(MatrixXd::Ones(2, 2), VectorXd::Constant(2, -3.0), VectorXd::Zero(2));
-  EXPECT_LT((shared - VectorXd::Constant(2, 1.5)).norm(), 1e-12);
-}
-
-TEST(BezierWire, BoxesHoldTheCurveAndMinimaAreThoseOfASampledWire) {
+// A wire in waves that dips into a long capsule below it more than once: nearest point and force against dense sampling.
+TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   wire::RodInMotion constants = soft_wire(12);
   constants.grading = 1.0;
-  Motion motion = body_below(constants, std::make_shared<Ball>(0.01), {0.07, -0.012, 0.002}, 0.0, 1.0);
-  // A wire in waves dips towards a long capsule below it more than once.
-  motion.contacts[0].shape = std::make_shared<Capsule>(0.003, 0.2);
-  motion.contacts[0].X_BS.R = along_the_wire();
-  motion.contacts[0].X_BS.p = {0.03, 0.0, 0.0};
+  Motion motion = body_below(constants, std::make_shared<Capsule>(0.003, 0.2), {0.07, -0.0045, 0.002}, 0.0, 1.0);
+  MotionContact& contact = motion.contacts[0];
+  contact.X_BS.R = along_the_wire();
+  contact.X_BS.p = {0.03, 0.0, 0.0};
+  contact.foundation.modulus = 1e9;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (Eigen::Index i = 1; i < 12; ++i)
     motion.wires[0].positions.col(i) += 4e-3 * Vector3d(unit(random), unit(random), unit(random));
-  const MotionOptions options;
   wire::RodPart rod("wire", constants, {});
-  BodyPart body(motion.bodies[0], Vector3d::Zero(), options);
-  numerics::DaeSystem system({&rod, &body});
+  BodyPart body(motion.bodies[0], Vector3d::Zero(), {});
+  ContactPart part(contact, contact.shape, rod, body);
+  numerics::DaeSystem system({&rod, &body, &part});
   VectorXd y = VectorXd::Zero(system.size());
   rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, 13), y);
   body.place(y);
-  const ContactSearch search(motion.contacts[0], rod, body, 1e-7);
-  const auto gap = [&](double s) {
+  part.look_around(y);
+  const auto gap = [&](double s, Vector3d& normal) {
     const CurveWeights w = curve_weights(rod, s);
     Vector3d x = Vector3d::Zero();
     for (int k = 0; k < 4; ++k) x += w.value[k] * y.segment<3>(rod.position_of(w.first + k));
-    const Vector3d in_shape = along_the_wire().transpose() * (x - Vector3d(0.1, -0.012, 0.002));
-    return motion.contacts[0].shape->distance(in_shape) - 0.001;
+    const DistanceField field = contact.shape->at(along_the_wire().transpose() * (x - Vector3d(0.1, -0.0045, 0.002)));
+    normal = along_the_wire() * field.normal;
+    return field.distance - 0.001;
   };
-  constexpr int samples = 20000;
-  std::vector<double> sampled;
+  constexpr int samples = 200000;
   double least = 1e9;
-  for (int k = 1; k < samples; ++k) {
-    const double s = 0.2 * k / samples;
-    least = std::min(least, gap(s));
-    if (gap(s) < gap(s - 1e-5) && gap(s) <= gap(s + 1e-5)) sampled.push_back(s);
+  int stretches = 0;
+  bool inside = false;
+  Vector3d force = Vector3d::Zero();
+  for (int k = 0; k < samples; ++k) {
+    Vector3d normal;
+    const double g = gap(0.2 * (k + 0.5) / samples, normal);
+    least = std::min(least, g);
+    if (g < 0.0 && !inside) ++stretches;
+    inside = g < 0.0;
+    force += 0.2 / samples * contact.foundation.load(g, 0.0)[0] * normal;
   }
-  const std::vector<GapMinimum> found = search.minima(y, 1.0);
-  std::vector<GapMinimum> inner;
-  for (const GapMinimum& m : found) {
-    if (m.coordinate > 0.0 && m.coordinate < 0.2) inner.push_back(m);
-  }
-  ASSERT_GE(inner.size(), 2u);
-  ASSERT_EQ(inner.size(), sampled.size());
-  for (std::size_t k = 0; k < inner.size(); ++k) {
-    EXPECT_NEAR(inner[k].coordinate, sampled[k], 1.1e-5);  // a sample beside
-    EXPECT_NEAR(inner[k].gap, gap(inner[k].coordinate), 1e-15);
-  }
-  EXPECT_NEAR(search.nearest(y).gap, least, 1e-9);
-  EXPECT_LE(search.clearance(y), least);
-  EXPECT_GT(search.clearance(y), least - 0.02);  // an element and its hull
-  // A reach leaves out what is farther, and nothing else.
-  std::size_t below = 0;
-  for (const GapMinimum& m : found) below += m.gap < least + 2e-3 ? 1 : 0;
-  EXPECT_EQ(search.minima(y, least + 2e-3).size(), below);
+  ASSERT_GE(stretches, 2);
+  EXPECT_NEAR(part.search().nearest(y).gap, least, 1e-8);
+  EXPECT_EQ(part.samples(y).size(), static_cast<std::size_t>(stretches));
+  // Gauss's rule on deep stretches of many millimetres; contacts are micrometres deep.
+  EXPECT_LT((part.sums(y).force - force).norm(), 0.02 * force.norm());
 }
+
+// A wire that crosses a rounded edge meets F = 4/3 k sqrt(2/c) d^(3/2), c = 1/(R + r).                  theory.md (M.8)
+TEST(ContactPart, AStraightWireAcrossAPinMeetsTheForceOfItsDepth) {
+  constexpr double radius = 0.006, wire_radius = 0.001;
+  for (const double depth : {1e-8, 1e-7, 1e-6}) {
+    for (const double place : {0.1, 0.1003, 0.1049}) {
+      Motion motion = body_below(soft_wire(20), std::make_shared<EndlessCylinder>(radius),
+                                 {place, -radius - wire_radius + depth, 0.0}, 0.0, 1.0);
+      MotionContact& contact = motion.contacts[0];
+      contact.foundation.modulus = 5e12;
+      wire::RodPart rod("wire", motion.wires[0].rod, {});
+      BodyPart body(motion.bodies[0], Vector3d::Zero(), {});
+      ContactPart part(contact, contact.shape, rod, body);
+      numerics::DaeSystem system({&rod, &body, &part});
+      VectorXd y = VectorXd::Zero(system.size());
+      rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, 21), y);
+      body.place(y);
+      part.look_around(y);
+      const double expected =
+          4.0 / 3.0 * contact.foundation.modulus * std::sqrt(2.0 * (radius + wire_radius)) * depth * std::sqrt(depth);
+      EXPECT_NEAR(part.sums(y).force.y(), expected, 2e-4 * expected) << depth << ' ' << place;
+    }
+  }
+}
+
+/// A foundation on which newtons leave no trace of a micrometre [N/m^2].
+constexpr double stiff = 1e12;
 
 /// Peak force and impulse of 50 g at 0.3 m/s.
 MotionResult impact(std::shared_ptr<const ContactShape> shape, const Matrix3d& turn, double reach) {
   Motion motion = body_below(soft_wire(16), std::move(shape), {0.0937, -reach - 0.0011, 0.0}, 0.3, 0.05);
+  motion.contacts[0].foundation.modulus = stiff;
   motion.contacts[0].X_BS.R = turn;
   MotionOptions options;
   options.duration = 0.06;
@@ -159,10 +148,10 @@ TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
 TEST(MotionPoints, TwoRimsBearHalfEach) {
   // An hourglass along the wire: its two rims touch at once.
   const auto hourglass = std::make_shared<RevolvedShape>(
-      -0.02,
-      std::vector<ProfilePiece>{{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}});
+      Profile({0.0, -0.02}, {{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}}));
   Motion motion = body_below(soft_wire(20), hourglass, {0.1, -0.012, 0.0}, 0.3, 0.05);
   motion.contacts[0].X_BS.R = along_the_wire();
+  motion.contacts[0].foundation.modulus = stiff;
   MotionOptions options;
   options.duration = 0.01;
   options.relative_tolerance = 1e-7;
@@ -189,16 +178,9 @@ TEST(MotionPoints, TwoRimsBearHalfEach) {
   EXPECT_LT(uneven, 1e-3);  // the integrator's tolerances, amplified by the wire's axial modes
   EXPECT_LT(turned, 1e-3);
   ASSERT_GE(result.events.size(), 2u);
-  EXPECT_EQ(result.events[0].time, result.events[1].time);
   EXPECT_NE(result.events[0].point, result.events[1].point);
-  EXPECT_NEAR(result.events[0].time, 1e-3 / 0.3, 1e-9);
+  EXPECT_NEAR(result.events[0].time, 1e-3 / 0.3, 1e-6);
   EXPECT_LT(result.largest_penetration, 1e-6);
-
-  // With room for one point only the second touch stops the run and says so.
-  motion.contacts[0].points = 1;
-  const MotionResult refused = simulate(motion, options);
-  EXPECT_FALSE(refused.report.usable());
-  EXPECT_THAT(refused.report.message, testing::HasSubstr("contact: the wire touches at more than 1 points"));
 }
 
 TEST(MotionPoints, SeveralShapesOnSeveralBodiesTouchTogether) {
@@ -238,7 +220,7 @@ TEST(MotionPoints, SeveralShapesOnSeveralBodiesTouchTogether) {
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   ASSERT_GE(result.events.size(), 3u);
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(result.events[static_cast<std::size_t>(k)].time, 1e-3 / 0.3, 1e-9);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(result.events[static_cast<std::size_t>(k)].time, 1e-3 / 0.3, 1e-6);
   EXPECT_EQ(result.events[0].contact + result.events[1].contact + result.events[2].contact, 3);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(result.peak_force[k], 0.05);
   EXPECT_EQ(result.peak_force[3], 0.0);
@@ -249,6 +231,7 @@ TEST(MotionPoints, NowhereInsideAThinPinThatTheWireWraps) {
   // A pin thinner than the wire's elements pushes a V into it: no vertex and nothing between comes inside.
   const auto pin = std::make_shared<EndlessCylinder>(0.002);
   Motion motion = body_below(soft_wire(20), pin, {0.0987, -0.0035, 0.0}, 0.6, 0.05);
+  motion.contacts[0].foundation.modulus = stiff;
   MotionOptions options;
   options.duration = 0.03;
   double deepest = 1.0;
@@ -282,7 +265,7 @@ TEST(MotionPoints, AnOverlapAtTheStartIsRefused) {
   EXPECT_THROW((void)simulate(edge, {}), base::InputError);
 }
 
-/// First touch of a pin that is moved across the wire; the run stops there.
+/// A pin that is moved across the wire, until just after it touches.
 MotionResult touch_of(double radius, double speed, double swing, double max_step) {
   wire::RodInMotion rod = soft_wire(12);
   Motion motion =
@@ -293,10 +276,9 @@ MotionResult touch_of(double radius, double speed, double swing, double max_step
   for (Eigen::Index i = 1; i < 12; ++i) velocities(1, i) = swing * std::sin(pi * static_cast<double>(i) / 12.0);
   motion.wires[0].velocities = velocities;
   MotionOptions options;
-  options.duration = 3.0 * (radius + 0.0011) / speed;
+  options.duration = 1.05e-3 / speed;
   options.output_interval = options.duration;
   options.max_step = max_step;
-  options.max_events = 0;
   return simulate(motion, options);
 }
 
@@ -304,11 +286,10 @@ TEST(NoTunnelling, EveryPinTouchesAtItsTime) {
   for (const double radius : {1e-4, 7e-4, 5e-3}) {
     for (const double speed : {0.05, 0.5, 5.0, 50.0}) {
       const MotionResult r = touch_of(radius, speed, 0.0, 1e9);
-      ASSERT_EQ(r.events.size(), 1u) << radius << ' ' << speed;
-      // The wire rests: the way of 1 mm at a constant speed, noticed 1e-11 m deep.
-      EXPECT_NEAR(r.events[0].time, 1e-3 / speed, 1.1e-11 / speed + 1e-14) << radius << ' ' << speed;
+      ASSERT_GE(r.events.size(), 1u) << radius << ' ' << speed;
+      // The wire rests: the way of 1 mm at a constant speed.
+      EXPECT_NEAR(r.events[0].time, 1e-3 / speed, 1e-8 / speed) << radius << ' ' << speed;
       EXPECT_NEAR(r.events[0].approach_speed, speed, 1e-9 * speed);
-      EXPECT_LT(r.statistics.steps, 60) << radius << ' ' << speed;  // no step was cut for it
     }
   }
 }
@@ -319,8 +300,8 @@ TEST(NoTunnelling, AgreesWithSmallStepsOnAWireThatSwings) {
       const double swing = -0.3 * speed;  // towards the pin
       const MotionResult r = touch_of(radius, speed, swing, 1e9);
       const MotionResult small = touch_of(radius, speed, swing, 0.02 * (radius + 1e-4) / speed);
-      ASSERT_EQ(r.events.size(), 1u) << radius << ' ' << speed << r.report.message;
-      ASSERT_EQ(small.events.size(), 1u);
+      ASSERT_GE(r.events.size(), 1u) << radius << ' ' << speed << r.report.message;
+      ASSERT_GE(small.events.size(), 1u);
       // Positions carry the tolerance of 1e-7 m a step over some tens of steps.
       EXPECT_NEAR(r.events[0].time, small.events[0].time, 5e-6 / speed) << radius << ' ' << speed;
     }

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "wire/rod_part.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace snare::coupling {
+
+/// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex hull of its
+/// four control points, and so does every derivative by time in the hull of theirs.          theory.md (G.6)
+class BezierWire {
+ public:
+  using Control = Eigen::Matrix<double, 3, 4>;
+
+  /// The rod stays the caller's; where its unknowns are is asked when they are wanted.
+  explicit BezierWire(const wire::RodPart& rod);
+
+  [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
+  /// Control points of an element, from positions [m] or any derivative of them by time, in the layout of the unknowns.
+  [[nodiscard]] Control control(int element, const numerics::VectorView& y) const;
+  [[nodiscard]] double begin(int element) const { return piece(element).begin; }    ///< [m]
+  [[nodiscard]] double length(int element) const { return piece(element).length; }  ///< [m]
+  [[nodiscard]] double longest() const { return longest_; }                         ///< element [m]
+  [[nodiscard]] double shortest() const { return shortest_; }                       ///< element [m]
+  /// Largest sum of the moduli of a control point's weights: bounds control points by vertices.
+  [[nodiscard]] double largest_weight_sum() const { return largest_weight_sum_; }
+  /// The element that holds a material coordinate [m]; the last one beyond the end.
+  [[nodiscard]] int element_at(double coordinate) const;
+  /// First of the four vertices on which an element depends.
+  [[nodiscard]] int first_vertex(int element) const { return piece(element).first; }
+  /// Weights of these vertices in X at u, 0 to 1 along the element, and in X' [1/m] (M.6).
+  [[nodiscard]] Eigen::Vector4d value(int element, double u) const;
+  [[nodiscard]] Eigen::Vector4d slope(int element, double u) const;
+
+ private:
+  struct Piece {
+    double begin = 0.0, length = 0.0;
+    int first = 0;            // of four vertices
+    Eigen::Matrix4d weights;  // of vertices (rows) in control points (columns)
+  };
+  [[nodiscard]] const Piece& piece(int element) const { return pieces_[static_cast<std::size_t>(element)]; }
+
+  std::vector<Piece> pieces_;
+  const wire::RodPart& rod_;
+  double longest_ = 0.0, shortest_ = 0.0;
+  double largest_weight_sum_ = 1.0;
+};
+
+/// Bernstein's cubics at u and their derivatives by u.
+[[nodiscard]] Eigen::Vector4d bernstein(double u);
+[[nodiscard]] Eigen::Vector4d bernstein_slope(double u);
+
+}  // namespace snare::coupling

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "coupling/dynamics/contact_part.hpp"
+
+#include <deque>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace snare::coupling {
+
+/// A shape on a wire: its convex pieces, and what happens where they touch.
+class ContactGroup {
+ public:
+  ContactGroup(const MotionContact& contact, const wire::RodPart& rod, const BodyPart& body);
+
+  [[nodiscard]] std::deque<ContactPart>& pieces() { return pieces_; }
+  [[nodiscard]] const std::deque<ContactPart>& pieces() const { return pieces_; }
+
+  /// Of all pieces.
+  [[nodiscard]] ContactPart::Sums sums(const numerics::VectorView& y) const;
+  [[nodiscard]] double longest_step() const;
+  [[nodiscard]] NearestPoint nearest(const numerics::VectorView& y) const;
+  /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest point.
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
+  /// The same of closed stretches alone: without a search.
+  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
+
+  /// What has happened since the last state told: `contact` of the events is left at 0. The sample is that of y at `time`, `before`
+  /// an earlier state.
+  [[nodiscard]] std::vector<MotionEvent> observe(double time, const ContactSample& sample,
+                                                 const numerics::VectorView& y, double time_before,
+                                                 const numerics::VectorView& before);
+  /// What is known of the last state beside the unknowns: see DaePart.
+  void save_state(std::vector<double>& memory) const;
+  void restore_state(std::span<const double>& memory);
+
+ private:
+  /// A stretch in contact, followed from state to state.
+  struct Touching {
+    double arc = 0.0;
+    int point = 0;
+    bool sticking = false;
+  };
+  [[nodiscard]] int free_point() const;
+  /// Gap and its rate at a material coordinate, of the nearest piece.
+  [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
+
+  const wire::RodPart& rod_;
+  std::deque<ContactPart> pieces_;
+  std::vector<Touching> touching_;
+};
+
+}  // namespace snare::coupling

@@ -1,0 +1,63 @@
+#include "coupling/dynamics/strength.hpp"
+
+#include "base/index.hpp"
+#include "wire/rod_part.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace snare::coupling {
+
+using Eigen::Vector3d;
+using numerics::DaePoint;
+
+WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_tension, bool ends_run) {
+  const double d = wire.diameter;
+  const bool solid = wire.construction == wire::Construction::solid;
+  return {breaking_tension, solid ? wire.youngs_modulus * std::numbers::pi * d * d * d / 8.0 : 0.0, ends_run};
+}
+
+// Tension of the edges with their damping, moments of the vertices without: at a vertex the larger of the tensions beside it.
+StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const DaePoint& at) {
+  const wire::SpatialState& state = rod.state_at(at);
+  const wire::RodModel& model = rod.model();
+  const double stiffness = model.properties().axial_stiffness;
+  Eigen::VectorXd tensions = rod.rod().tensions(state);
+  std::vector<Vector3d> tangents;
+  for (int e = 0; e < model.edges(); ++e) {
+    tangents.push_back((vertex(state, e + 1) - vertex(state, e)).normalized());
+    const Vector3d rate = at.y.segment<3>(rod.velocity_of(e + 1)) - at.y.segment<3>(rod.velocity_of(e));
+    tensions[e] += stiffness * model.damping().axial_time * tangents.back().dot(rate) / model.rest_length(e);
+  }
+  const Eigen::Matrix3Xd moments = rod.rod().moments(state);
+  StrengthUse largest;
+  largest.time = at.time;
+  for (int i = 0; i < rod.vertices(); ++i) {
+    const int before = std::max(i - 1, 0);
+    const int after = std::min(i, model.edges() - 1);
+    const Vector3d along = (tangents[base::at(before)] + tangents[base::at(after)]).normalized();
+    const Vector3d bending_moment = moments.col(i) - along * along.dot(moments.col(i));
+    const double tension = std::max(tensions[before], tensions[after]);
+    const double bending = strength.bending_force * bending_moment.norm() / model.properties().bending_stiffness;
+    const double share = (tension + bending) / strength.breaking_tension;
+    if (share > largest.share) largest = {share, tension, bending, rod.coordinate(i), at.time};
+  }
+  return largest;
+}
+
+std::optional<std::string> watch_strength(const WireStrength& strength, wire::RodPart& rod, const DaePoint& at,
+                                          StrengthUse& largest) {
+  if (!std::isfinite(strength.breaking_tension)) return std::nullopt;
+  const StrengthUse use = strength_use(strength, rod, at);
+  if (use.share > largest.share) largest = use;
+  if (use.share < 1.0 || !strength.ends_run) return std::nullopt;
+  return fmt::format(
+      " reaches its strength of {:.6g} N at {:.9g} s, {:.6g} m along it: tension {:.6g} N, bending as much as {:.6g} N",
+      strength.breaking_tension, at.time, use.arc, use.tension, use.bending);
+}
+
+}  // namespace snare::coupling

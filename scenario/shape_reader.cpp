@@ -1,0 +1,152 @@
+#include "scenario/shape_reader.hpp"
+
+#include "base/archive.hpp"
+#include "base/units.hpp"
+#include "coupling/contact/mesh_shape.hpp"
+#include "coupling/contact/revolved_solids.hpp"
+#include "scenario/motion_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace snare::scenario {
+
+using base::Choice;
+using base::Range;
+using base::TomlTable;
+
+namespace {
+
+using base::mm;
+constexpr double far = farthest_mm;
+
+enum class ShapeKind { knife_edge, cylinder, sphere, capsule, cone, grapple_shaft, ring, cup, plane, revolved, mesh };
+
+// The document is told what a maker of shapes finds wrong.
+template <class Make>
+std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::string_view key, const Make& make) {
+  try {
+    return make();
+  } catch (const base::InputError& error) {
+    for (const base::InputProblem& p : error.problems())
+      table.fail(key, p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
+  }
+  return nullptr;
+}
+
+// A polygon in the half plane (radius, height), its corners rounded.
+std::shared_ptr<const coupling::ContactShape> read_revolved(const TomlTable& table) {
+  constexpr std::size_t most_corners = 1000;
+  const std::vector<double> radius = table.numbers("radius_mm", 3, most_corners, Range::from(0.0, far), mm);
+  const std::size_t n = radius.size();
+  if (n == 0) return nullptr;
+  const std::vector<double> height = table.numbers("height_mm", n, n, Range::from(-far, far), mm);
+  std::vector<double> rounding(n, 0.0);
+  if (table.has("rounding_mm")) rounding = table.numbers("rounding_mm", n, n, Range::from(0.0, far), mm);
+  if (height.size() != n || rounding.size() != n) return nullptr;
+  std::vector<Eigen::Vector2d> corners;
+  for (std::size_t k = 0; k < n; ++k) corners.emplace_back(radius[k], height[k]);
+  return made(table, "kind",
+              [&] { return std::make_shared<coupling::RevolvedShape>(coupling::rounded_profile(corners, rounding)); });
+}
+
+}  // namespace
+
+std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder,
+                                                         std::string& meshes) {
+  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
+                                                {"cylinder", ShapeKind::cylinder},
+                                                {"sphere", ShapeKind::sphere},
+                                                {"capsule", ShapeKind::capsule},
+                                                {"cone", ShapeKind::cone},
+                                                {"grapple_shaft", ShapeKind::grapple_shaft},
+                                                {"ring", ShapeKind::ring},
+                                                {"cup", ShapeKind::cup},
+                                                {"plane", ShapeKind::plane},
+                                                {"revolved", ShapeKind::revolved},
+                                                {"mesh", ShapeKind::mesh}};
+  const Range size = Range::above(0.0, far);
+  const Range from_zero = Range::from(0.0, far);
+  const auto kind = table.choice("kind", kinds);
+  if (!kind) return nullptr;
+  switch (*kind) {
+    case ShapeKind::knife_edge:
+      return std::make_shared<coupling::Capsule>(0.0, table.number("length_mm", size, mm));
+    case ShapeKind::sphere:
+      return std::make_shared<coupling::Ball>(table.number("radius_mm", size, mm));
+    case ShapeKind::capsule: {
+      const double radius = table.number("radius_mm", size, mm);
+      return std::make_shared<coupling::Capsule>(radius, table.number("length_mm", size, mm));
+    }
+    case ShapeKind::cylinder: {
+      const double radius = table.number("radius_mm", size, mm);
+      const double length = table.number("length_mm", size, mm);
+      if (!(radius > 0.0 && length > 0.0)) return nullptr;  // reported
+      return coupling::finite_cylinder(radius, length);
+    }
+    case ShapeKind::cone: {
+      const double lower = table.number("lower_radius_mm", from_zero, mm);
+      const double upper = table.number("upper_radius_mm", from_zero, mm);
+      const double length = table.number("length_mm", size, mm);
+      if (lower == 0.0 && upper == 0.0) table.fail("upper_radius_mm", "must be > 0 where lower_radius_mm is 0");
+      if (!(std::max(lower, upper) > 0.0 && lower >= 0.0 && upper >= 0.0 && length > 0.0)) return nullptr;
+      return coupling::truncated_cone(lower, upper, length);
+    }
+    case ShapeKind::grapple_shaft: {
+      coupling::GrappleShaft s;
+      s.shaft_radius = table.number_or("shaft_radius_mm", s.shaft_radius, size, mm);
+      s.shaft_length = table.number_or("shaft_length_mm", s.shaft_length, size, mm);
+      s.cam_radius = table.number_or("cam_radius_mm", s.cam_radius, size, mm);
+      s.underside_length = table.number_or("underside_length_mm", s.underside_length, from_zero, mm);
+      s.cam_length = table.number_or("cam_length_mm", s.cam_length, size, mm);
+      s.end_radius = table.number_or("end_radius_mm", s.end_radius, size, mm);
+      s.bulge = table.number_or("bulge_mm", s.bulge, from_zero, mm);
+      return made(table, "kind", [&s] { return grapple_shaft(s); });
+    }
+    case ShapeKind::ring: {
+      const double inner = table.number("inner_radius_mm", size, mm);
+      const double outer = table.number("outer_radius_mm", size, mm);
+      const double length = table.number("length_mm", size, mm);
+      const double rounding = table.number_or("rounding_mm", 0.0, from_zero, mm);
+      if (!std::isfinite(inner + outer + length + rounding)) return nullptr;
+      return made(table, "kind", [&] { return coupling::hollow_cylinder(inner, outer, length, rounding); });
+    }
+    case ShapeKind::cup: {
+      coupling::Cup c;
+      c.inner_radius = table.number("inner_radius_mm", size, mm);
+      c.depth = table.number("depth_mm", size, mm);
+      c.thickness = table.number("thickness_mm", size, mm);
+      c.rounding = table.number_or("rounding_mm", 0.0, from_zero, mm);
+      c.fillet = table.number_or("fillet_mm", 0.0, from_zero, mm);
+      if (!std::isfinite(c.inner_radius + c.depth + c.thickness + c.rounding + c.fillet)) return nullptr;
+      return made(table, "kind", [&] { return coupling::cup(c); });
+    }
+    case ShapeKind::plane:
+      return std::make_shared<coupling::HalfSpace>(0.5 * table.number_or("drawn_mm", 100.0 * mm, size, mm));
+    case ShapeKind::revolved:
+      return read_revolved(table);
+    case ShapeKind::mesh: {
+      static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
+      const std::string name = table.text("file");
+      const auto unit = table.choice("unit", units);
+      if (name.empty() || !unit) return nullptr;
+      return made(table, "file", [&] {
+        coupling::TriangleMesh mesh = coupling::read_triangle_mesh(folder / name, *unit);
+        base::ByteWriter bytes;
+        bytes(mesh.points);
+        for (std::array<int, 3>& triangle : mesh.triangles) {
+          for (int& corner : triangle) bytes(corner);
+        }
+        meshes += fmt::format("{:x};", base::fingerprint(bytes.bytes()));
+        return std::make_shared<coupling::MeshShape>(mesh);
+      });
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace snare::scenario

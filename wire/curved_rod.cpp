@@ -1,0 +1,208 @@
+#include "wire/curved_rod.hpp"
+
+#include "wire/vertex_turning.hpp"
+
+#include <optional>
+
+namespace snare::wire {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using numerics::DaePoint;
+
+namespace {
+
+constexpr int block = RodModel::block;
+
+Vector2d stiffness_of(const RodModel& model) {
+  return {model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+}
+
+Vector2d curvature_at(const RodModel& model, const DaePoint& at, int i) {
+  return at.y.segment<2>(model.curvature_of(i));
+}
+
+/// w_j = EI_j (k_j - n_j) [N m].
+Vector2d moment_at(const RodModel& model, const DaePoint& at, int i) {
+  return stiffness_of(model).cwiseProduct(curvature_at(model, at, i) - model.properties().natural_curvature);
+}
+
+/// 1/k_mount of the mount at vertex i [rad/(N m)]; 0 elsewhere.
+double flexibility_at(const RodModel& model, int i) {
+  const std::optional<End> end = model.end_of(i);
+  return end ? 1.0 / model.properties().end(*end).rotational_stiffness : 0.0;
+}
+
+struct Edge {
+  Vector3d tangent;
+  double chord;
+  EdgeBeam beam;
+};
+
+Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
+  const Vector3d d = vertex(instant.state, e + 1) - vertex(instant.state, e);
+  const double chord = d.norm();
+  const EdgeBeamConstants constants{model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)};
+  return {d / chord, chord, edge_beam(constants, chord, near, far)};
+}
+
+Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e) {
+  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e);
+}
+
+}  // namespace
+
+void add_curved_edges(const RodModel& model, const RodInstant& instant, const DaePoint& at, RodAssembly& out,
+                      Matrix2Xd& by_curvature) {
+  const int n = model.edges();
+  const Vector2d& natural = model.properties().natural_curvature;
+  const double bent = 0.5 * stiffness_of(model).dot(natural.cwiseAbs2());
+  by_curvature.setZero(2, n + 1);
+  for (int e = 0; e < n; ++e) {
+    const Edge edge = edge_of(model, instant, at, e);
+    const Vector3d force = edge.beam.tension * edge.tangent;
+    out.energy += edge.beam.energy + bent * model.rest_length(e);
+    out.gradient.segment<3>(block * e) -= force;
+    out.gradient.segment<3>(block * (e + 1)) += force;
+    by_curvature.col(e) += edge.beam.gradient.segment<2>(EdgeBeam::near);
+    by_curvature.col(e + 1) += edge.beam.gradient.segment<2>(EdgeBeam::far);
+  }
+  for (const int i : {0, n}) {
+    if (!BendingCell::exists(model, i)) by_curvature.col(i) = curvature_at(model, at, i) - natural;
+  }
+}
+
+void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at, RodAssembly& out,
+                       Matrix2Xd& by_curvature) {
+  const VertexTurning turning(cell);
+  const Vector2d moment = moment_at(model, at, i);
+  const double flexibility = flexibility_at(model, i);
+  out.energy += moment.dot(turning.angles()) - 0.5 * flexibility * moment.squaredNorm();
+  by_curvature.col(i) += stiffness_of(model).cwiseProduct(turning.angles() - flexibility * moment);
+  add_to_bands(model, i, turning.gradient(moment), 1.0, out.gradient);
+}
+
+// Second derivatives: of an edge H_ll t t^T + N (I - t t^T)/l by its vector and H_lk t by its curvatures, of a vertex
+// d2(w.phi) by its cell and EI_j dphi_j by its curvatures.
+void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const DaePoint& at, const RodSlots& slots,
+                         std::vector<double>& values) {
+  const int n = model.edges();
+  const Vector2d stiffness = stiffness_of(model);
+  using Coupling = RodSlots::CurvatureColumns;  // of a vertex's cell by its curvatures
+  std::vector<Coupling> coupling(base::at(n + 1), Coupling::Zero());
+  std::vector<Eigen::Matrix2d> own(base::at(n + 1), Eigen::Matrix2d::Zero());
+  for (int e = 0; e < n; ++e) {
+    const Edge edge = edge_of(model, instant, at, e);
+    const auto& h = edge.beam.hessian;
+    const double lateral = edge.beam.tension / edge.chord;
+    const Matrix3d along = edge.tangent * edge.tangent.transpose();
+    const Matrix3d by_edge = (h(EdgeBeam::chord, EdgeBeam::chord) - lateral) * along + lateral * Matrix3d::Identity();
+    for (const int row : {0, 1}) {
+      for (const int column : {0, 1}) {
+        slots.add_places(block * (e + row), block * (e + column), row == column ? by_edge : Matrix3d(-by_edge), values);
+      }
+    }
+    const Eigen::Matrix<double, 3, 4> by_ends = edge.tangent * h.row(EdgeBeam::chord).tail<4>();
+    Coupling& near = coupling[base::at(e)];
+    near.middleRows<3>(CellRows::middle) -= by_ends.leftCols<2>();
+    near.middleRows<3>(CellRows::after) += by_ends.leftCols<2>();
+    Coupling& far = coupling[base::at(e + 1)];
+    far.middleRows<3>(CellRows::before) -= by_ends.rightCols<2>();
+    far.middleRows<3>(CellRows::middle) += by_ends.rightCols<2>();
+    own[base::at(e)] += h.block<2, 2>(EdgeBeam::near, EdgeBeam::near);
+    own[base::at(e + 1)] += h.block<2, 2>(EdgeBeam::far, EdgeBeam::far);
+    slots.add_curvature_pair(e, h.block<2, 2>(EdgeBeam::near, EdgeBeam::far), values);
+  }
+  for (int i = 0; i <= n; ++i) {
+    if (BendingCell::exists(model, i)) {
+      const BendingCell cell(model, instant, at, i);
+      const VertexTurning turning(cell);
+      slots.add_cell(i, to_cell(turning.hessian(moment_at(model, at, i))), values);
+      for (int j = 0; j < 2; ++j) {
+        coupling[base::at(i)].col(j) += to_cell(turning.gradient(stiffness[j] * Vector2d::Unit(j)));
+        own[base::at(i)](j, j) -= flexibility_at(model, i) * stiffness[j] * stiffness[j];
+      }
+    } else {
+      own[base::at(i)].setIdentity();
+    }
+    slots.add_curvature(i, coupling[base::at(i)], own[base::at(i)], values);
+  }
+}
+
+CurvedEnd curved_end(const RodModel& model, const RodInstant& instant, const DaePoint& at, End end) {
+  CurvedEnd result;
+  const int i = model.vertex_at(end);
+  if (!BendingCell::exists(model, i)) return result;
+  const auto of_edge = [end](const auto& g) { return end == End::left ? g.of_after() : g.of_before(); };
+  const BendingCell cell(model, instant, at, i);
+  const VertexTurning turning(cell);
+  const Vector2d stiffness = stiffness_of(model);
+  const Vector2d moment = moment_at(model, at, i);
+  const double flexibility = flexibility_at(model, i);
+  result.gradient << of_edge(turning.gradient(moment)), stiffness.cwiseProduct(turning.angles() - flexibility * moment);
+  result.hessian.topLeftCorner<4, 4>() = of_edge(turning.hessian(moment));
+  for (int j = 0; j < 2; ++j) {
+    result.hessian.col(4 + j).head<4>() = of_edge(turning.gradient(stiffness[j] * Vector2d::Unit(j)));
+    result.hessian.row(4 + j).head<4>() = result.hessian.col(4 + j).head<4>().transpose();
+    result.hessian(4 + j, 4 + j) = -flexibility * stiffness[j] * stiffness[j];
+  }
+  return result;
+}
+
+Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant, const DaePoint& at, End end) {
+  const int i = model.vertex_at(end);
+  if (!BendingCell::exists(model, i)) return Vector3d::Zero();
+  const BendingCell cell(model, instant, at, i);
+  return VertexTurning(cell).by_rotation(moment_at(model, at, i));
+}
+
+// Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite.
+Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, const DaePoint& at) {
+  const int n = model.edges();
+  const Vector2d stiffness = stiffness_of(model);
+  const Vector2d& natural = model.properties().natural_curvature;
+  Matrix2Xd k = natural.replicate(1, n + 1);
+  Matrix2Xd angles = Matrix2Xd::Zero(2, n + 1);
+  for (int i = 0; i <= n; ++i) {
+    if (!BendingCell::exists(model, i)) continue;
+    const BendingCell cell(model, instant, at, i);
+    angles.col(i) = VertexTurning(cell).angles();
+  }
+  numerics::SymmetricBandMatrix matrix(2 * (n + 1), 3);
+  numerics::BandLdlt factor;
+  constexpr int most = 30;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    matrix.set_zero();
+    Matrix2Xd rows = Matrix2Xd::Zero(2, n + 1);
+    for (int e = 0; e < n; ++e) {
+      const EdgeBeam beam = edge_of(model, instant, k.col(e), k.col(e + 1), e).beam;
+      rows.col(e) += beam.gradient.segment<2>(EdgeBeam::near);
+      rows.col(e + 1) += beam.gradient.segment<2>(EdgeBeam::far);
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b <= a; ++b) matrix.lower(2 * e + a, 2 * e + b) += beam.hessian(1 + a, 1 + b);
+      }
+    }
+    for (int i = 0; i <= n; ++i) {
+      if (!BendingCell::exists(model, i)) {
+        rows.col(i).setZero();
+        matrix.hold(2 * i);
+        matrix.hold(2 * i + 1);
+        continue;
+      }
+      const double flexibility = flexibility_at(model, i);
+      const Vector2d moment = stiffness.cwiseProduct(k.col(i) - natural);
+      rows.col(i) += stiffness.cwiseProduct(angles.col(i) - flexibility * moment);
+      for (int j = 0; j < 2; ++j) matrix.lower(2 * i + j, 2 * i + j) -= flexibility * stiffness[j] * stiffness[j];
+    }
+    if (!factor.factorize(matrix)) break;
+    Eigen::MatrixXd step = rows.reshaped();
+    factor.solve(step);
+    k.reshaped() -= step;
+    if (step.norm() <= 1e-12 * k.norm()) break;
+  }
+  return k;
+}
+
+}  // namespace snare::wire
