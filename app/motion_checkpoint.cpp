@@ -79,9 +79,14 @@ void fields(Archive& a, StrengthUse& u) {
   a(u.share)(u.tension)(u.bending)(u.arc)(u.time);
 }
 template <class Archive>
+void fields(Archive& a, LeftOutInertia& i) {
+  static_assert(sizeof(LeftOutInertia) == 2 * sizeof(double));
+  a(i.kinetic)(i.force);
+}
+template <class Archive>
 void fields(Archive& a, MotionSums& s) {
-  a(s.events)(s.peak_force)(s.strength)(s.largest_penetration)(s.largest_drift)(s.start_energy)(s.start_momentum)(
-      s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.largest_penetration)(s.largest_drift)(s.start_energy)(
+      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
 }
 template <class Archive>
 void fields(Archive& a, MotionState& s) {
@@ -89,8 +94,8 @@ void fields(Archive& a, MotionState& s) {
 }
 template <class Archive>
 void fields(Archive& a, MotionResult& r) {
-  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.impulse)(
-      r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.left_out)(
+      r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
 }
 }  // namespace snare::coupling
 
