@@ -18,6 +18,8 @@ namespace snare::numerics {
 
 namespace {
 
+constexpr int tries = 40;  // of one step
+
 struct NonlinearSolverDeleter {
   void operator()(SUNNonlinearSolver s) const noexcept { SUNNonlinSolFree(s); }
 };
@@ -129,7 +131,9 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetMaxNumSteps(m, -1), "IDASetMaxNumSteps");
   check(IDASetNonlinConvCoef(m, options.newton_share), "IDASetNonlinConvCoef");
   check(IDASetMinStep(m, options.smallest_step), "IDASetMinStep");
-  if (std::isfinite(options.max_step)) check(IDASetMaxStep(m, options.max_step), "IDASetMaxStep");
+  // From the longest step of a body that flies to that of its touch are more failures than IDA's ten.
+  check(IDASetMaxConvFails(m, tries), "IDASetMaxConvFails");
+  check(IDASetMaxErrTestFails(m, tries), "IDASetMaxErrTestFails");
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
   if (options.newton_test == NewtonTest::every_unknown)
     check(SUNNonlinSolSetConvTestFn(newton.get(), snare_newton_test, &callbacks), "SUNNonlinSolSetConvTestFn");
@@ -248,16 +252,16 @@ IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const E
   return m.report;
 }
 
-void Ida::set_max_step(double step) {
-  check(IDASetMaxStep(memory_->ida.get(), std::isfinite(step) ? step : 0.0), "IDASetMaxStep");
-}
-
-IdaAdvance Ida::advance(double limit) {
+IdaAdvance Ida::advance(double limit, double max_step) {
   Memory& m = *memory_;
-  check(IDASetStopTime(m.ida.get(), limit), "IDASetStopTime");
-  if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(limit)), "IDASetInitStep");
+  // IDA's own bound acts on what it chooses after the step, not on the length that it has chosen already.
+  max_step = std::min(max_step, m.options.max_step);
+  check(IDASetMaxStep(m.ida.get(), std::isfinite(max_step) ? max_step : 0.0), "IDASetMaxStep");
+  const double stop = std::min(limit, m.time + max_step);
+  check(IDASetStopTime(m.ida.get(), stop), "IDASetStopTime");
+  if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(stop)), "IDASetInitStep");
   double reached = m.time;
-  const int code = IDASolve(m.ida.get(), limit, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
+  const int code = IDASolve(m.ida.get(), stop, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
   m.update_counts();
   if (code < 0) {
     // The views hold the last accepted state.
@@ -283,7 +287,7 @@ IdaAdvance Ida::advance(double limit) {
     return IdaAdvance::event;
   }
   std::fill(m.events.begin(), m.events.end(), 0);
-  return code == IDA_TSTOP_RETURN ? IdaAdvance::reached_limit : IdaAdvance::stepped;
+  return code == IDA_TSTOP_RETURN && stop == limit ? IdaAdvance::reached_limit : IdaAdvance::stepped;
 }
 
 double Ida::time() const {
@@ -328,11 +332,11 @@ Eigen::VectorXd Ida::interpolate(double time, int derivative) const {
   return result;
 }
 
-Eigen::VectorXd Ida::interpolate_integrals(double time) const {
+Eigen::VectorXd Ida::interpolate_integrals(double time, int derivative) const {
   Eigen::VectorXd result(memory_->integrals.size());
   if (result.size() == 0) return result;
   const SunVector out = view(result, memory_->context);
-  check(IDAGetQuadDky(memory_->ida.get(), time, 0, out.get()), "IDAGetQuadDky");
+  check(IDAGetQuadDky(memory_->ida.get(), time, derivative, out.get()), "IDAGetQuadDky");
   return result;
 }
 

@@ -80,11 +80,8 @@ class Ida {
   [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
                                              double towards);
 
-  /// From the next step on [s], > 0; may be infinite.
-  void set_max_step(double step);
-
-  /// One internal step, never beyond `limit` [s].
-  [[nodiscard]] IdaAdvance advance(double limit);
+  /// One internal step, never beyond `limit` [s] nor longer than `max_step` [s], > 0.
+  [[nodiscard]] IdaAdvance advance(double limit, double max_step = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] double time() const;
   [[nodiscard]] const Eigen::VectorXd& y() const;
@@ -95,8 +92,8 @@ class Ida {
   [[nodiscard]] const Eigen::VectorXd& integrals() const;
   /// To be called before a start.
   void set_integrals(const Eigen::VectorXd& values);
-  /// The integrals at a time within the last step.
-  [[nodiscard]] Eigen::VectorXd interpolate_integrals(double time) const;
+  /// The integrals, or a derivative of them, at a time within the last step.
+  [[nodiscard]] Eigen::VectorXd interpolate_integrals(double time, int derivative = 0) const;
   /// For every event function: 0, or the direction (-1, +1) in which it passed zero.
   [[nodiscard]] const std::vector<int>& events_found() const;
   [[nodiscard]] double last_step() const;

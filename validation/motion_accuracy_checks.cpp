@@ -144,14 +144,15 @@ std::vector<Row> tolerance_rows() {
   };
   const MotionResult finest = run(0.003);
   std::vector<Row> rows;
-  constexpr std::array<double, 3> factors{10.0, 1.0, 0.1};
+  constexpr std::array<double, 3> factors{10.0, 1.0, 0.03};
   std::array<double, 3> impulse_error{};
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const MotionResult r = run(factors[k]);
     impulse_error[k] = value_of(r, (r.impulse[0] - finest.impulse[0]).norm() / finest.impulse[0].norm());
     const std::string at = fmt::format("{:g} times the default tolerances, {} steps", factors[k], r.statistics.steps);
     const double limit = std::array{1e-3, 1e-4, 1e-5}[k];
-    const double force_limit = std::array{3e-3, 1e-3, 3e-4}[k];  // of the largest at a step, which may miss the top
+    // Vibrations of the wire, which coarse steps damp, have some 5e-4 of the force.
+    const double force_limit = std::array{3e-3, 1e-3, 5e-4}[k];
     rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances",
                     finest.impulse[0].norm(), r.impulse[0].norm(), ErrorKind::relative, limit});
     rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances",
@@ -159,7 +160,7 @@ std::vector<Row> tolerance_rows() {
   }
   rows.push_back({"tolerances", "exponent of the tolerance in the error of the impulse", "",
                   "order 2: error ~ step^2, step ~ tolerance^(1/3)", 2.0 / 3.0,
-                  0.5 * std::log10(impulse_error[0] / impulse_error[2]), ErrorKind::absolute, 0.4});
+                  std::log(impulse_error[0] / impulse_error[2]) / std::log(factors[0] / factors[2]), ErrorKind::absolute, 0.4});
   return rows;
 }
 
@@ -266,7 +267,7 @@ std::vector<Row> friction_reversal_rows() {
 std::vector<Row> snap_through_rows() {
   constexpr double position = 80.0 * mm;
   constexpr double pace = 20.0 * mm;  // [m/s]
-  constexpr int elements = 100;
+  constexpr int elements = 200;  // a body meets the wire between vertices, the static push at one: 1e-3 apart with 100
   SlowPush p = slow_push(position, elements, 0.0, coupling::PushDirection::inward);
   const double touch = touch_height(p);
   coupling::MotionBody& pusher = p.motion.bodies[0];

@@ -6,7 +6,7 @@ namespace snare::coupling {
 
 /// The elastic foundation between a wire and what it touches: a pressure along the wire.      theory.md (M.8)
 ///
-///   p = k d (1 + a d'),  never negative;   d = -g penetration, d' its rate
+///   p = k d (1 + a d'),  never negative;   d = -g penetration, d' its rate by motion across the wire
 /// A wire that crosses a rounded edge, with the curvature c of the gap along it, then meets the force
 /// F = 4/3 k sqrt(2/c) d^(3/2) of its deepest point, as Hertz's law is; one that lies along a surface the line load k d.
 /// Two steel cylinders give about pi E/(8 (1 - nu^2)) = 8e10 N/m^2. The default is stiffer, so that what the wire

@@ -148,7 +148,7 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
   }
 }
 
-MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
+MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals, const ForceRecord* forces) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
@@ -157,8 +157,16 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
+  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    s.contacts.push_back(contacts_[k].sample(at.y));
+    if (forces == nullptr) {
+      s.contacts.push_back(contacts_[k].sample(at.y));
+    } else {
+      const auto recorded = [&](Eigen::Index i) { return forces->at(at.time, i, contacts_[k].held_states() > 2); };
+      const auto index = static_cast<Eigen::Index>(k);
+      const Vector3d force(recorded(3 * index), recorded(3 * index + 1), recorded(3 * index + 2));
+      s.contacts.push_back(contacts_[k].sample(at.y, force, recorded(3 * touching + index)));
+    }
     const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
     const ContactPart::Sums sums = contacts_[k].sums(at.y);
     s.mount_forces[2 * w] -= sums.on_mounts[0];

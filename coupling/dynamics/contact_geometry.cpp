@@ -27,17 +27,19 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
   g.body_velocity = y.segment<3>(body.velocity());
   g.relative = g.v - g.body_velocity - g.omega.cross(g.arm);
   g.gap_rate = g.normal.dot(g.relative);
+  g.direction = g.slope.normalized();
   // Tangent plane and forces.
   const Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
   g.run = level.norm();
   g.along = level / g.run;
   g.across = g.normal.cross(g.along);
   g.state.sliding = {g.along.dot(g.relative), g.across.dot(g.relative)};
-  if (contact.law) {
+  g.by_law = static_cast<bool>(contact.law);
+  if (g.by_law) {
     const Vector3d force = contact.law(-g.gap, -g.gap_rate);
-    g.load = {force[0], -force[1], -force[2]};
+    g.load = {force[0], -force[1], -force[2]};  // at a minimum of the gap n.t is zero
   } else {
-    g.load = contact.foundation.load(g.gap, g.gap_rate);
+    g.load = contact.foundation.load(g.gap, g.gap_rate - g.normal.dot(g.direction) * g.direction.dot(g.relative));
   }
   g.state.normal = g.load[0];
   g.state.bristle = bristle;
@@ -60,7 +62,13 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   const Vector3d domega = d.turn.cross(g.omega) + g.R_WB * d.spin;
   const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
-  c.load = g.load[1] * c.gap + g.load[2] * c.gap_rate;
+  double opening = c.gap_rate;
+  if (!g.by_law) {
+    const Vector3d ddirection = (dslope - g.direction.dot(dslope) * g.direction) / g.slope.norm();
+    opening -= (c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
+               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative));
+  }
+  c.load = g.load[1] * c.gap + g.load[2] * opening;
   c.force = c.load * g.normal + g.state.normal * c.normal;
   if (friction.acts()) {
     // The axes turn with X' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n x da.

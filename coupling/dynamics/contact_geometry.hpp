@@ -21,7 +21,7 @@ struct CurvePoint {
 ///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
 ///   u = X' - (n.X') n,  a = u/|u|,  b = n x a: axes of the tangent plane
 ///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
-///   lambda(g, dg/dt): load by the foundation [N/m], or normal force by a law [N]
+///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N], o = dg/dt - (n.t)(t.w), t = X'/|X'|
 ///   force on the wire, a length or in all: f = lambda n - (friction on the body, in a and b)
 struct ContactGeometry : CurvePoint {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
@@ -33,9 +33,11 @@ struct ContactGeometry : CurvePoint {
   Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();                            ///< v_B [m/s]
   Eigen::Vector3d relative = Eigen::Vector3d::Zero();                                 ///< w [m/s]
   double gap_rate = 0.0;                                                              ///< dg/dt [m/s]
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();                                ///< t
   Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
   double run = 0.0;                                                                   ///< |u|
-  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and dg/dt
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and o
+  bool by_law = false;
   BristleState state;                              ///< z, the sliding velocity w in a and b, lambda
   TangentForce friction;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f

@@ -85,6 +85,23 @@ ContactSample ContactGroup::sample(const VectorView& y) const {
   return s;
 }
 
+ContactSample ContactGroup::sample(const VectorView& y, const Eigen::Vector3d& force, double normal) const {
+  ContactSample s = sample(y);
+  if (!s.closed && held_states_ < 2) return s;
+  if (!s.closed) s.points.push_back(s);
+  const double share = 1.0 / static_cast<double>(s.points.size());
+  for (ContactSample& p : s.points) {
+    const double part = s.normal_force > 0.0 ? p.normal_force / s.normal_force : share;
+    p.closed = true;
+    p.normal_force = part * std::max(normal, 0.0);
+    p.force = part * force;
+  }
+  s.closed = true;
+  s.normal_force = std::max(normal, 0.0);
+  s.force = force;
+  return s;
+}
+
 int ContactGroup::free_point() const {
   int point = 0;
   while (std::any_of(touching_.begin(), touching_.end(), [point](const Touching& t) { return t.point == point; }))
@@ -133,6 +150,7 @@ std::vector<MotionEvent> ContactGroup::observe(double time, const ContactSample&
     touching_.push_back({s->arc, free_point(), s->sticking});
     events.push_back({when, 0, touching_.back().point, s->arc, MotionEvent::Kind::touch, speed});
   }
+  held_states_ = touching_.empty() ? 0 : held_states_ + 1;
   return events;
 }
 
@@ -149,6 +167,7 @@ void ContactGroup::restore_state(std::span<const double>& memory) {
     t.point = static_cast<int>(numerics::take(memory));
     t.sticking = numerics::take(memory) != 0.0;
   }
+  held_states_ = touching_.empty() ? 0 : 1;
 }
 
 }  // namespace snare::coupling

@@ -23,6 +23,11 @@ class ContactGroup {
   [[nodiscard]] NearestPoint nearest(const numerics::VectorView& y) const;
   /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest point.
   [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
+  /// Between two states told, with force and normal force [N] from elsewhere: that of interpolated unknowns, whose error is
+  /// larger than what the foundation gives, says nothing.
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y, const Eigen::Vector3d& force, double normal) const;
+  /// How many of the states told last have touched without a break.
+  [[nodiscard]] int held_states() const { return held_states_; }
   /// The same of closed stretches alone: without a search.
   [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
 
@@ -49,6 +54,7 @@ class ContactGroup {
   const wire::RodPart& rod_;
   std::deque<ContactPart> pieces_;
   std::vector<Touching> touching_;
+  int held_states_ = 0;  // of the last ones told, one after another, those that touch
 };
 
 }  // namespace snare::coupling

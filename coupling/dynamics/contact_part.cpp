@@ -205,16 +205,37 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
   return contact_geometry(contact_, search_.shape(), curve, body_, y, bristle);
 }
 
-void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  if (has_bristle()) {
-    const int count = 2 * rod_.vertices();
-    rows.segment(bristle_, count) +=
-        idle_load * (at.rate.segment(bristle_, count) + at.y.segment(bristle_, count) / idle_time);
+void ContactPart::find_geometries(const VectorView& y, Found& found) const {
+  found.nodes.clear();
+  if (!search_.candidates().empty()) find(y, found);
+  found.geometries.clear();
+  for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
+}
+
+// z_i' = (sum H_i p z'(w, z_i) - W z_i/t_0)/(sum H_i p + W): a mean, so that Newton's method does not meet a row that nothing
+// has weighed until the first touch.                                                                                    (M.9)
+void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
+  const auto z = y.segment(bristle_, 2 * rod_.vertices()).reshaped(2, rod_.vertices());
+  found.bristle_rates = -idle_load / idle_time * z;
+  found.loads = Eigen::VectorXd::Constant(rod_.vertices(), idle_load);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const ContactGeometry& g = found.geometries[q];
+    for (int h = 0; h < 2; ++h) {
+      const int i = n.element + h;
+      const double load = n.weight * g.state.normal * n.hats[base::at(h)];
+      found.bristle_rates.col(i) += load * bristle_rate(contact_.friction, {z.col(i), g.state.sliding, 0.0}).rate;
+      found.loads[i] += load;
+    }
   }
-  if (search_.candidates().empty()) return;
-  find(at.y, found_);
-  for (const Node& n : found_.nodes) {
-    const ContactGeometry g = geometry(n, at.y);
+  found.bristle_rates.array().rowwise() /= found.loads.array().transpose();
+}
+
+void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  find_geometries(at.y, found_);
+  for (std::size_t q = 0; q < found_.nodes.size(); ++q) {
+    const Node& n = found_.nodes[q];
+    const ContactGeometry& g = found_.geometries[q];
     const Vector3d force = n.weight * g.force;
     // The wire: m v_k' + ... - N_k f = 0, but for components that a mount holds.
     for (int k = 0; k < 4; ++k) {
@@ -227,27 +248,30 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
       rows.segment<3>(body_.velocity()) += force;
       rows.segment<3>(body_.spin()) += g.R_WB.transpose() * g.arm.cross(force);
     }
-    for (int h = 0; has_bristle() && h < 2; ++h) {
-      const int z = bristle_of(n.element + h);
-      const Vector2d rate = bristle_rate(contact_.friction, {at.y.segment<2>(z), g.state.sliding, 0.0}).rate;
-      rows.segment<2>(z) += n.weight * g.state.normal * n.hats[base::at(h)] * (at.rate.segment<2>(z) - rate);
-    }
   }
+  if (!has_bristle()) return;
+  const int count = 2 * rod_.vertices();
+  add_up_bristles(at.y, found_);
+  rows.segment(bristle_, count) += at.rate.segment(bristle_, count) - found_.bristle_rates.reshaped();
 }
 
 void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(*pattern_, values);
-  for (int k = 0; has_bristle() && k < 2 * rod_.vertices(); ++k)
-    into.add(bristle_ + k, bristle_ + k, idle_load * (c + 1.0 / idle_time));
-  if (search_.candidates().empty()) return;
-  find(at.y, found_);
-  for (const Node& n : found_.nodes) add_node_jacobian(n, at, c, into);
+  find_geometries(at.y, found_);
+  if (has_bristle()) {
+    add_up_bristles(at.y, found_);
+    for (int i = 0; i < rod_.vertices(); ++i) {
+      const double forgets = idle_load / idle_time / found_.loads[i];
+      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + forgets);
+    }
+  }
+  for (std::size_t q = 0; q < found_.nodes.size(); ++q)
+    add_node_jacobian(found_.nodes[q], found_.geometries[q], at.y, into);
 }
 
 // One column after another: the unknown's direction, and what changes along it in all rows.
-void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
+void ContactPart::add_node_jacobian(const Node& n, const ContactGeometry& g, const VectorView& y,
                                     const numerics::PatternValues& into) const {
-  const ContactGeometry g = geometry(n, at.y);
   // A law's minimum follows the tangency n.X' = 0.
   ContactDirection along;
   along.zeta = 1.0;
@@ -260,7 +284,7 @@ void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
   std::array<BristleRate, 2> bristles;
   for (int h = 0; has_bristle() && h < 2; ++h) {
     bristles[base::at(h)] =
-        bristle_rate(contact_.friction, {at.y.segment<2>(bristle_of(n.element + h)), g.state.sliding, 0.0});
+        bristle_rate(contact_.friction, {y.segment<2>(bristle_of(n.element + h)), g.state.sliding, 0.0});
   }
   const auto column = [&](int unknown, const Change& d) {
     // Wire and body: -d(N_k f) with dN_k = N_k' dzeta, + df, and -dm for the torque m on the body.
@@ -275,10 +299,12 @@ void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
       into.add(body_.spin() + a, unknown, -n.weight * d.torque[a]);
     }
     for (int h = 0; has_bristle() && h < 2; ++h) {
+      // -d(sum/load) = -(dsum - (sum/load) dload)/load
       const int z = bristle_of(n.element + h);
       const BristleRate& r = bristles[base::at(h)];
-      const Vector2d row = n.weight * n.hats[base::at(h)] *
-                           (d.load * (at.rate.segment<2>(z) - r.rate) - g.state.normal * r.by_sliding * d.sliding);
+      const Vector2d mean = found_.bristle_rates.col(n.element + h);
+      const Vector2d row = n.weight * n.hats[base::at(h)] / found_.loads[n.element + h] *
+                           (d.load * (mean - r.rate) - g.state.normal * r.by_sliding * d.sliding);
       for (int a = 0; a < 2; ++a) into.add(z + a, unknown, row[a]);
     }
   };
@@ -301,7 +327,7 @@ void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
   }
   // dq turns the body by 4 R Q^T dq in the world.
   const Eigen::Matrix<double, 3, 4> turn =
-      4.0 * g.R_WB * multibody::quaternion_rates(at.y.segment<4>(body_.quaternion())).transpose();
+      4.0 * g.R_WB * multibody::quaternion_rates(y.segment<4>(body_.quaternion())).transpose();
   for (int a = 0; a < 4; ++a) {
     ContactDirection d;
     d.turn = turn.col(a);
@@ -316,10 +342,9 @@ void ContactPart::add_node_jacobian(const Node& n, const DaePoint& at, double c,
   // The bristles themselves.
   for (int h = 0; has_bristle() && h < 2; ++h) {
     const int z = bristle_of(n.element + h);
-    const double load = n.weight * g.state.normal * n.hats[base::at(h)];
+    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.element + h];
     for (int a = 0; a < 2; ++a) {
-      into.add(z + a, z + a, load * c);
-      for (int b = 0; b < 2; ++b) into.add(z + a, z + b, -load * bristles[base::at(h)].by_bristle(a, b));
+      for (int b = 0; b < 2; ++b) into.add(z + a, z + b, -share * bristles[base::at(h)].by_bristle(a, b));
     }
   }
 }
@@ -361,22 +386,10 @@ std::pair<double, double> ContactPart::gap_at(const VectorView& y, double coordi
 
 void ContactPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
   if (!has_bristle()) return;
-  const int count = 2 * rod_.vertices();
-  Eigen::VectorXd sum = -idle_load / idle_time * y.segment(bristle_, count);
-  Eigen::VectorXd load = Eigen::VectorXd::Constant(count, idle_load);
   Found found;
-  find(y, found);
-  for (const Node& n : found.nodes) {
-    const ContactGeometry g = geometry(n, y);
-    for (int h = 0; h < 2; ++h) {
-      const int z = bristle_of(n.element + h);
-      const double share = n.weight * g.state.normal * n.hats[base::at(h)];
-      sum.segment<2>(z - bristle_) +=
-          share * bristle_rate(contact_.friction, {y.segment<2>(z), g.state.sliding, 0.0}).rate;
-      load.segment<2>(z - bristle_).array() += share;
-    }
-  }
-  rate.segment(bristle_, count) = sum.cwiseQuotient(load);
+  find_geometries(y, found);
+  add_up_bristles(y, found);
+  rate.segment(bristle_, 2 * rod_.vertices()) = found.bristle_rates.reshaped();
 }
 
 std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {

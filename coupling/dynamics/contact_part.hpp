@@ -83,11 +83,17 @@ class ContactPart final : public numerics::DaePart {
     std::vector<ClosedStretch> stretches;  // of single elements
     std::vector<int> elements;             // of each stretch
     std::vector<GapPlace> minima;
+    std::vector<ContactGeometry> geometries;  // of the nodes
+    // Of the vertices' bristles: dz/dt, and what presses on them [N].
+    Eigen::Matrix2Xd bristle_rates;
+    Eigen::VectorXd loads;
   };
   void find(const numerics::VectorView& y, Found& found) const;
+  void find_geometries(const numerics::VectorView& y, Found& found) const;
+  void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   [[nodiscard]] Node node(int element, double u, double weight) const;
   [[nodiscard]] ContactGeometry geometry(const Node& node, const numerics::VectorView& y) const;
-  void add_node_jacobian(const Node& node, const numerics::DaePoint& at, double c,
+  void add_node_jacobian(const Node& node, const ContactGeometry& geometry, const numerics::VectorView& y,
                          const numerics::PatternValues& into) const;
 
   MotionContact contact_;

@@ -92,7 +92,7 @@ bool MotionRun::write_until(double time) {
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
+    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t), &forces_))) return true;
   }
   return false;
 }
@@ -136,10 +136,13 @@ void MotionRun::resume(const MotionState& from) {
 MotionResult MotionRun::go(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
+  VectorXd rates = VectorXd::Zero(integrals_.size());
+  integrands({time_, y_, rate_}, rates);
+  const auto touching = integrals_.size() - integral::contacts;
+  forces_.add(time_, rates.tail(touching));
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !reached(time_, limit)) {
-    ida_->set_max_step(std::min(options_.max_step, longest_step()));
-    const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()));
+    const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()), longest_step());
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
     const double before = std::exchange(time_, ida_->time());
@@ -147,6 +150,7 @@ MotionResult MotionRun::go(double limit) {
     y_ = ida_->y();
     rate_ = ida_->rate();
     integrals_ = ida_->integrals();
+    forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(touching));
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
     const std::vector<int> found = ida_->events_found();

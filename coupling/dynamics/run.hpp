@@ -3,6 +3,7 @@
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
 #include "coupling/dynamics/contact_group.hpp"
+#include "coupling/dynamics/force_record.hpp"
 #include "coupling/dynamics/law_part.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/options.hpp"
@@ -64,7 +65,9 @@ class MotionRun {
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   [[nodiscard]] double longest_step() const;
-  [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
+  /// At a state, or between two: then with the forces of contacts that are recorded.
+  [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals,
+                                    const ForceRecord* forces = nullptr);
 
   const Motion& motion_;
   MotionOptions options_;
@@ -80,6 +83,7 @@ class MotionRun {
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
   PeakForce peak_;
+  ForceRecord forces_;  // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire
   double time_ = 0.0;
   MotionSums sums_;

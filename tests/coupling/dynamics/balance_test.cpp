@@ -173,7 +173,10 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
   EXPECT_GT(closed, 55.0);  // [s]: it is a test of the contact,
   EXPECT_GT(swing, 0.1);    // and of one that moves [rad/s]
   EXPECT_LT(result.largest_drift, 1e-9);
-  EXPECT_LT(result.largest_penetration, 1e-6);
+  // F = 4/3 k sqrt(2 (R + r)) d^(3/2) (M.8).
+  const double modulus = default_modulus(rod.properties.axial_stiffness, rod.properties.bending_stiffness, 0.002);
+  const double give = std::pow(result.peak_force[0] / (4.0 / 3.0 * modulus * std::sqrt(2.0 * 0.003)), 2.0 / 3.0);
+  EXPECT_LT(result.largest_penetration, 1.3 * give);
   const double weight = 0.052 * 9.81;
   EXPECT_LT(result.momentum_error.norm(), 1e-6 * weight * options.duration);
   EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * weight * options.duration * length);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <deque>
+
+namespace snare::coupling {
+
+/// Forces at the last three states that the integrator has accepted, for the times between: a polynomial through them. Forces of
+/// interpolated unknowns would err by the stiffness of a contact times the error of its depth, which is not small beside the depth.
+class ForceRecord {
+ public:
+  /// At a state later than the last one [s], [N].
+  void add(double time, Eigen::VectorXd forces);
+  /// Entry `index` at a time within the last step, through the last two states or three.
+  [[nodiscard]] double at(double time, Eigen::Index index, bool of_three) const;
+
+ private:
+  struct Record {
+    double time = 0.0;
+    Eigen::VectorXd forces;
+  };
+  std::deque<Record> records_;  // the latest last
+};
+
+}  // namespace snare::coupling
