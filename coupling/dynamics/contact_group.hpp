@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/dynamics/contact_part.hpp"
+#include "coupling/dynamics/contact_touches.hpp"
 
 #include <deque>
 #include <span>
@@ -32,23 +33,16 @@ class ContactGroup {
                                                  const numerics::VectorView& y, double time_before,
                                                  const numerics::VectorView& before);
   /// What is known of the last state beside the unknowns: see DaePart.
-  void save_state(std::vector<double>& memory) const;
-  void restore_state(std::span<const double>& memory);
+  void save_state(std::vector<double>& memory) const { touches_.save_state(memory); }
+  void restore_state(std::span<const double>& memory) { touches_.restore_state(memory); }
 
  private:
-  /// A stretch in contact, followed from state to state.
-  struct Touching {
-    double arc = 0.0;
-    int point = 0;
-    bool sticking = false;
-  };
-  [[nodiscard]] int free_point() const;
   /// Gap and its rate at a material coordinate, of the nearest piece.
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
 
   const wire::RodPart& rod_;
   std::deque<ContactPart> pieces_;
-  std::vector<Touching> touching_;
+  ContactTouches touches_{0.0, false};
 };
 
 }  // namespace snare::coupling

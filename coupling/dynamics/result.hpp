@@ -45,7 +45,7 @@ struct EnergyBalance {
 struct MotionSample {
   double time = 0.0;
   std::vector<multibody::RigidBodyState> bodies;
-  std::vector<ContactSample> contacts;        ///< then the springs
+  std::vector<ContactSample> contacts;        ///< then the springs, then the pairs of wires (on the first of each)
   std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
   struct Arm {
@@ -65,7 +65,7 @@ struct MotionSample {
 struct MotionEvent {
   enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
-  int contact = 0;   ///< index; springs count on after the contacts
+  int contact = 0;   ///< index; springs count on after the contacts, pairs of wires after these
   int point = 0;     ///< of the contact
   double arc = 0.0;  ///< material coordinate [m]
   Kind kind = Kind::touch;
@@ -78,7 +78,7 @@ struct MotionEvent {
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
-  std::vector<double> peak_force;     ///< of every contact and spring: see PeakForce [N]
+  std::vector<double> peak_force;     ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;  ///< largest of every wire, at accepted steps
   double largest_penetration = 0.0;   ///< into the foundations [m]
   double largest_drift = 0.0;         ///< of quaternions' length from one, and of rigid mounts [-], [m]
@@ -108,9 +108,9 @@ struct MotionResult {
   Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
   /// The same about the origin, less that of all outer moments [N m s].
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
-  std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
+  std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
-  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
+  std::vector<Eigen::Vector3d> impulse;  ///< of contacts on their wires, bodies on springs, pairs on first wires [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;

@@ -1,6 +1,7 @@
 #include "coupling/dynamics/run.hpp"
 
 #include "base/errors.hpp"
+#include "base/index.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }
   for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  for (const WirePair& p : motion.wire_pairs)
+    pairs_.emplace_back(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]);
   constraints_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -43,14 +46,13 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.max_step = options.max_step;
   ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share;
-  const auto touching = static_cast<int>(contacts_.size() + springs_.size());
-  integrals_ = VectorXd::Zero(integral::contacts + 4 * touching);
+  integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
   peak_ = PeakForce(options.peak_window);
-  sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
+  sums_.peak_force.assign(touching(), 0.0);
 }
 
 std::vector<numerics::DaePart*> MotionRun::parts() {
@@ -61,6 +63,7 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
     for (ContactPart& p : c.pieces()) list.push_back(&p);
   }
   for (auto& s : springs_) list.push_back(&s);
+  for (auto& p : pairs_) list.push_back(&p);
   constraints_->append(list);
   return list;
 }
@@ -75,6 +78,16 @@ void MotionRun::require_apart() {
     if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
       problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate),
                           "must be >= 0 m at the start"});
+  }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const WirePair& p = motion_.wire_pairs[k];
+    const NearestPoints n = pairs_[k].search().nearest(y_);
+    if (n.gap < -0.01 * std::min(p.radii[0], p.radii[1]) - options_.position_tolerance) {
+      problems.push_back({"", 0, p.name + ".gap",
+                          fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0],
+                                      n.coordinates[1]),
+                          "must be >= 0 m at the start"});
+    }
   }
   if (!problems.empty()) throw base::InputError(problems);
 }
@@ -100,6 +113,9 @@ void MotionRun::begin() {
     for (ContactPart& p : c.pieces()) {
       if (p.look_around(y_)) system_->invalidate_pattern();
     }
+  }
+  for (WirePairPart& p : pairs_) {
+    if (p.look_around(y_)) system_->invalidate_pattern();
   }
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);

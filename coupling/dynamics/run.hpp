@@ -8,6 +8,7 @@
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/peak_force.hpp"
 #include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/wire_pair_part.hpp"
 #include "numerics/ida.hpp"
 
 #include <Eigen/Core>
@@ -22,8 +23,8 @@
 namespace snare::coupling {
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, the force of every contact on its wire and of every body on its spring [N], and behind them the
-/// normal force of each.
+/// wires and free bodies, the force of every contact on its wire, of every body on its spring and of every pair on its first wire
+/// [N], and behind them the normal force of each.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
@@ -61,9 +62,12 @@ class MotionRun {
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
   void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
                      Eigen::Ref<Eigen::VectorXd> rates) const;
+  void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) const;
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   [[nodiscard]] double longest_step() const;
+  /// Number of contacts, springs and pairs.
+  [[nodiscard]] std::size_t touching() const { return contacts_.size() + springs_.size() + pairs_.size(); }
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
 
   const Motion& motion_;
@@ -73,6 +77,7 @@ class MotionRun {
   std::deque<BodyPart> bodies_;
   std::deque<ContactGroup> contacts_;
   std::deque<LawPart> springs_;
+  std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
