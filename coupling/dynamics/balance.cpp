@@ -29,7 +29,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[1]);
   }
   for (const ContactGroup& c : contacts_) e.strain += c.sums(at.y).energy;
-  for (const WirePairPart& p : pairs_) e.strain += p.sums(at.y).energy;
+  for (WirePairPart& p : pairs_) e.strain += p.sums(at.y).energy;
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
     const multibody::RigidBodyState s = b.state(at.y);
@@ -63,7 +63,7 @@ void MotionRun::add_reactions(std::size_t contact, const ContactPart::Sums& sums
 
 // Both wires are counted: what their contact does to momentum is what it presses on rigidly held components, and what it does not
 // twist them.
-void MotionRun::add_pair(std::size_t pair, const DaePoint& at, Eigen::Ref<VectorXd> rates) const {
+void MotionRun::add_pair(std::size_t pair, const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   const WirePairPart::Sums s = pairs_[pair].sums(at.y);
   const auto index = static_cast<Eigen::Index>(contacts_.size() + springs_.size() + pair);
   rates.segment<3>(integral::contacts + 3 * index) = s.force;

@@ -62,7 +62,7 @@ class MotionRun {
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
   void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
                      Eigen::Ref<Eigen::VectorXd> rates) const;
-  void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) const;
+  void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   [[nodiscard]] double longest_step() const;

@@ -36,16 +36,10 @@ WirePairPart::WirePairPart(const WirePair& pair, const wire::RodPart& first, con
     : pair_(pair),
       rods_{&first, &second},
       search_(pair, first, second),
-      touches_(search_.curve(0).longest(), pair.friction.has_bristle()),
-      found_(empty()) {
+      touches_(search_.curve(0).longest(), pair.friction.has_bristle()) {
   assert(first.vertices() >= 5 && second.vertices() >= 5);
+  for (std::size_t w = 0; w < 2; ++w) found_.pieces[w] = CubicPieces(search_.curve(w).elements());
   if (pair_.foundation.modulus == 0.0) pair_.foundation.modulus = smaller_default(pair, first, second);
-}
-
-WirePairPart::Found WirePairPart::empty() const {
-  Found found;
-  for (std::size_t w = 0; w < 2; ++w) found.pieces[w] = CubicPieces(search_.curve(w).elements());
-  return found;
 }
 
 void WirePairPart::declare(numerics::DaeLayout& layout) {

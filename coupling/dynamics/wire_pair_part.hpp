@@ -54,15 +54,15 @@ class WirePairPart final : public numerics::DaePart {
     /// What of it falls on rigidly held components of the first and the last vertex, of both wires [N].
     std::array<std::array<Eigen::Vector3d, 2>, 2> on_mounts;
   };
-  [[nodiscard]] Sums sums(const numerics::VectorView& y) const;
+  [[nodiscard]] Sums sums(const numerics::VectorView& y);
   /// dz/dt of the bristles into `rate`.
-  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate);
 
   /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most, or of the nearest
   /// points. Its points: the closed stretches along the first wire.
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y);
   /// The same of closed stretches alone: without a search.
-  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
+  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y);
   /// What has happened since the last state told: see ContactTouches.
   [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const ContactTouches::Seen& now,
                                                  const ContactTouches::Seen& before);
@@ -104,7 +104,6 @@ class WirePairPart final : public numerics::DaePart {
   /// Rows: of either place 12 of forces, 4 of bristles. Columns: of either place 12 of places and 12 of velocities, 4 of bristles.
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
-  [[nodiscard]] Found empty() const;
   void find(const numerics::VectorView& y, Found& found) const;
   void find_along(std::size_t own, const NearElements& near, Found& found) const;
   [[nodiscard]] Node::Place place(std::size_t wire, int element, double u) const;

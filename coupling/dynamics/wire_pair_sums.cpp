@@ -14,13 +14,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::VectorView;
 
-WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
+WirePairPart::Sums WirePairPart::sums(const VectorView& y) {
   Sums sum;
   for (auto& wire : sum.on_mounts) wire.fill(Vector3d::Zero());
   if (search_.candidates().empty()) return sum;
-  Found found = empty();
-  find(y, found);
-  for (const Node& n : found.nodes) {
+  find(y, found_);
+  for (const Node& n : found_.nodes) {
     const PairGeometry g = geometry(n, y);
     sum.force += (n.own == 0 ? n.weight : -n.weight) * g.force;
     sum.normal += n.weight * g.state.normal;
@@ -44,15 +43,14 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
   return sum;
 }
 
-void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
+void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
   if (!has_bristle()) return;
-  Found found = empty();
-  find(y, found);
+  find(y, found_);
   for (std::size_t w = 0; w < 2; ++w) {
     const int first = bristles_[w], count = 2 * rods_[w]->vertices();
     Eigen::VectorXd sum = -idle_load / idle_time * y.segment(first, count);
     Eigen::VectorXd load = Eigen::VectorXd::Constant(count, idle_load);
-    for (const Node& n : found.nodes) {
+    for (const Node& n : found_.nodes) {
       if (n.own != w) continue;
       const PairGeometry g = geometry(n, y);
       for (int h = 0; h < 2; ++h) {
@@ -68,18 +66,17 @@ void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& 
 
 // Stretches of the first wire are points of the contact; what is integrated along the second wire belongs to the one beside
 // which it acts.
-ContactSample WirePairPart::closed_sample(const VectorView& y) const {
+ContactSample WirePairPart::closed_sample(const VectorView& y) {
   ContactSample sum;
   if (search_.candidates().empty()) return sum;
-  Found found = empty();
-  find(y, found);
+  find(y, found_);
   struct Point {
     double from = 0.0, to = 0.0;  // along the first wire [m]
     ContactSample sample;
   };
   std::vector<Point> points;
   const double round_off = 1e-9 * search_.curve(0).longest();
-  for (const Stretch& s : found.stretches) {
+  for (const Stretch& s : found_.stretches) {
     if (s.own != 0) continue;
     if (points.empty() || s.from > points.back().to + round_off) points.push_back({s.from, s.to, {}});
     points.back().to = std::max(points.back().to, s.to);
@@ -96,7 +93,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     }
     return best != nullptr ? best->sample : points.emplace_back(Point{arc, arc, {}}).sample;
   };
-  for (const Node& n : found.nodes) {
+  for (const Node& n : found_.nodes) {
     const PairGeometry g = geometry(n, y);
     const std::size_t first = n.own == 0 ? 0 : 1;  // place that is on the first wire
     const Node::Place& p = n.places[first];
@@ -104,7 +101,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     const double normal = n.weight * g.state.normal;
     ContactSample& s = nearest(arc);
     s.closed = true;
-    s.gap = std::min({s.gap, g.gap, found.stretches[n.stretch].gap});
+    s.gap = std::min({s.gap, g.gap, found_.stretches[n.stretch].gap});
     s.force += (first == 0 ? n.weight : -n.weight) * g.force;
     s.normal_force += normal;
     s.point += normal * g.sides[first].x;
@@ -126,7 +123,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
   return sum;
 }
 
-ContactSample WirePairPart::sample(const VectorView& y) const {
+ContactSample WirePairPart::sample(const VectorView& y) {
   ContactSample s = closed_sample(y);
   if (s.closed) return s;
   const NearestPoints n = search_.nearest(y);

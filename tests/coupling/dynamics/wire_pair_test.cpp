@@ -46,7 +46,7 @@ struct Pair {
     contact.look_around(y);
     system.invalidate_pattern();
   }
-  [[nodiscard]] WirePairPart::Sums sums() const { return contact.sums(y); }
+  [[nodiscard]] WirePairPart::Sums sums() { return contact.sums(y); }
   /// What the contact alone adds to the rows.
   [[nodiscard]] VectorXd rows() {
     VectorXd rows = VectorXd::Zero(y.size());
@@ -170,6 +170,31 @@ TEST(WirePair, ForcesOnBothWiresBalanceWithTheirMoments) {
     EXPECT_LT((first.force + second.force).norm(), 1e-12 * first.force.norm());
     EXPECT_LT((first.moment + second.moment + p.sums().held_moment).norm(), 1e-12 * first.force.norm() * 0.1);
     EXPECT_LT((p.sums().force - first.force).norm(), 1e-12 * first.force.norm());
+  }
+}
+
+// The crossing goes along both wires over some of their vertices: no force on a vertex has a kink.
+TEST(WirePair, ForcesAreSmoothAsTheCrossingGoesOverVertices) {
+  Motion motion = crossed_wires(60.0 * degree, -1e-6, 8);
+  motion.wire_pairs[0].foundation.modulus = 1e10;
+  for (const Vector3d& along : {Vector3d(1.0, 0.0, 0.0), Vector3d(0.5, 0.0, std::sqrt(0.75))}) {
+    Pair p(motion);
+    constexpr double step = 2e-5;  // of elements of 25 mm
+    VectorXd before = p.rows(), here = before;
+    const double force = p.sums().normal;
+    double bend = 0.0, way = 0.0;
+    for (int k = 0; k < 1500; ++k) {
+      for (int i = 0; i <= 8; ++i) p.y.segment<3>(p.second.position_of(i)) += step * along;
+      p.contact.look_around(p.y);
+      const VectorXd next = p.rows();
+      if (k > 0) bend = std::max(bend, (next - 2.0 * here + before).lpNorm<Eigen::Infinity>());
+      way = std::max(way, (next - here).lpNorm<Eigen::Infinity>());
+      before = here;
+      here = next;
+    }
+    // A kink would show as some (step/h) F = 8e-4 F; the weights N'' bend by 6 (step/h)^2 = 4e-6.
+    EXPECT_GT(way, 3e-4 * force);
+    EXPECT_LT(bend, 4e-5 * force);
   }
 }
 
