@@ -151,8 +151,9 @@ Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
     columns.add_vector(name + "v", "_m_s", [k](const MotionSample& s) { return s.bodies[k].velocity; });
     columns.add_vector(name + "w", "_rad_s", [k](const MotionSample& s) { return s.bodies[k].spin; });
   }
-  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
-    const std::string name = motion.contacts[k].name + " ";
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const std::string name = contacts[k] + " ";
     columns.add(name + "points",
                 [k](const MotionSample& s) { return static_cast<double>(s.contacts[k].points.size()); });
     columns.add(name + "gap_mm", [k](const MotionSample& s) { return mm_per_m * s.contacts[k].gap; });

@@ -5,6 +5,7 @@
 #include "base/units.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace snare::app {
@@ -155,16 +156,31 @@ json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
   return summary;
 }
 
-json listed_contact_json(const FinishedMotion& run, std::size_t k) {
+/// contact: index as results count; with what is said of it beside.
+json listed_contact_json(const FinishedMotion& run, std::size_t contact, const json& parts) {
+  json object = contact_json(run, contact);
+  object.update(contact_times_json(run, contact));
+  object["contact"] = run.asked.motion.contact_names()[contact];
+  object["most_points"] = most_points(run, contact);
+  object.update(parts);
+  return object;
+}
+
+json listed_contacts_json(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
-  const coupling::MotionContact& c = motion.contacts[k];
-  json contact = contact_json(run, k);
-  contact.update(contact_times_json(run, k));
-  contact["contact"] = c.name;
-  contact["body"] = motion.bodies[at(c.body)].name;
-  contact["wire"] = motion.wires[at(c.wire)].name;
-  contact["most_points"] = most_points(run, k);
-  return contact;
+  json list = json::array();
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    const coupling::MotionContact& c = motion.contacts[k];
+    list.push_back(listed_contact_json(
+        run, k, {{"body", motion.bodies[at(c.body)].name}, {"wire", motion.wires[at(c.wire)].name}}));
+  }
+  const std::size_t first = motion.contacts.size() + motion.springs.size();
+  for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
+    const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
+    list.push_back(listed_contact_json(
+        run, first + k, {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
+  }
+  return list;
 }
 
 /// Lists of bodies and contacts.
@@ -173,7 +189,7 @@ json lists_json(const FinishedMotion& run) {
   json summary = result_json(run.result);
   summary.update(strength_json(run));
   summary.update(left_out_json(run));
-  summary.update({{"bodies", json::array()}, {"contacts", json::array()}, {"events", json::array()}});
+  summary.update({{"bodies", json::array()}, {"contacts", listed_contacts_json(run)}, {"events", json::array()}});
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const RigidBodyState& after = run.samples.back().bodies[k];
     json body = velocities_json(run.samples.front().bodies[k], after);
@@ -181,11 +197,11 @@ json lists_json(const FinishedMotion& run) {
     body["position_after_mm"] = vector_json(1e3 * after.position);
     summary["bodies"].push_back(body);
   }
-  for (std::size_t k = 0; k < motion.contacts.size(); ++k) summary["contacts"].push_back(listed_contact_json(run, k));
+  const std::vector<std::string> contacts = motion.contact_names();
   for (const MotionEvent& e : run.result.events) {
     json event{{"time_s", e.time},
                {"what", coupling::to_string(e.kind)},
-               {"contact", motion.contacts[at(e.contact)].name},
+               {"contact", contacts[at(e.contact)]},
                {"point", e.point + 1},
                {"arc_mm", 1e3 * e.arc}};
     if (e.kind == MotionEvent::Kind::touch) event["approach_m_s"] = e.approach_speed;

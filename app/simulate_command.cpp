@@ -28,10 +28,10 @@ void tell(const scenario::WireMotions& motions, const std::vector<FinishedMotion
   for (const FinishedMotion& run : finished) {
     const coupling::MotionResult& r = run.result;
     if (!motions.probe) {
-      for (std::size_t k = 0; k < run.asked.motion.contacts.size(); ++k) {
-        console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time",
-                                run.asked.motion.contacts[k].name, touches_of(r, k).count, r.peak_force[k],
-                                most_points(run, k)));
+      const std::vector<std::string> contacts = run.asked.motion.contact_names();
+      for (std::size_t k = 0; k < contacts.size(); ++k) {
+        console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time", contacts[k],
+                                touches_of(r, k).count, r.peak_force[k], most_points(run, k)));
       }
       continue;
     }

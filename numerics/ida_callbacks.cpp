@@ -94,7 +94,7 @@ extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector c
   constexpr double best_rate = 0.1;
   constexpr double worst_rate = 0.9;
   constexpr double converged_at_once = 1e-4;  // of the share
-  constexpr double of_round_off = 1e-3;       // of the tolerance
+  constexpr double of_round_off = 1e-4;       // of the tolerance
   int iteration = 0;
   SUNNonlinSolGetCurIter(solver, &iteration);
   const double size = map(correction).cwiseProduct(map(weight)).lpNorm<Eigen::Infinity>();

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -146,6 +147,35 @@ coupling::MotionContact read_contact_shape(const TomlTable& table, const std::fi
   return contact;
 }
 
+/// Two wires that may touch each other.
+coupling::WirePair read_wire_pair(const TomlTable& table, Names& contacts, const Names& wires,
+                                  const std::vector<DeclaredWire>& declared) {
+  coupling::WirePair pair;
+  pair.name = contacts.take(table);
+  static constexpr const char* keys[] = {"wire", "other_wire"};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string name = table.text(keys[k]);
+    const std::optional<int> index = wires.find(name);
+    if (!index && !name.empty()) table.fail(keys[k], wires.requirement());
+    pair.wires[k] = index.value_or(static_cast<int>(k));
+    if (index) pair.radii[k] = 0.5 * declared[base::at(*index)].specification.diameter;
+  }
+  if (pair.wires[0] == pair.wires[1])
+    table.fail("other_wire", "must not be the wire itself: contact of a wire with itself is not computed");
+  pair.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
+  pair.foundation = read_foundation(table.table("foundation"));
+  return pair;
+}
+
+/// Reports two contacts of the same wires.
+void check_pairs(const std::vector<TomlTable>& tables, const std::vector<coupling::WirePair>& pairs) {
+  std::set<std::pair<int, int>> met;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (!met.insert(std::minmax(pairs[k].wires[0], pairs[k].wires[1])).second)
+      tables[k].fail("other_wire", "is already in contact with this wire");
+  }
+}
+
 /// Indices of the wires that a shape may touch: those it names, or all.
 std::vector<int> wires_met(const TomlTable& table, const Names& wires, const std::vector<DeclaredWire>& declared) {
   std::vector<std::string> names = table.texts_or_none("wires");
@@ -183,8 +213,10 @@ WireMotions read_bodies(TomlDocument& document, const std::filesystem::path& fol
   std::vector<DeclaredWire> declared;
   for (const TomlTable& table : root.tables("wires")) declared.push_back(read_declared_wire(table, wires, damping));
   for (const TomlTable& table : root.tables("bodies")) motion.bodies.push_back(read_body(table, bodies));
+  // Wires alone may meet each other.
+  const bool wires_alone = root.has("contacts") && !root.has("bodies") && !root.has("shapes");
   for (const std::string_view key : list_keys) {
-    if (!root.has(key)) root.fail(key, "must be given, one table or more");
+    if (!root.has(key) && !(wires_alone && key != "wires")) root.fail(key, "must be given, one table or more");
   }
   for (const TomlTable& table : root.tables("shapes")) {
     const std::string name = shapes.take(table);
@@ -197,6 +229,10 @@ WireMotions read_bodies(TomlDocument& document, const std::filesystem::path& fol
       motion.contacts.back().wire_radius = 0.5 * met.specification.diameter;
     }
   }
+  Names contacts("contact");
+  for (const TomlTable& table : root.tables("contacts"))
+    motion.wire_pairs.push_back(read_wire_pair(table, contacts, wires, declared));
+  check_pairs(root.tables("contacts"), motion.wire_pairs);
   WireMotions motions;
   motions.output = read_motion_output(root.table("output"), run.options);
   motions.input = meshes + document.canonical();

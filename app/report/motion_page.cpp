@@ -87,9 +87,10 @@ void add_contacts(const FinishedMotion& run, ReportPage& page) {
                {"Touches", ColumnKind::number},
                {"Points at a time", ColumnKind::number}},
               {}};
-  for (std::size_t k = 0; k < run.asked.motion.contacts.size(); ++k) {
+  const std::vector<std::string> contacts = run.asked.motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Touches touches = touches_of(run.result, k);
-    table.rows.push_back({run.asked.motion.contacts[k].name, format_significant(run.result.peak_force[k]),
+    table.rows.push_back({contacts[k], format_significant(run.result.peak_force[k]),
                           touches.first ? format_significant(*touches.first, 6) : "never",
                           std::to_string(touches.count), std::to_string(most_points(run, k))});
   }
@@ -214,11 +215,13 @@ void add_joint_plots(const FinishedMotion& run, ReportPage& page) {
 void add_list_plots(const FinishedMotion& run, ReportPage& page) {
   const coupling::Motion& motion = run.asked.motion;
   PlotSpecification forces{"Contact forces", {"time", "s"}, {"force", "N"}};
-  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
-    forces.curves.push_back(time_curve(motion.contacts[k].name, static_cast<int>(k), run.samples,
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    forces.curves.push_back(time_curve(contacts[k], static_cast<int>(k), run.samples,
                                        [k](const MotionSample& s) { return s.contacts[k].normal_force; }));
   }
   page.line_plot(forces);
+  if (motion.bodies.empty()) return;
   PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     speeds.curves.push_back(time_curve(motion.bodies[k].name, static_cast<int>(k), run.samples,

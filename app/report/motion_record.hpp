@@ -32,7 +32,7 @@ struct Touches {
   int count = 0;
   std::optional<double> first, last_lift_off;  ///< [s]; none: never
 };
-/// contact: index; springs count on after the contacts.
+/// contact: index; springs count on after the contacts, pairs of wires after these.
 [[nodiscard]] Touches touches_of(const coupling::MotionResult& result, std::size_t contact);
 
 /// Most points of a contact that were closed at a sample.

@@ -1,5 +1,6 @@
 // Energy, momentum and what else is summed up along a motion.
 
+#include "base/index.hpp"
 #include "coupling/dynamics/run.hpp"
 
 #include <algorithm>
@@ -28,6 +29,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[1]);
   }
   for (const ContactGroup& c : contacts_) e.strain += c.sums(at.y).energy;
+  for (WirePairPart& p : pairs_) e.strain += p.sums(at.y).energy;
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
     const multibody::RigidBodyState s = b.state(at.y);
@@ -59,6 +61,25 @@ void MotionRun::add_reactions(std::size_t contact, const ContactPart::Sums& sums
   rates.segment<3>(integral::outer_moment) += sums.moment;
 }
 
+// Both wires are counted: what their contact does to momentum is what it presses on rigidly held components, and what it does not
+// twist them.
+void MotionRun::add_pair(std::size_t pair, const DaePoint& at, Eigen::Ref<VectorXd> rates) {
+  const WirePairPart::Sums s = pairs_[pair].sums(at.y);
+  const auto index = static_cast<Eigen::Index>(contacts_.size() + springs_.size() + pair);
+  rates.segment<3>(integral::contacts + 3 * index) = s.force;
+  rates[integral::contacts + 3 * static_cast<Eigen::Index>(touching()) + index] = s.normal;
+  rates[integral::dissipated] += s.lost_power;
+  rates.segment<3>(integral::outer_moment) -= s.held_moment;
+  for (std::size_t w = 0; w < 2; ++w) {
+    const wire::RodPart& rod = rods_[base::at(motion_.wire_pairs[pair].wires[w])];
+    const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};
+    for (std::size_t k = 0; k < 2; ++k) {
+      rates.segment<3>(integral::outer) -= s.on_mounts[w][k];
+      rates.segment<3>(integral::outer_moment) -= Vector3d(at.y.segment<3>(ends[k])).cross(s.on_mounts[w][k]);
+    }
+  }
+}
+
 void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   for (wire::RodPart& rod : rods_) {
     const wire::RodPart::Energies w = rod.energies(at);
@@ -80,23 +101,24 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer_moment) +=
         state.position.cross(force) - b.body().angular_drag * (state.orientation * state.spin);
   }
-  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
+  const auto count = static_cast<Eigen::Index>(touching());
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const ContactPart::Sums s = contacts_[k].sums(at.y);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(k)) += s.force;
-    rates[integral::contacts + 3 * touching + static_cast<Eigen::Index>(k)] = s.normal;
+    rates[integral::contacts + 3 * count + static_cast<Eigen::Index>(k)] = s.normal;
     rates[integral::dissipated] += s.lost_power;
     add_reactions(k, s, at, rates);
   }
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const ContactSample s = springs_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
-    rates[integral::contacts + 3 * touching + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
+    rates[integral::contacts + 3 * count + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
     rates[integral::dissipated] += springs_[k].taken_power(at);
     rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k, at, rates);
   const ConstraintSet::Outer held = constraints_->outer(at);
   rates.segment<3>(integral::outer) += held.force;
   rates.segment<3>(integral::outer_moment) += held.moment;
@@ -106,13 +128,14 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
 double MotionRun::longest_step() const {
   double step = std::numeric_limits<double>::infinity();
   for (const ContactGroup& c : contacts_) step = std::min(step, c.longest_step());
+  for (const WirePairPart& p : pairs_) step = std::min(step, p.search().longest_step());
   return step;
 }
 
 // Extremes over the accepted steps, and what happened since the last one.
 void MotionRun::watch(double time_before, const VectorXd& before) {
-  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
-  VectorXd forces(touching);
+  const auto count = static_cast<Eigen::Index>(touching());
+  VectorXd forces(count);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const ContactSample sum = contacts_[k].closed_sample(y_);
     for (MotionEvent& e : contacts_[k].observe(time_, sum, y_, time_before, before)) {
@@ -126,9 +149,19 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
   const DaePoint at{time_, y_, rate_};
   for (std::size_t k = 0; k < springs_.size(); ++k)
     forces[static_cast<Eigen::Index>(contacts_.size() + k)] = springs_[k].sample(at).normal_force;
-  peak_.add(time_before, time_, forces, integrals_.tail(touching), sums_.peak_force);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const std::size_t index = contacts_.size() + springs_.size() + k;
+    const ContactSample sum = pairs_[k].closed_sample(y_);
+    for (MotionEvent& e : pairs_[k].observe(sum, {time_, y_}, {time_before, before})) {
+      e.contact = static_cast<int>(index);
+      sums_.events.push_back(e);
+    }
+    forces[static_cast<Eigen::Index>(index)] = sum.normal_force;
+    for (const ContactSample& s : sum.points) sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+  }
+  peak_.add(time_before, time_, forces, integrals_.tail(count), sums_.peak_force);
   // Laws take no mass of the wire along at once.
-  for (std::size_t k = 0; k < sums_.peak_force.size(); ++k) {
+  for (std::size_t k = 0; k < contacts_.size() + springs_.size(); ++k) {
     if (k < contacts_.size() && !motion_.contacts[k].law) continue;
     sums_.peak_force[k] = std::max(sums_.peak_force[k], forces[static_cast<Eigen::Index>(k)]);
   }
@@ -148,7 +181,18 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
   }
 }
 
-MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals, const ForceRecord* forces) {
+// Interpolated unknowns err by more than what a foundation gives: their force says nothing.
+ContactSample MotionRun::recorded(ContactSample sample, double time, std::size_t contact,
+                                  const ContactTouches& touches) const {
+  if (time == time_ || (!sample.closed && touches.held_states() < 2)) return sample;
+  const auto force = [&](std::size_t i) {
+    return forces_.at(time, static_cast<Eigen::Index>(i), touches.held_states() > 2);
+  };
+  return with_force(std::move(sample), {force(3 * contact), force(3 * contact + 1), force(3 * contact + 2)},
+                    force(3 * touching() + contact));
+}
+
+MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
@@ -157,22 +201,23 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals, co
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
-  const auto touching = static_cast<Eigen::Index>(contacts_.size() + springs_.size());
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (forces == nullptr) {
-      s.contacts.push_back(contacts_[k].sample(at.y));
-    } else {
-      const auto recorded = [&](Eigen::Index i) { return forces->at(at.time, i, contacts_[k].held_states() > 2); };
-      const auto index = static_cast<Eigen::Index>(k);
-      const Vector3d force(recorded(3 * index), recorded(3 * index + 1), recorded(3 * index + 2));
-      s.contacts.push_back(contacts_[k].sample(at.y, force, recorded(3 * touching + index)));
-    }
+    s.contacts.push_back(recorded(contacts_[k].sample(at.y), at.time, k, contacts_[k].touches()));
     const auto w = static_cast<std::size_t>(motion_.contacts[k].wire);
     const ContactPart::Sums sums = contacts_[k].sums(at.y);
     s.mount_forces[2 * w] -= sums.on_mounts[0];
     s.mount_forces[2 * w + 1] -= sums.on_mounts[1];
   }
   for (const LawPart& spring : springs_) s.contacts.push_back(spring.sample(at));
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const std::size_t index = contacts_.size() + springs_.size() + k;
+    s.contacts.push_back(recorded(pairs_[k].sample(at.y), at.time, index, pairs_[k].touches()));
+    const WirePairPart::Sums sums = pairs_[k].sums(at.y);
+    for (std::size_t w = 0; w < 2; ++w) {
+      for (std::size_t end = 0; end < 2; ++end)
+        s.mount_forces[2 * base::at(motion_.wire_pairs[k].wires[w]) + end] -= sums.on_mounts[w][end];
+    }
+  }
   for (const wire::RodPart& r : rods_) {
     Eigen::Matrix3Xd x(3, r.vertices());
     for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));

@@ -19,6 +19,11 @@ Vector4d bernstein_slope(double u) {
   return {-3.0 * v * v, 3.0 * v * (v - 2.0 * u), 3.0 * u * (2.0 * v - u), 3.0 * u * u};
 }
 
+Vector4d bernstein_bend(double u) {
+  const double v = 1.0 - u;
+  return {6.0 * v, 6.0 * (u - 2.0 * v), 6.0 * (v - 2.0 * u), 6.0 * u};
+}
+
 BezierWire::BezierWire(const wire::RodPart& rod) : rod_(rod) {
   for (int e = 0; e + 1 < rod.vertices(); ++e) {
     Piece piece;
@@ -54,6 +59,10 @@ Vector4d BezierWire::value(int element, double u) const {
 
 Vector4d BezierWire::slope(int element, double u) const {
   return piece(element).weights * bernstein_slope(u) / piece(element).length;
+}
+
+Vector4d BezierWire::bend(int element, double u) const {
+  return piece(element).weights * bernstein_bend(u) / (piece(element).length * piece(element).length);
 }
 
 }  // namespace snare::coupling

@@ -31,9 +31,10 @@ class BezierWire {
   [[nodiscard]] int element_at(double coordinate) const;
   /// First of the four vertices on which an element depends.
   [[nodiscard]] int first_vertex(int element) const { return piece(element).first; }
-  /// Weights of these vertices in X at u, 0 to 1 along the element, and in X' [1/m] (M.6).
+  /// Weights of these vertices in X at u, 0 to 1 along the element, in X' [1/m] and in X'' [1/m^2] (M.6).
   [[nodiscard]] Eigen::Vector4d value(int element, double u) const;
   [[nodiscard]] Eigen::Vector4d slope(int element, double u) const;
+  [[nodiscard]] Eigen::Vector4d bend(int element, double u) const;
 
  private:
   struct Piece {
@@ -49,8 +50,9 @@ class BezierWire {
   double largest_weight_sum_ = 1.0;
 };
 
-/// Bernstein's cubics at u and their derivatives by u.
+/// Bernstein's cubics at u, their first and their second derivatives by u.
 [[nodiscard]] Eigen::Vector4d bernstein(double u);
 [[nodiscard]] Eigen::Vector4d bernstein_slope(double u);
+[[nodiscard]] Eigen::Vector4d bernstein_bend(double u);
 
 }  // namespace snare::coupling

@@ -35,6 +35,12 @@ void validate_friction(Complaints& c, const std::string& key, const MotionFricti
   }
 }
 
+void validate_foundation(Complaints& c, const std::string& key, const ElasticFoundation& f) {
+  c.require(std::isfinite(f.modulus) && f.modulus >= 0.0, key + "modulus", f.modulus,
+            "must be > 0, or 0 for the default");
+  c.require(std::isfinite(f.damping) && f.damping >= 0.0, key + "damping", f.damping, "must be >= 0");
+}
+
 }  // namespace
 
 void require_valid(const Motion& motion, const MotionOptions& options) {
@@ -91,15 +97,24 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
               "must be the index of a body");
     c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
-    c.require(std::isfinite(k.foundation.modulus) && k.foundation.modulus >= 0.0, k.name + ".foundation.modulus",
-              k.foundation.modulus, "must be > 0, or 0 for the default");
-    c.require(std::isfinite(k.foundation.damping) && k.foundation.damping >= 0.0, k.name + ".foundation.damping",
-              k.foundation.damping, "must be >= 0");
+    validate_foundation(c, k.name + ".foundation.", k.foundation);
     c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius,
               "must be >= 0");
     c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius",
               k.wire_radius, "must be > 0 for a shape with edges");
     validate_friction(c, k.name + ".friction.", k.friction);
+  }
+  for (const WirePair& p : motion.wire_pairs) {
+    bool both = true;
+    for (std::size_t w = 0; w < 2; ++w) {
+      both = c.require(p.wires[w] >= 0 && p.wires[w] < static_cast<int>(motion.wires.size()), p.name + ".wires",
+                       p.wires[w], "must be indices of wires") &&
+             both;
+      positive(p.name + ".radii", p.radii[w]);
+    }
+    c.require(!both || p.wires[0] != p.wires[1], p.name + ".wires", p.wires[0], "must be two different wires");
+    validate_foundation(c, p.name + ".foundation.", p.foundation);
+    validate_friction(c, p.name + ".friction.", p.friction);
   }
   for (const PointContactLaw& s : motion.springs) {
     c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/dynamics/contact_part.hpp"
+#include "coupling/dynamics/contact_touches.hpp"
 
 #include <deque>
 #include <span>
@@ -23,11 +24,7 @@ class ContactGroup {
   [[nodiscard]] NearestPoint nearest(const numerics::VectorView& y) const;
   /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest point.
   [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
-  /// Between two states told, with force and normal force [N] from elsewhere: that of interpolated unknowns, whose error is
-  /// larger than what the foundation gives, says nothing.
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y, const Eigen::Vector3d& force, double normal) const;
-  /// How many of the states told last have touched without a break.
-  [[nodiscard]] int held_states() const { return held_states_; }
+  [[nodiscard]] const ContactTouches& touches() const { return touches_; }
   /// The same of closed stretches alone: without a search.
   [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
 
@@ -37,24 +34,16 @@ class ContactGroup {
                                                  const numerics::VectorView& y, double time_before,
                                                  const numerics::VectorView& before);
   /// What is known of the last state beside the unknowns: see DaePart.
-  void save_state(std::vector<double>& memory) const;
-  void restore_state(std::span<const double>& memory);
+  void save_state(std::vector<double>& memory) const { touches_.save_state(memory); }
+  void restore_state(std::span<const double>& memory) { touches_.restore_state(memory); }
 
  private:
-  /// A stretch in contact, followed from state to state.
-  struct Touching {
-    double arc = 0.0;
-    int point = 0;
-    bool sticking = false;
-  };
-  [[nodiscard]] int free_point() const;
   /// Gap and its rate at a material coordinate, of the nearest piece.
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
 
   const wire::RodPart& rod_;
   std::deque<ContactPart> pieces_;
-  std::vector<Touching> touching_;
-  int held_states_ = 0;  // of the last ones told, one after another, those that touch
+  ContactTouches touches_{0.0, false};
 };
 
 }  // namespace snare::coupling

@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "coupling/contact/curve.hpp"
+#include "coupling/dynamics/contact_integral.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -19,22 +20,11 @@ using numerics::VectorView;
 
 namespace {
 
-// Gauss's rule on a closed stretch: exact for a parabola of load under the cubics of the curve.
-constexpr std::array<double, 3> gauss_places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
-constexpr std::array<double, 3> gauss_weights{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-
-// Of bristles that nothing presses: the load that stands for it [N], and the time in which they forget [s].
-constexpr double idle_load = 1e-6;
-constexpr double idle_time = 1e-2;
-
 // A law's minimum of the gap that is flatter than this along the wire [1/m] is taken to stand still. theory.md (G.9)
 constexpr double least_curvature = 1.0;
 
 // Beside what may be touched next, so that the pattern seldom changes.
 constexpr int coupled_beside = 2;
-
-// A slider slower than this stands still [m/s].
-constexpr double standing = 1e-5;
 
 /// What changes along one unknown, or along one direction of a node.
 struct Change {

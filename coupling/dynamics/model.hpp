@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -58,6 +59,15 @@ struct MotionContact {
   ContactLaw law;
 };
 
+/// Two wires that may touch each other, crossing or side by side, wherever and as often as they do.    theory.md (M.20)
+struct WirePair {
+  std::string name = "pair";
+  std::array<int, 2> wires{0, 1};         ///< indices of two wires
+  std::array<double, 2> radii{0.0, 0.0};  ///< half their diameters [m], > 0
+  ElasticFoundation foundation;           ///< between them; modulus 0: the smaller of their defaults
+  MotionFriction friction;
+};
+
 /// A contact law between a point of a body and a plane fixed in the world, which stands for a whole wire.
 struct PointContactLaw {
   std::string name = "spring";
@@ -75,10 +85,20 @@ struct Motion {
   std::vector<MotionBody> bodies;
   std::vector<MotionContact> contacts;
   std::vector<PointContactLaw> springs;
+  std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
   std::vector<MotionWeld> welds;                      ///< bodies on arms, on other bodies, on the world
   std::vector<MotionMount> mounts;                    ///< ends of wires on arms or bodies; the others stand still
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+
+  /// Names of all that presses, in the order in which results count it: contacts, springs, pairs of wires.
+  [[nodiscard]] std::vector<std::string> contact_names() const {
+    std::vector<std::string> names;
+    for (const MotionContact& c : contacts) names.push_back(c.name);
+    for (const PointContactLaw& s : springs) names.push_back(s.name);
+    for (const WirePair& p : wire_pairs) names.push_back(p.name);
+    return names;
+  }
 };
 
 }  // namespace snare::coupling

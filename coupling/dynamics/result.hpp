@@ -46,7 +46,7 @@ struct EnergyBalance {
 struct MotionSample {
   double time = 0.0;
   std::vector<multibody::RigidBodyState> bodies;
-  std::vector<ContactSample> contacts;        ///< then the springs
+  std::vector<ContactSample> contacts;        ///< then the springs, then the pairs of wires (on the first of each)
   std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
   struct Arm {
@@ -66,7 +66,7 @@ struct MotionSample {
 struct MotionEvent {
   enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
-  int contact = 0;   ///< index; springs count on after the contacts
+  int contact = 0;   ///< index; springs count on after the contacts, pairs of wires after these
   int point = 0;     ///< of the contact
   double arc = 0.0;  ///< material coordinate [m]
   Kind kind = Kind::touch;
@@ -79,7 +79,7 @@ struct MotionEvent {
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
-  std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
+  std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
   double largest_penetration = 0.0;      ///< into the foundations [m]
@@ -110,10 +110,10 @@ struct MotionResult {
   Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
   /// The same about the origin, less that of all outer moments [N m s].
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
-  std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
+  std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
-  std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
+  std::vector<Eigen::Vector3d> impulse;  ///< of contacts on their wires, bodies on springs, pairs on first wires [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;

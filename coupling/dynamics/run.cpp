@@ -1,6 +1,7 @@
 #include "coupling/dynamics/run.hpp"
 
 #include "base/errors.hpp"
+#include "base/index.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }
   for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  for (const WirePair& p : motion.wire_pairs)
+    pairs_.emplace_back(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]);
   constraints_.emplace(motion, rods_, bodies_, options);
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -43,15 +46,14 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.max_step = options.max_step;
   ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share;
-  const auto touching = static_cast<int>(contacts_.size() + springs_.size());
-  integrals_ = VectorXd::Zero(integral::contacts + 4 * touching);
+  integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
   peak_ = PeakForce(options.peak_window);
+  sums_.peak_force.assign(touching(), 0.0);
   left_out_.assign(rods_.size(), LeftOutMomentum(options.peak_window));
-  sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
   sums_.left_out.assign(rods_.size(), {});
 }
 
@@ -63,6 +65,7 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
     for (ContactPart& p : c.pieces()) list.push_back(&p);
   }
   for (auto& s : springs_) list.push_back(&s);
+  for (auto& p : pairs_) list.push_back(&p);
   constraints_->append(list);
   return list;
 }
@@ -78,6 +81,16 @@ void MotionRun::require_apart() {
       problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate),
                           "must be >= 0 m at the start"});
   }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const WirePair& p = motion_.wire_pairs[k];
+    const NearestPoints n = pairs_[k].search().nearest(y_);
+    if (n.gap < -0.01 * std::min(p.radii[0], p.radii[1]) - options_.position_tolerance) {
+      problems.push_back({"", 0, p.name + ".gap",
+                          fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0],
+                                      n.coordinates[1]),
+                          "must be >= 0 m at the start"});
+    }
+  }
   if (!problems.empty()) throw base::InputError(problems);
 }
 
@@ -92,7 +105,7 @@ bool MotionRun::write_until(double time) {
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t), &forces_))) return true;
+    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
   }
   return false;
 }
@@ -102,6 +115,9 @@ void MotionRun::begin() {
     for (ContactPart& p : c.pieces()) {
       if (p.look_around(y_)) system_->invalidate_pattern();
     }
+  }
+  for (WirePairPart& p : pairs_) {
+    if (p.look_around(y_)) system_->invalidate_pattern();
   }
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
@@ -138,8 +154,8 @@ MotionResult MotionRun::go(double limit) {
   numerics::IdaReport report;
   VectorXd rates = VectorXd::Zero(integrals_.size());
   integrands({time_, y_, rate_}, rates);
-  const auto touching = integrals_.size() - integral::contacts;
-  forces_.add(time_, rates.tail(touching));
+  const auto of_contacts = integrals_.size() - integral::contacts;
+  forces_.add(time_, rates.tail(of_contacts));
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !reached(time_, limit)) {
     const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()), longest_step());
@@ -150,7 +166,7 @@ MotionResult MotionRun::go(double limit) {
     y_ = ida_->y();
     rate_ = ida_->rate();
     integrals_ = ida_->integrals();
-    forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(touching));
+    forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(of_contacts));
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
     const std::vector<int> found = ida_->events_found();

@@ -9,6 +9,7 @@
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/peak_force.hpp"
 #include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/wire_pair_part.hpp"
 #include "numerics/ida.hpp"
 
 #include <Eigen/Core>
@@ -23,8 +24,8 @@
 namespace snare::coupling {
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, the force of every contact on its wire and of every body on its spring [N], and behind them the
-/// normal force of each.
+/// wires and free bodies, the force of every contact on its wire, of every body on its spring and of every pair on its first wire
+/// [N], and behind them the normal force of each.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
@@ -62,12 +63,17 @@ class MotionRun {
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
   void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
                      Eigen::Ref<Eigen::VectorXd> rates) const;
+  void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   [[nodiscard]] double longest_step() const;
-  /// At a state, or between two: then with the forces of contacts that are recorded.
-  [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals,
-                                    const ForceRecord* forces = nullptr);
+  /// Number of contacts, springs and pairs.
+  [[nodiscard]] std::size_t touching() const { return contacts_.size() + springs_.size() + pairs_.size(); }
+  /// At the last state, or within the step before it.
+  [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
+  /// The sample of a contact, by its index among all, with the forces that are recorded.
+  [[nodiscard]] ContactSample recorded(ContactSample sample, double time, std::size_t contact,
+                                       const ContactTouches& touches) const;
 
   const Motion& motion_;
   MotionOptions options_;
@@ -76,6 +82,7 @@ class MotionRun {
   std::deque<BodyPart> bodies_;
   std::deque<ContactGroup> contacts_;
   std::deque<LawPart> springs_;
+  std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;

@@ -46,6 +46,7 @@ void MotionRun::make_rates() {
   for (const ContactGroup& c : contacts_) {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
   }
+  for (WirePairPart& p : pairs_) p.set_bristle_rates(y_, rate_);
 }
 
 void MotionRun::settle() {

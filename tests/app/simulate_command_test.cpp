@@ -109,6 +109,72 @@ TEST_F(SimulateCommand, GrappleShaftBetweenWires) {
   EXPECT_NE(contents("out/report.html").find("class=\"animation\""), std::string::npos);
 }
 
+// Wires that cross stand among the contacts.
+TEST_F(SimulateCommand, ABallPressesWiresOnEachOther) {
+  ASSERT_EQ(run("ball_into_net.toml", "--set duration_s=0.008 --set wires[upper].elements=24"), 0)
+      << contents("log.txt");
+  const json s = summary();
+  ASSERT_EQ(s["contacts"].size(), 6u);
+  const json& pair = s["contacts"][3];
+  EXPECT_EQ(pair["contact"], "upper on middle");
+  EXPECT_EQ(pair["wire"], "upper");
+  EXPECT_EQ(pair["other_wire"], "middle");
+  EXPECT_FALSE(pair.contains("body"));
+  EXPECT_GE(pair["touches"].get<int>(), 1);
+  EXPECT_GT(pair["peak_force_N"].get<double>(), 1.0);
+  EXPECT_GT(pair["impulse_Ns"][2].get<double>(), 0.0);  // the upper wire is held up
+  EXPECT_LT(s["momentum_error_Ns"][2].get<double>(), 1e-6 * std::abs(pair["impulse_Ns"][2].get<double>()));
+  EXPECT_NE(contents("out/history.csv").find("upper on middle normal_N"), std::string::npos);
+  EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
+  EXPECT_NE(contents("out/report.html").find("middle on lower"), std::string::npos);
+}
+
+// Two wires without any body.
+TEST_F(SimulateCommand, WiresAloneMeetEachOther) {
+  std::ofstream(folder_ / "wires.toml") << R"(schema = "snare-scenario/1"
+kind = "contact"
+title = "one wire falls on another"
+duration_s = 0.03
+[gravity]
+vector_m_s2 = [0.0, 0.0, -200.0]
+[[wires]]
+name = "upper"
+construction = "solid"
+diameter_mm = 1.0
+length_mm = 101.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [-50.0, 0.0, 1.2]
+to_mm = [50.0, 0.0, 1.2]
+bulge = [0.0, 1.0, 0.0]
+elements = 20
+[[wires]]
+name = "lower"
+construction = "solid"
+diameter_mm = 1.0
+length_mm = 100.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [0.0, -50.0, 0.0]
+to_mm = [0.0, 50.0, 0.0]
+bulge = [1.0, 0.0, 0.0]
+elements = 20
+[[contacts]]
+name = "crossing"
+wire = "upper"
+other_wire = "lower"
+)";
+  ASSERT_EQ(shell("'" SNARE_COMMAND "' simulate wires.toml --out out >log.txt 2>&1"), 0) << contents("log.txt");
+  const json s = summary();
+  EXPECT_TRUE(s["finished"].get<bool>());
+  EXPECT_TRUE(s["bodies"].empty());
+  ASSERT_EQ(s["contacts"].size(), 1u);
+  EXPECT_EQ(s["contacts"][0]["contact"], "crossing");
+  EXPECT_GE(s["contacts"][0]["touches"].get<int>(), 1);
+}
+
 TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   ASSERT_EQ(run("jemrms_step.toml", ""), 0) << contents("log.txt");
   const json s = summary();

@@ -263,6 +263,49 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
   }
 }
 
+const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";
+
+TEST(WirePairScenarios, ContactsNameTheirWires) {
+  const WireMotions read =
+      std::get<WireMotions>(read_scenario(net, {{"contacts[middle on lower].foundation.modulus_N_m2", "5e9"},
+                                                {"contacts[middle on lower].static_friction", "0.4"},
+                                                {"wires[lower].diameter_mm", "1.0"}})
+                                .content);
+  const coupling::Motion& motion = read.runs.at(0).motion;
+  ASSERT_EQ(motion.wire_pairs.size(), 3u);
+  const coupling::WirePair& pair = motion.wire_pairs[2];
+  EXPECT_EQ(pair.name, "middle on lower");
+  EXPECT_EQ(pair.wires, (std::array<int, 2>{1, 2}));
+  EXPECT_EQ(pair.radii, (std::array<double, 2>{0.75e-3, 0.5e-3}));
+  EXPECT_EQ(pair.foundation.modulus, 5e9);
+  EXPECT_EQ(pair.friction.static_coefficient, 0.4);
+  EXPECT_EQ(pair.friction.dynamic_coefficient, 0.2);
+  EXPECT_EQ(motion.contact_names().back(), "middle on lower");
+}
+
+TEST(WirePairScenarios, SayWhatIsWrong) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"other_wire=\"lowest\"",
+       "other_wire = \"lowest\", must be the name of a wire: \"upper\", \"middle\", \"lower\""},
+      {"other_wire=\"middle\"", "other_wire = \"middle\", must not be the wire itself"},
+      {"wire=\"upper\"", "other_wire = \"lower\", is already in contact with this wire"},
+      {"name=\"upper on middle\"", "is taken by another contact"},
+      {"friction=-1", "friction = -1, must be >= 0"},
+      {"foundation.modulus_N_m2=-1", "foundation.modulus_N_m2 = -1, must be >= 0"},
+      {"body=\"ball\"", "body = \"ball\", unknown key"},
+  };
+  for (const auto& [setting, message] : wrong) {
+    try {
+      const std::string text = setting;
+      const std::size_t equals = text.find('=');
+      (void)read_scenario(net, {{"contacts[middle on lower]." + text.substr(0, equals), text.substr(equals + 1)}});
+      ADD_FAILURE() << setting;
+    } catch (const base::InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
+    }
+  }
+}
+
 TEST(ShippedScenarios, GrappleShaftIsReadAndKnownAsAList) {
   const auto content = [](const fs::path& file) { return std::get<WireMotions>(read_scenario(file).content); };
   EXPECT_TRUE(content(fs::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml").probe);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "coupling/dynamics/bezier_wire.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace snare::coupling {
+
+/// The elements of a wire at a state as cubics X(u) = c_0 + c_1 u + c_2 u^2 + c_3 u^3, u from 0 to 1.
+class CubicPieces {
+ public:
+  CubicPieces() = default;
+  explicit CubicPieces(int elements) : pieces_(static_cast<std::size_t>(elements)), ways_(pieces_.size()) {}
+  /// Of one element, by its control points.
+  void set(int element, const BezierWire::Control& control);
+
+  [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
+  [[nodiscard]] Eigen::Vector3d value(int element, double u) const;
+  [[nodiscard]] Eigen::Vector3d slope(int element, double u) const;  ///< dX/du [m]
+  [[nodiscard]] Eigen::Vector3d bend(int element, double u) const;   ///< d2X/du2 [m]
+  /// A bound of an element's length [m].
+  [[nodiscard]] double way(int element) const { return ways_[static_cast<std::size_t>(element)]; }
+
+ private:
+  std::vector<Eigen::Matrix<double, 3, 4>> pieces_;
+  std::vector<double> ways_;
+};
+
+/// The point of a wire that is nearest to a given one.
+struct FootPoint {
+  int element = 0;
+  double u = 0.0;
+  bool stands = false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
+};
+/// The local minimum of the distance that is downhill of the nearest of the vertices of elements first ... last.   theory.md (G.12)
+[[nodiscard]] FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Eigen::Vector3d& p);
+
+}  // namespace snare::coupling

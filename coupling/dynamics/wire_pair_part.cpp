@@ -1,0 +1,405 @@
+#include "coupling/dynamics/wire_pair_part.hpp"
+
+#include "base/index.hpp"
+#include "coupling/contact/curve.hpp"
+#include "coupling/dynamics/contact_integral.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace snare::coupling {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using numerics::DaeKind;
+using numerics::DaePoint;
+using numerics::VectorView;
+
+namespace {
+
+// Rows and columns of a local block: of a place its forces; its places and velocities; bristles behind both.
+constexpr Eigen::Index rows_of_place = 12, row_of_bristle = 24;
+constexpr Eigen::Index columns_of_place = 24, column_of_velocity = 12, column_of_bristle = 48;
+
+double smaller_default(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b) {
+  const auto of = [](const wire::RodPart& rod, double radius) {
+    const wire::SpatialRodProperties& p = rod.constants().properties;
+    return default_modulus(p.axial_stiffness, p.bending_stiffness, 2.0 * radius);
+  };
+  return std::min(of(a, pair.radii[0]), of(b, pair.radii[1]));
+}
+
+}  // namespace
+
+WirePairPart::WirePairPart(const WirePair& pair, const wire::RodPart& first, const wire::RodPart& second)
+    : pair_(pair),
+      rods_{&first, &second},
+      search_(pair, first, second),
+      touches_(search_.curve(0).longest(), pair.friction.has_bristle()) {
+  assert(first.vertices() >= 5 && second.vertices() >= 5);
+  for (std::size_t w = 0; w < 2; ++w) found_.pieces[w] = CubicPieces(search_.curve(w).elements());
+  if (pair_.foundation.modulus == 0.0) pair_.foundation.modulus = smaller_default(pair, first, second);
+}
+
+void WirePairPart::declare(numerics::DaeLayout& layout) {
+  if (!has_bristle()) return;
+  // Outside of the error test: see ContactPart.
+  for (std::size_t w = 0; w < 2; ++w) {
+    bristles_[w] = layout.add({pair_.name + (w == 0 ? " bristle of the first" : " bristle of the second"),
+                               {"along", "across"},
+                               2 * rods_[w]->vertices(),
+                               DaeKind::algebraic,
+                               0.1 * pair_.friction.bristle_displacement,
+                               0});
+  }
+}
+
+bool WirePairPart::look_around(const VectorView& y) {
+  search_.update(y);
+  const auto& wanted = search_.candidates();
+  if (std::includes(coupled_.begin(), coupled_.end(), wanted.begin(), wanted.end())) return false;
+  coupled_ = wanted;
+  return true;
+}
+
+void WirePairPart::restore_state(const VectorView& y, std::span<const double>& memory) {
+  touches_.restore_state(memory);
+  static_cast<void>(look_around(y));
+}
+
+// By pairs of vertices, of either wire, that an element of one and an element of the other couple.
+void WirePairPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
+  std::vector<std::pair<int, int>> vertices;  // those of the second wire behind those of the first
+  for (const auto& [a, b] : coupled_) {
+    std::array<int, 8> of{};
+    for (int k = 0; k < 4; ++k) {
+      of[base::at(k)] = search_.curve(0).first_vertex(a) + k;
+      of[base::at(4 + k)] = rods_[0]->vertices() + search_.curve(1).first_vertex(b) + k;
+    }
+    for (const int i : of) {
+      for (const int j : of) vertices.emplace_back(i, j);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const auto& [row_vertex, column_vertex] : vertices) {
+    const std::size_t wr = row_vertex < rods_[0]->vertices() ? 0 : 1, wc = column_vertex < rods_[0]->vertices() ? 0 : 1;
+    const int i = row_vertex - (wr == 0 ? 0 : rods_[0]->vertices());
+    const int j = column_vertex - (wc == 0 ? 0 : rods_[0]->vertices());
+    std::vector<int> rows, columns;
+    for (int a = 0; a < 3; ++a) {
+      if (!rods_[wr]->is_held(i, a)) rows.push_back(rods_[wr]->velocity_of(i) + a);
+      columns.push_back(rods_[wc]->position_of(j) + a);
+      columns.push_back(rods_[wc]->velocity_of(j) + a);
+    }
+    for (int a = 0; has_bristle() && a < 2; ++a) {
+      rows.push_back(bristles_[wr] + 2 * i + a);
+      columns.push_back(bristles_[wc] + 2 * j + a);
+    }
+    for (const int row : rows) {
+      for (const int column : columns) entries.emplace_back(row, column);
+    }
+  }
+  for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
+    for (int k = 0; k < 2 * rods_[w]->vertices(); ++k) entries.emplace_back(bristles_[w] + k, bristles_[w] + k);
+  }
+}
+
+WirePairPart::Node::Place WirePairPart::place(std::size_t wire, int element, double u) const {
+  const BezierWire& curve = search_.curve(wire);
+  Node::Place p;
+  p.element = element;
+  p.u = u;
+  p.first = curve.first_vertex(element);
+  p.value = curve.value(element, u);
+  p.slope = curve.slope(element, u);
+  p.bend = curve.bend(element, u);
+  // A section turns with the edges beside it: hats between their middles.
+  const std::size_t own = base::at(element - p.first);
+  const double rise = 1.0 / curve.length(element);
+  p.share[own] = 1.0;
+  if (u < 0.5 && element > 0) {
+    p.share[own - 1] = 0.5 - u;
+    p.share[own] = 0.5 + u;
+    p.share_slope[own - 1] = -rise;
+    p.share_slope[own] = rise;
+  } else if (u >= 0.5 && element + 1 < curve.elements()) {
+    p.share[own] = 1.5 - u;
+    p.share[own + 1] = u - 0.5;
+    p.share_slope[own] = -rise;
+    p.share_slope[own + 1] = rise;
+  }
+  return p;
+}
+
+void WirePairPart::find(const VectorView& y, Found& found) const {
+  found.nodes.clear();
+  found.stretches.clear();
+  for (std::size_t w = 0; w < 2; ++w) {
+    for (const NearElements& n : search_.near(w))
+      found.pieces[w].set(n.element, search_.curve(w).control(n.element, y));
+  }
+  for (std::size_t w = 0; w < 2; ++w) {
+    for (const NearElements& n : search_.near(w)) find_along(w, n, found);
+  }
+}
+
+void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& found) const {
+  const std::size_t other = 1 - own;
+  const BezierWire& curve = search_.curve(own);
+  const CubicPieces &along = found.pieces[own], &across = found.pieces[other];
+  const double length = curve.length(near.element);
+  const double thickness = pair_.radii[0] + pair_.radii[1];
+  const auto gap = [&](double u) {
+    const Vector3d x = along.value(near.element, u);
+    const FootPoint foot = foot_point(across, near.first, near.last, x);
+    const Vector3d apart = x - across.value(foot.element, foot.u);
+    const double distance = apart.norm();
+    return GapPlace{u, distance - thickness, apart.dot(along.slope(near.element, u)) / (distance * length)};
+  };
+  found.closed.clear();
+  found.minima.clear();
+  const double way = along.way(near.element);
+  ClosedStretches(length, way, search_.resolution(own)).find(gap, gap(0.0), gap(1.0), found.closed, found.minima);
+  for (const ClosedStretch& s : found.closed) {
+    const double begin = curve.begin(near.element);
+    found.stretches.push_back({own, begin + s.from * length, begin + s.to * length, s.deepest.gap});
+    for (std::size_t q = 0; q < gauss_places.size(); ++q) {
+      const double u = s.from + gauss_places[q] * (s.to - s.from);
+      const FootPoint foot = foot_point(across, near.first, near.last, along.value(near.element, u));
+      Node n;
+      n.own = own;
+      n.weight = 0.5 * gauss_weights[q] * (s.to - s.from) * length;
+      n.stands = foot.stands;
+      n.stretch = found.stretches.size() - 1;
+      n.places = {place(own, near.element, u), place(other, foot.element, foot.u)};
+      n.hats = {1.0 - u, u};
+      found.nodes.push_back(n);
+    }
+  }
+}
+
+PairSide WirePairPart::side(std::size_t wire, const Node::Place& p, const VectorView& y) const {
+  const wire::RodPart& rod = *rods_[wire];
+  const Eigen::Map<const BezierWire::Control> x(y.data() + rod.position_of(p.first));
+  const Eigen::Map<const BezierWire::Control> v(y.data() + rod.velocity_of(p.first));
+  PairSide s;
+  s.x = x * p.value;
+  s.slope = x * p.slope;
+  s.bend = x * p.bend;
+  s.v = v * p.value;
+  s.slope_v = v * p.slope;
+  if (!pair_.friction.acts()) return s;
+  for (int j = 0; j < 3; ++j) {
+    s.edges[base::at(j)] = {p.share[base::at(j)], p.share_slope[base::at(j)], x.col(j + 1) - x.col(j),
+                            v.col(j + 1) - v.col(j)};
+  }
+  return s;
+}
+
+PairGeometry WirePairPart::geometry(const Node& n, const VectorView& y) const {
+  Vector2d z = Vector2d::Zero();
+  for (int h = 0; has_bristle() && h < 2; ++h) z += n.hats[base::at(h)] * y.segment<2>(bristle_of(n, h));
+  const std::size_t other = 1 - n.own;
+  return pair_geometry(pair_, {pair_.radii[n.own], pair_.radii[other]},
+                       {side(n.own, n.places[0], y), side(other, n.places[1], y)}, n.stands, z);
+}
+
+BristleRate WirePairPart::bristle(const Node& n, int h, const PairGeometry& g, const VectorView& y) const {
+  return bristle_rate(pair_.friction, {y.segment<2>(bristle_of(n, h)), g.state.sliding, 0.0});
+}
+
+WirePairPart::NodalLoad WirePairPart::nodal_load(const Node& n, const PairGeometry& g, std::size_t s) const {
+  const Node::Place& p = n.places[s];
+  const Vector3d force = (s == 0 ? n.weight : -n.weight) * g.force;
+  NodalLoad load;
+  for (int k = 0; k < 4; ++k) load.force[base::at(k)] = p.value[k] * force;
+  for (std::size_t j = 0; pair_.friction.acts() && j < 3; ++j) {
+    if (p.share[j] == 0.0) continue;
+    const Vector3d& edge = g.sides[s].edges[j].edge;
+    const Vector3d moment = n.weight * g.shares[s] * p.share[j] * g.moment;
+    const Vector3d couple = couple_on(edge, moment);
+    load.force[j] -= couple;
+    load.force[j + 1] += couple;
+    load.held_moment += moment.dot(edge) / edge.squaredNorm() * edge;
+  }
+  return load;
+}
+
+void WirePairPart::find_geometries(const VectorView& y, Found& found) const {
+  found.nodes.clear();
+  if (!search_.candidates().empty()) find(y, found);
+  found.geometries.clear();
+  for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
+}
+
+// z_i' as a mean over what presses, see ContactPart.
+void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
+  for (std::size_t w = 0; w < 2; ++w) {
+    const int vertices = rods_[w]->vertices();
+    found.bristle_rates[w] = -idle_load / idle_time * y.segment(bristles_[w], 2 * vertices).reshaped(2, vertices);
+    found.loads[w] = Eigen::VectorXd::Constant(vertices, idle_load);
+  }
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const PairGeometry& g = found.geometries[q];
+    for (int h = 0; h < 2; ++h) {
+      const int i = n.places[0].element + h;
+      const double load = n.weight * g.state.normal * n.hats[base::at(h)];
+      found.bristle_rates[n.own].col(i) += load * bristle(n, h, g, y).rate;
+      found.loads[n.own][i] += load;
+    }
+  }
+  for (std::size_t w = 0; w < 2; ++w) found.bristle_rates[w].array().rowwise() /= found.loads[w].array().transpose();
+}
+
+void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
+  find_geometries(at.y, found_);
+  for (std::size_t q = 0; q < found_.nodes.size(); ++q) {
+    const Node& n = found_.nodes[q];
+    // m v_k' + ... less the forces, but for components that a mount holds.
+    for (std::size_t s = 0; s < 2; ++s) {
+      const wire::RodPart& rod = *rods_[wire_of(n, s)];
+      const NodalLoad load = nodal_load(n, found_.geometries[q], s);
+      for (int k = 0; k < 4; ++k) {
+        const int i = n.places[s].first + k;
+        for (int a = 0; a < 3; ++a) {
+          if (!rod.is_held(i, a)) rows[rod.velocity_of(i) + a] -= load.force[base::at(k)][a];
+        }
+      }
+    }
+  }
+  if (!has_bristle()) return;
+  add_up_bristles(at.y, found_);
+  for (std::size_t w = 0; w < 2; ++w) {
+    const int count = 2 * rods_[w]->vertices();
+    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found_.bristle_rates[w].reshaped();
+  }
+}
+
+void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
+  const numerics::PatternValues into(*pattern_, values);
+  find_geometries(at.y, found_);
+  if (has_bristle()) add_up_bristles(at.y, found_);
+  for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
+    for (int i = 0; i < rods_[w]->vertices(); ++i) {
+      const double forgets = idle_load / idle_time / found_.loads[w][i];
+      for (int a = 0; a < 2; ++a) into.add(bristle_of(w, i) + a, bristle_of(w, i) + a, c + forgets);
+    }
+  }
+  LocalBlock block = LocalBlock::Zero();
+  for (std::size_t k = 0; k < found_.nodes.size(); ++k) {
+    const Node& n = found_.nodes[k];
+    add_node_jacobian(n, found_.geometries[k], at.y, block);
+    const auto same = [&n](const Node& next) {
+      return next.own == n.own && next.places[0].element == n.places[0].element &&
+             next.places[1].element == n.places[1].element;
+    };
+    if (k + 1 < found_.nodes.size() && same(found_.nodes[k + 1])) continue;
+    add_block(n, block, into);
+    block.setZero();
+  }
+}
+
+void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDirection& d, const VectorView& y,
+                              Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const {
+  const PairChange c = pair_change(pair_.friction, g, d);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Node::Place& p = n.places[s];
+    const double sign = s == 0 ? -n.weight : n.weight;
+    const double zeta = s == 0 ? 0.0 : c.zeta;
+    const Eigen::Index row = rows_of_place * static_cast<Eigen::Index>(s);
+    for (int k = 0; k < 4; ++k)
+      column.segment<3>(row + 3 * k) += sign * (p.value[k] * c.force + p.slope[k] * zeta * g.force);
+    for (std::size_t j = 0; pair_.friction.acts() && j < 3; ++j) {
+      if (p.share[j] == 0.0) continue;
+      const double share = n.weight * g.shares[s];
+      const Vector3d couple = couple_change(g.sides[s].edges[j].edge, share * p.share[j] * g.moment, d.sides[s].edge[j],
+                                            share * (p.share[j] * c.moment + p.share_slope[j] * zeta * g.moment));
+      const auto first = row + 3 * static_cast<Eigen::Index>(j);
+      column.segment<3>(first) += couple;
+      column.segment<3>(first + 3) -= couple;
+    }
+  }
+  for (int h = 0; has_bristle() && h < 2; ++h) {
+    // -d(sum/load) = -(dsum - (sum/load) dload)/load
+    const BristleRate r = bristle(n, h, g, y);
+    const int i = n.places[0].element + h;
+    column.segment<2>(row_of_bristle + 2 * h) +=
+        n.weight * n.hats[base::at(h)] / found_.loads[n.own][i] *
+        (c.load * (found_.bristle_rates[n.own].col(i) - r.rate) - g.state.normal * r.by_sliding * c.sliding);
+  }
+}
+
+// One unknown after another: the direction along which it moves what the node depends on, and what changes in all rows.
+void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const VectorView& y,
+                                     LocalBlock& block) const {
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Node::Place& p = n.places[s];
+    const Eigen::Index first = columns_of_place * static_cast<Eigen::Index>(s);
+    for (int k = 0; k < 4; ++k) {
+      for (int a = 0; a < 3; ++a) {
+        const Vector3d unit = Vector3d::Unit(a);
+        PairDirection place, velocity;
+        place.sides[s].x = p.value[k] * unit;
+        place.sides[s].slope = p.slope[k] * unit;
+        velocity.sides[s].v = p.value[k] * unit;
+        if (k < 3) {
+          place.sides[s].edge[base::at(k)] = -unit;
+          velocity.sides[s].rate[base::at(k)] = -unit;
+        }
+        if (k > 0) {
+          place.sides[s].edge[base::at(k - 1)] = unit;
+          velocity.sides[s].rate[base::at(k - 1)] = unit;
+        }
+        add_column(n, g, place, y, block.col(first + 3 * k + a));
+        add_column(n, g, velocity, y, block.col(first + column_of_velocity + 3 * k + a));
+      }
+    }
+  }
+  for (int h = 0; has_bristle() && h < 2; ++h) {
+    const BristleRate r = bristle(n, h, g, y);
+    const double share =
+        n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.own][n.places[0].element + h];
+    for (int a = 0; a < 2; ++a) {
+      const Eigen::Index column = column_of_bristle + 2 * h + a;
+      PairDirection d;
+      d.bristle = n.hats[base::at(h)] * Vector2d::Unit(a);
+      add_column(n, g, d, y, block.col(column));
+      block.block<2, 1>(row_of_bristle + 2 * h, column) -= share * r.by_bristle.col(a);
+    }
+  }
+}
+
+void WirePairPart::add_block(const Node& n, const LocalBlock& block, const numerics::PatternValues& into) const {
+  constexpr int none = -1;
+  std::array<int, 28> rows;
+  std::array<int, 52> columns;
+  rows.fill(none);
+  columns.fill(none);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const wire::RodPart& rod = *rods_[wire_of(n, s)];
+    const std::size_t row = base::at(rows_of_place) * s, column = base::at(columns_of_place) * s;
+    for (int k = 0; k < 4; ++k) {
+      const int i = n.places[s].first + k;
+      for (int a = 0; a < 3; ++a) {
+        const std::size_t of = base::at(3 * k + a);
+        if (!rod.is_held(i, a)) rows[row + of] = rod.velocity_of(i) + a;
+        columns[column + of] = rod.position_of(i) + a;
+        columns[column + base::at(column_of_velocity) + of] = rod.velocity_of(i) + a;
+      }
+    }
+  }
+  for (int k = 0; has_bristle() && k < 4; ++k)
+    rows[base::at(row_of_bristle + k)] = columns[base::at(column_of_bristle + k)] = bristle_of(n, 0) + k;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    if (columns[j] == none) continue;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double value = block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (rows[i] != none && value != 0.0) into.add(rows[i], columns[j], value);
+    }
+  }
+}
+
+}  // namespace snare::coupling
