@@ -77,9 +77,4 @@ double largest_force(const Prediction& prediction) {
   return largest;
 }
 
-std::vector<double> in_mm(std::vector<double> metres) {
-  for (double& v : metres) v *= 1e3;
-  return metres;
-}
-
 }  // namespace snare::app

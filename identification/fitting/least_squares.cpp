@@ -177,8 +177,7 @@ void take(const Data& data, Evaluation evaluation, Fit& fit) {
 }
 
 void fail(const std::string& message, Fit& fit) {
-  fit.report.termination = numerics::Termination::step_too_small;
-  fit.report.message = message;
+  fit.report.end(numerics::Termination::step_too_small, message);
 }
 
 /// The unknown is the coordinate over a scale by which it changes the residual by about one standard deviation in all.
@@ -257,8 +256,7 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   const ceres::Solver::Summary summary = solve(options, problem);
   result.report.iterations = static_cast<int>(summary.iterations.size());
   if (summary.termination_type == ceres::USER_FAILURE) {
-    result.report.termination = numerics::Termination::interrupted;
-    result.report.message = "interrupted";
+    result.report.end(numerics::Termination::interrupted, "interrupted");
   } else if (!summary.IsSolutionUsable()) {
     fail("the least squares did not converge", result);
     return result;
