@@ -5,6 +5,21 @@
 /// Decompositions of dense matrices, compiled once: in every source that uses them they take seconds.
 namespace snare::numerics {
 
+/// Eigenvalues of a symmetric matrix, rising, and its eigenvectors in the same order.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
+
+/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls.
+struct ThinSvd {
+  Eigen::MatrixXd U;
+  Eigen::VectorXd s;
+  Eigen::MatrixXd V;
+};
+[[nodiscard]] ThinSvd thin_svd(const Eigen::MatrixXd& a);
+
 /// Pseudo-inverse, by the complete orthogonal decomposition.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a);
 
