@@ -66,16 +66,20 @@ void fields(auto& a, StrengthUse& u) {
   static_assert(sizeof(StrengthUse) == 5 * sizeof(double));
   a(u.share)(u.tension)(u.bending)(u.arc)(u.time);
 }
+void fields(auto& a, LeftOutInertia& i) {
+  static_assert(sizeof(LeftOutInertia) == 2 * sizeof(double));
+  a(i.kinetic)(i.force);
+}
 void fields(auto& a, MotionSums& s) {
-  a(s.events)(s.peak_force)(s.strength)(s.largest_penetration)(s.largest_drift)(s.start_energy)(s.start_momentum)(
-      s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.largest_penetration)(s.largest_drift)(s.start_energy)(
+      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
 }
 void fields(auto& a, MotionState& s) {
   a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
 }
 void fields(auto& a, MotionResult& r) {
-  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.impulse)(
-      r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.left_out)(
+      r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
 }
 }  // namespace snare::coupling
 

@@ -71,6 +71,19 @@ json strength_json(const FinishedMotion& run) {
   return list.empty() ? json::object() : json{{"strength", list}};
 }
 
+/// What quasi-static wires leave out: energies beside those above, forces beside those of the contacts.
+json left_out_json(const FinishedMotion& run) {
+  json list = json::array();
+  for (std::size_t k = 0; k < run.result.left_out.size(); ++k) {
+    const coupling::MotionWire& wire = run.asked.motion.wires[k];
+    if (!wire.rod.quasi_static) continue;
+    const coupling::LeftOutInertia& left_out = run.result.left_out[k];
+    list.push_back(
+        {{"wire", wire.name}, {"left_out_kinetic_J", left_out.kinetic}, {"left_out_force_N", left_out.force}});
+  }
+  return list.empty() ? json::object() : json{{"quasi_static", list}};
+}
+
 /// Velocities of a body before and after.
 json velocities_json(const RigidBodyState& before, const RigidBodyState& after) {
   return {{"velocity_before_m_s", vector_json(before.velocity)},
@@ -125,6 +138,7 @@ json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
   summary.update(velocities_json(run.samples.front().bodies.front(), run.samples.back().bodies.front()));
   summary.update(result_json(run.result));
   summary.update(strength_json(run));
+  summary.update(left_out_json(run));
   if (!run.asked.motion.arms.empty()) {
     summary["largest_deflection_deg"] = largest_deflections(run);
     return summary;
@@ -152,6 +166,7 @@ json lists_json(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
   json summary = result_json(run.result);
   summary.update(strength_json(run));
+  summary.update(left_out_json(run));
   summary.update({{"bodies", json::array()}, {"contacts", json::array()}, {"events", json::array()}});
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const RigidBodyState& after = run.samples.back().bodies[k];

@@ -94,6 +94,7 @@ extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector c
   constexpr double best_rate = 0.1;
   constexpr double worst_rate = 0.9;
   constexpr double converged_at_once = 1e-4;  // of the share
+  constexpr double of_round_off = 1e-3;       // of the tolerance
   int iteration = 0;
   SUNNonlinSolGetCurIter(solver, &iteration);
   const double size = map(correction).cwiseProduct(map(weight)).lpNorm<Eigen::Infinity>();
@@ -103,9 +104,12 @@ extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector c
     if (size <= converged_at_once * share) return SUN_NLS_SUCCESS;
   } else {
     const double rate = std::pow(size / self.first_correction, 1.0 / iteration);
+    // What no longer shrinks is round-off, when it is far below the tolerance.
+    if (size <= of_round_off && size > worst_rate * self.last_correction) return SUN_NLS_SUCCESS;
     if (rate > worst_rate) return SUN_NLS_CONV_RECVR;
     self.remainder = rate / (1.0 - rate);
   }
+  self.last_correction = size;
   return std::max(self.remainder, best_rate) * size <= share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
 }
 

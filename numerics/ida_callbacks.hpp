@@ -30,6 +30,7 @@ struct IdaCallbacks {
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
   // Of the Newton iteration: the first correction of this step, and what the last rate of convergence leaves after one.
   double first_correction = 0.0;
+  double last_correction = 0.0;
   double remainder = unknown_remainder;
 
   static constexpr double unknown_remainder = 20.0;

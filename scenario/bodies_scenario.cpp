@@ -85,6 +85,7 @@ DeclaredWire read_declared_wire(const TomlTable& table, Names& names, const wire
     w.bulge = across.normalized();
   w.wire.rod = wire::rod_in_motion(w.specification, w.span, table.integer_or("elements", 60, 8, 20000));
   w.wire.rod.formulation = read_formulation(table);
+  w.wire.rod.quasi_static = read_quasi_static(table);
   w.wire.rod.damping = damping;
   w.wire.strength = read_strength(table, w.specification);
   w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind.value_or(wire::SpatialEnd::Kind::clamp);

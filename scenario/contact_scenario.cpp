@@ -25,10 +25,20 @@ namespace {
 
 using base::mm;
 
-enum class ModelKind { wire, spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
+enum class ModelKind {
+  wire,
+  quasi_static,
+  spring_dashpot,
+  power,
+  step_damped,
+  quadratic,
+  stretched_wire,
+  stretched_wire_linear
+};
 
 WireModel read_model(const TomlTable& table) {
   static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
+                                                {"quasi_static", ModelKind::quasi_static},
                                                 {"spring_dashpot", ModelKind::spring_dashpot},
                                                 {"power", ModelKind::power},
                                                 {"step_damped", ModelKind::step_damped},
@@ -44,6 +54,9 @@ WireModel read_model(const TomlTable& table) {
   if (!kind) return model;
   switch (*kind) {
     case ModelKind::wire:
+      break;
+    case ModelKind::quasi_static:
+      model.quasi_static = true;
       break;
     case ModelKind::spring_dashpot:
       model.law = coupling::spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
@@ -167,6 +180,7 @@ coupling::Motion motion_of(const ContactScenario& scenario, const WireModel& mod
                                                                : wire::SpatialEnd::Kind::twisting_pin;
   rod.properties.left.kind = rod.properties.right.kind = end;
   rod.formulation = scenario.formulation;
+  rod.quasi_static = model.quasi_static;
   rod.damping = scenario.damping;
   rod.strands.time = scenario.strand_time;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);

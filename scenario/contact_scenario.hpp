@@ -13,8 +13,9 @@ namespace snare::scenario {
 /// One wire model of a scenario: the full wire, or a law that stands for it.
 struct WireModel {
   std::string name;
-  std::string kind;          ///< "wire", or the law's name
-  coupling::ContactLaw law;  ///< empty: the full wire
+  std::string kind;               ///< "wire", "quasi_static", or the law's name
+  coupling::ContactLaw law = {};  ///< empty: the wire itself
+  bool quasi_static = false;      ///< of the wire itself
 };
 
 /// A body with a probe that meets a wire between its mounts: scenario of kind "contact" without lists.

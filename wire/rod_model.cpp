@@ -62,7 +62,8 @@ void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, con
   const std::vector<std::string> axes{"x", "y", "z"};
   x_ = layout.add({name + " position", axes, 3 * n, DaeKind::differential, tolerances.position, 0, false});
   theta_ = layout.add({name + " twist angle", {}, n, DaeKind::algebraic, tolerances.angle, 0, false});
-  v_ = layout.add({name + " velocity", axes, 3 * n, DaeKind::differential, tolerances.velocity, 0});
+  v_ = layout.add({name + " velocity", axes, 3 * n,
+                   constants_.quasi_static ? DaeKind::algebraic : DaeKind::differential, tolerances.velocity, 0});
   if (is_curved()) {
     curvature_ = layout.add({name + " curvature",
                              {"1", "2"},

@@ -46,6 +46,8 @@ class RodModel {
   [[nodiscard]] std::optional<End> end_of(int i) const;
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
+  /// Of that mass what resists acceleration [kg]: nothing when the wire is quasi-static.
+  [[nodiscard]] double inertia_of(int vertex) const { return constants_.quasi_static ? 0.0 : mass_of(vertex); }
   /// Whether bending dissipates.
   [[nodiscard]] bool bends_with_loss() const { return damping().bending_time > 0.0 || strands().act(); }
   /// Drag on the rate of theta_0 where no mount holds the twist [N m s]; 0: none.             theory.md (M.4)

@@ -134,7 +134,7 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   const double mass_rate = model_.damping().mass_rate;
   for (int i = 0; i < vertices(); ++i) {
     const SpatialEnd& end = i == 0 ? model_.properties().left : model_.properties().right;
-    const double m = mass_of(i);
+    const double inertia = model_.inertia_of(i), drag = mass_rate * mass_of(i);
     for (int k = 0; k < 3; ++k) {
       const int x = position_of(i) + k;
       const int v = velocity_of(i) + k;
@@ -143,7 +143,7 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
         rows[v] += at.y[v];
       } else {
         rows[x] += at.rate[x] - at.y[v];
-        rows[v] += m * (at.rate[v] + mass_rate * at.y[v]) + assembly_.gradient[block * i + k];
+        rows[v] += inertia * at.rate[v] + drag * at.y[v] + assembly_.gradient[block * i + k];
       }
     }
     rows[angle_of(i)] += model_.holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + angle];
@@ -159,7 +159,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
   evaluate(at);
   rod().assemble(trial_.state, {false, false, false}, assembly_);
   const int bands = model_.bands();
-  // What is held: 1 for x and v, or theta. Else x' - v: (c, -1), and m (v' + a v): m (c + a).
+  // What is held: 1 for x and v, or theta. Else x' - v: (c, -1), and m v' + a m v: m (c + a).
   for (int i = 0; i < bands; ++i) {
     const RodSlots::Diagonal& d = slots_.diagonal(i);
     if (RodModel::is_angle(i)) {
@@ -170,7 +170,8 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
     } else {
       RodSlots::add_to(values, d.place, c);
       RodSlots::add_to(values, d.place_by_velocity, -1.0);
-      RodSlots::add_to(values, d.velocity, mass_of(i / block) * (c + model_.damping().mass_rate));
+      RodSlots::add_to(values, d.velocity,
+                       c * model_.inertia_of(i / block) + model_.damping().mass_rate * mass_of(i / block));
     }
   }
   // d2E, both triangles of the band.
@@ -269,10 +270,17 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
     result.momentum += mass_of(i) * v;
     result.angular_momentum += mass_of(i) * vertex(state, i).cross(v);
   }
+  result.drag = model_.damping().mass_rate * result.momentum;
+  result.drag_moment = model_.damping().mass_rate * result.angular_momentum;
   for (int e = 0; e < model_.edges(); ++e) {
     result.potential -= 0.5 * model_.rest_length(e) * weight.dot(vertex(state, e) + vertex(state, e + 1));
   }
   result.kinetic = 0.5 * square;
+  if (constants().quasi_static) {
+    result.left_out_kinetic = std::exchange(result.kinetic, 0.0);
+    result.left_out_momentum = std::exchange(result.momentum, Vector3d::Zero());
+    result.angular_momentum.setZero();
+  }
   result.strain = assembly_.energy - result.potential + losses_.strand_energy;
   result.dissipation = losses_.power + model_.damping().mass_rate * square;
   for (int i = 0; weight != Vector3d::Zero() && i < vertices(); ++i) {

@@ -94,6 +94,22 @@ void add_strength(const std::vector<FinishedMotion>& finished, ReportPage& page)
   if (!table.rows.empty()) page.table(table);
 }
 
+/// What quasi-static wires leave out.
+void add_left_out(const std::vector<FinishedMotion>& finished, ReportPage& page) {
+  Table table{"Left out of the quasi-static wires: largest of what their mass would have",
+              {"Model"_code, "Wire"_code, "Kinetic energy [J]"_number, "Force of inertia [N]"_number}};
+  for (const FinishedMotion& run : finished) {
+    for (std::size_t k = 0; k < run.result.left_out.size(); ++k) {
+      const coupling::MotionWire& wire = run.asked.motion.wires[k];
+      const coupling::LeftOutInertia& left_out = run.result.left_out[k];
+      if (!wire.rod.quasi_static) continue;
+      table.rows.push_back(
+          {run.asked.name, wire.name, format_significant(left_out.kinetic), format_significant(left_out.force)});
+    }
+  }
+  if (!table.rows.empty()) page.table(table);
+}
+
 struct ModelPlot {
   const char* title;
   Axis y;
@@ -181,6 +197,7 @@ void add_lists(const FinishedMotion& run, ReportPage& page) {
   add_balance(run.result, page);
   add_contacts(run, page);
   add_strength({run}, page);
+  add_left_out({run}, page);
   page.heading("Time histories");
   add_list_plots(run, page);
   page.heading("The motion");
@@ -192,6 +209,7 @@ void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedM
   const bool with_arm = !finished.empty() && !finished.front().asked.motion.arms.empty();
   add_models(finished, page);
   add_strength(finished, page);
+  add_left_out(finished, page);
   page.heading("Time histories");
   add_model_plots(with_arm ? plots_with_arm : plots_without_arm, finished, page);
   if (with_arm) {

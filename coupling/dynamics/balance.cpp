@@ -64,11 +64,10 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     const wire::RodPart::Energies w = rod.energies(at);
     const wire::RodInMotion& c = rod.constants();
     rates[integral::dissipated] += w.dissipation;
-    rates.segment<3>(integral::outer) += w.mount_forces[0] + w.mount_forces[1] +
-                                         c.mass_per_length * c.length * motion_.gravity -
-                                         c.damping.mass_rate * w.momentum;
+    rates.segment<3>(integral::outer) +=
+        w.mount_forces[0] + w.mount_forces[1] + c.mass_per_length * c.length * motion_.gravity - w.drag;
     rates.segment<3>(integral::outer_moment) +=
-        w.mount_moments[0] + w.mount_moments[1] + w.weight_moment - c.damping.mass_rate * w.angular_momentum;
+        w.mount_moments[0] + w.mount_moments[1] + w.weight_moment - w.drag_moment;
   }
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
@@ -143,6 +142,9 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     const MotionWire& wire = motion_.wires[w];
     if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))
       broken_ = wire.name + *broken;
+    if (!wire.rod.quasi_static) continue;
+    const wire::RodPart::Energies e = rods_[w].energies(at);
+    left_out_[w].add(time_, e.left_out_kinetic, e.left_out_momentum, sums_.left_out[w]);
   }
 }
 

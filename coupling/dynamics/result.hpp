@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/left_out_inertia.hpp"
 #include "coupling/dynamics/strength.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "multibody/rigid_body.hpp"
@@ -78,11 +79,12 @@ struct MotionEvent {
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
-  std::vector<double> peak_force;     ///< of every contact and spring: see PeakForce [N]
-  std::vector<StrengthUse> strength;  ///< largest of every wire, at accepted steps
-  double largest_penetration = 0.0;   ///< into the foundations [m]
-  double largest_drift = 0.0;         ///< of quaternions' length from one, and of rigid mounts [-], [m]
-  double start_energy = 0.0;          ///< kinetic + strain + potential [J]
+  std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
+  std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps
+  std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
+  double largest_penetration = 0.0;      ///< into the foundations [m]
+  double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  double start_energy = 0.0;             ///< kinetic + strain + potential [J]
   Eigen::Vector3d start_momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
   Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
   long samples = 0;                                                  ///< given to the observer
@@ -110,6 +112,7 @@ struct MotionResult {
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
   std::vector<double> peak_force;        ///< of every contact and spring: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
+  std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
   std::vector<Eigen::Vector3d> impulse;  ///< of every contact on its wire, of every body on its spring [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]

@@ -50,7 +50,9 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
   peak_ = PeakForce(options.peak_window);
+  left_out_.assign(rods_.size(), LeftOutMomentum(options.peak_window));
   sums_.peak_force.assign(static_cast<std::size_t>(touching), 0.0);
+  sums_.left_out.assign(rods_.size(), {});
 }
 
 std::vector<numerics::DaePart*> MotionRun::parts() {
@@ -111,7 +113,8 @@ void MotionRun::begin() {
 
 void MotionRun::resume(const MotionState& from) {
   if (from.unknowns.size() != y_.size() || from.rates.size() != y_.size() ||
-      from.integrals.size() != integrals_.size() || from.sums.peak_force.size() != sums_.peak_force.size()) {
+      from.integrals.size() != integrals_.size() || from.sums.left_out.size() != sums_.left_out.size() ||
+      from.sums.peak_force.size() != sums_.peak_force.size()) {
     throw base::InputError({"", 0, "state", fmt::format("{} unknowns", from.unknowns.size()),
                             fmt::format("must be that of the same motion, of {} unknowns", y_.size())});
   }
@@ -123,6 +126,7 @@ void MotionRun::resume(const MotionState& from) {
   std::span<const double> memory = from.memory;
   for (ContactGroup& c : contacts_) c.restore_state(memory);
   peak_.restore_state(memory);
+  for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
   constraints_->restore_state(time_, y_, memory);
   system_->restore_state(y_, memory);
   ida_->set_integrals(integrals_);
@@ -190,6 +194,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   r.events = sums_.events;
   r.peak_force = sums_.peak_force;
   r.strength = sums_.strength;
+  r.left_out = sums_.left_out;
   r.largest_penetration = sums_.largest_penetration;
   r.largest_drift = sums_.largest_drift;
   r.statistics = sums_.statistics;
@@ -197,6 +202,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   std::vector<double> memory;
   for (const ContactGroup& c : contacts_) c.save_state(memory);
   peak_.save_state(memory);
+  for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
   constraints_->save_state(memory);
   const std::vector<double> parts = system_->memory();
   memory.insert(memory.end(), parts.begin(), parts.end());

@@ -80,6 +80,7 @@ class MotionRun {
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
   PeakForce peak_;
+  std::vector<LeftOutMomentum> left_out_;  // of every wire
   double time_ = 0.0;
   MotionSums sums_;
   std::optional<std::string> broken_;  // a wire at its strength

@@ -39,6 +39,10 @@ void MotionRun::make_rates() {
   }
   constraints_->solve_rates(y_, rows, rate_);
   constraints_->set_multipliers(constraints_->hold_rates(y_, rate_), y_);
+  // Nothing determines how the velocities of a quasi-static wire change; its masses have served to share out the forces.
+  for (const wire::RodPart& r : rods_) {
+    if (r.constants().quasi_static) rate_.segment(r.velocity_of(0), 3 * r.vertices()).setZero();
+  }
   for (const ContactGroup& c : contacts_) {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
   }
