@@ -67,6 +67,7 @@ std::vector<double> published_stiffness(const Series& series) {
   const std::vector<double>& displacement = identification::measured_displacement(series);
   if (!series.law) return tangent_stiffness(displacement, identification::measured_force(series));
   std::vector<double> stiffness;
+  stiffness.reserve(displacement.size());
   for (const double d : displacement) stiffness.push_back(1e-3 * (2.0 * series.law->a * d + series.law->b));
   return stiffness;
 }
