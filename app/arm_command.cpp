@@ -11,7 +11,6 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 
 namespace snare::app {
 
@@ -19,17 +18,7 @@ namespace {
 
 using base::degree;
 
-const char* to_string(multibody::DriveMode mode) {
-  switch (mode) {
-    case multibody::DriveMode::locked:
-      return "locked";
-    case multibody::DriveMode::servo:
-      return "servo";
-    case multibody::DriveMode::limp:
-      return "limp";
-  }
-  return "";
-}
+constexpr const char* drive_modes[] = {"locked", "servo", "limp"};  // names of multibody::DriveMode
 
 /// Angles of the elastic joints [rad].
 Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescription& arm) {
@@ -91,14 +80,15 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
   for (int k = 0; k < arm.arm.motors(); ++k) {
     const multibody::ElasticJoint& joint = arm.arm.joints[static_cast<std::size_t>(k)];
     const multibody::TreeBody& body = tree.body(joint.body);
-    result["joints"].push_back({{"joint", joint.name},
-                                {"link", body.name},
-                                {"angle_deg", angles[k] / degree},
-                                {"link_mass_kg", body.inertia.mass},
-                                {"motor_inertia_kg_m2", joint.motor_inertia},
-                                {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},
-                                {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
-                                {"drive", to_string(arm.drives[static_cast<std::size_t>(k)].mode)}});
+    result["joints"].push_back(
+        {{"joint", joint.name},
+         {"link", body.name},
+         {"angle_deg", angles[k] / degree},
+         {"link_mass_kg", body.inertia.mass},
+         {"motor_inertia_kg_m2", joint.motor_inertia},
+         {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},
+         {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
+         {"drive", drive_modes[static_cast<std::size_t>(arm.drives[static_cast<std::size_t>(k)].mode)]}});
   }
   const std::vector<multibody::Drive> locked(arm.drives.size(), multibody::Drive::locked());
   const std::vector<multibody::Drive> limp(arm.drives.size(), multibody::Drive::limp());

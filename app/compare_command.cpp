@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/report/compare_report.hpp"
+#include "app/report/plot.hpp"
 #include "base/files.hpp"
 #include "base/toml_tree.hpp"
 #include "identification/effects/catalogue.hpp"
@@ -9,12 +10,10 @@
 #include "reduction/compare.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <iostream>
 
 namespace snare::app {
 
@@ -115,10 +114,8 @@ nlohmann::json case_json(const CaseComparison& one) {
          {"seconds_per_evaluation", m.seconds},
          {"force_N", m.force}});
   }
-  std::vector<double> travel = one.travel;
-  for (double& d : travel) d *= 1e3;
   return {{"case", one.name},
-          {"displacement_mm", travel},
+          {"displacement_mm", in_mm(one.travel)},
           {"measured_N", one.measured.empty() ? nlohmann::json() : nlohmann::json(one.measured)},
           {"force_range_N", one.force_range},
           {"models", models},
@@ -130,7 +127,6 @@ nlohmann::json case_json(const CaseComparison& one) {
 ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const Overrides overrides = overrides_of(options);
   const Comparison comparison = read(file, overrides);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
 
   // One after the other: their cost is measured.
   std::vector<CaseComparison> results;
@@ -154,12 +150,9 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
                       {"kind", "static"},
                       {"cases", nlohmann::json::array()}};
   for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
-  base::write_text(options.out / "compare.json", json.dump(1) + "\n");
+  write_result(options, "compare.json", json);
   base::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
-  if (options.json) {
-    std::cout << json.dump(1) << '\n';
-    return status;
-  }
+  if (options.json) return status;
   for (const CaseComparison& one : results) {
     for (const reduction::ModelResult& m : one.models) {
       console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name,

@@ -1,11 +1,16 @@
 #include "app/console.hpp"
 
+#include "base/files.hpp"
+
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <iostream>
 
 namespace snare::app {
 
@@ -27,6 +32,12 @@ bool interrupted() noexcept {
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+}
+
+void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result) {
+  const std::string text = result.dump(1) + "\n";
+  base::write_text(options.out / file, text);
+  if (options.json) std::cout << text;
 }
 
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <atomic>
+#include <nlohmann/json_fwd.hpp>
+
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -37,6 +38,9 @@ class Console {
   bool terminal_;
   bool pending_ = false;
 };
+
+/// Writes a result into its file in the folder of the results, and to standard output where that is asked for.
+void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result);
 
 /// Set by SIGINT and SIGTERM: long work stops at its next point and keeps what it has.
 [[nodiscard]] bool interrupted() noexcept;

@@ -3,78 +3,80 @@
 #include "base/csv.hpp"
 #include "base/units.hpp"
 
+#include <variant>
+
 namespace snare::app {
+
+namespace {
+
+using base::CsvCell;
+using base::mm;
+using coupling::PushPoint;
+
+/// A column that is a number of every point.
+struct PointColumn {
+  const char* name;
+  std::variant<double PushPoint::*, int PushPoint::*, bool PushPoint::*> number;
+  double unit = 1.0;
+  CsvCell before_touch = {};
+
+  [[nodiscard]] CsvCell cell(const PushPoint& p) const {
+    if (const auto* real = std::get_if<double PushPoint::*>(&number)) return p.**real / unit;
+    if (const auto* count = std::get_if<int PushPoint::*>(&number)) return static_cast<long long>(p.**count);
+    return static_cast<long long>(p.*std::get<bool PushPoint::*>(number));
+  }
+};
+
+const PointColumn up_to_error[] = {
+    {"force_N", &PushPoint::force, 1.0, 0.0},         {"tension_left_N", &PushPoint::tension_left},
+    {"tension_right_N", &PushPoint::tension_right},   {"contact_arc_mm", &PushPoint::contact_coordinate, mm},
+    {"iterations", &PushPoint::iterations, 1.0, 0LL}, {"converged", &PushPoint::converged, 1.0, 1LL}};
+const PointColumn after_error[] = {{"transverse_force_N", &PushPoint::transverse_force},
+                                   {"wrapped_mm", &PushPoint::wrapped_length, mm},
+                                   {"in_contact", &PushPoint::in_contact, 1.0, 0LL},
+                                   {"slipping", &PushPoint::slipping},
+                                   {"unstable_modes", &PushPoint::unstable_modes},
+                                   {"out_of_plane_modes", &PushPoint::out_of_plane_modes},
+                                   {"axial_force_N", &PushPoint::axial_force},
+                                   {"energy_J", &PushPoint::energy},
+                                   {"dissipated_J", &PushPoint::dissipated},
+                                   {"imbalance_N", &PushPoint::imbalance}};
+
+}  // namespace
 
 void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,
                   const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more) {
-  using base::mm;
-  std::vector<std::string> columns{"series",
-                                   "displacement_mm",
-                                   "force_N",
-                                   "tension_left_N",
-                                   "tension_right_N",
-                                   "contact_arc_mm",
-                                   "iterations",
-                                   "converged",
-                                   "discretisation_error_N",
-                                   "transverse_force_N",
-                                   "wrapped_mm",
-                                   "in_contact",
-                                   "slipping",
-                                   "unstable_modes",
-                                   "out_of_plane_modes",
-                                   "axial_force_N",
-                                   "energy_J",
-                                   "dissipated_J",
-                                   "imbalance_N"};
-  for (const CurveColumn& column : more) columns.push_back(column.name);
-  base::CsvWriter csv(file, columns);
+  std::vector<std::string> names{"series", "displacement_mm"};
+  for (const PointColumn& column : up_to_error) names.emplace_back(column.name);
+  names.emplace_back("discretisation_error_N");
+  for (const PointColumn& column : after_error) names.emplace_back(column.name);
+  for (const CurveColumn& column : more) names.push_back(column.name);
+  base::CsvWriter csv(file, names);
   for (std::size_t k = 0; k < series.size(); ++k) {
     const identification::Prediction& prediction = predictions[k];
     const std::vector<double>& displacement = identification::measured_displacement(series[k]);
-    const auto add_more = [&](std::vector<base::CsvCell>& row, std::size_t reading, bool asked) {
+    // A row of a point, or of a displacement before the touch.
+    const auto write = [&](double at, const PushPoint* point, CsvCell error, std::size_t reading, bool asked) {
+      std::vector<CsvCell> row{std::string_view(series[k].name), at / mm};
+      const auto cell = [&](const PointColumn& c) { return point != nullptr ? c.cell(*point) : c.before_touch; };
+      for (const PointColumn& column : up_to_error) row.push_back(cell(column));
+      row.push_back(error);
+      for (const PointColumn& column : after_error) row.push_back(cell(column));
       for (const CurveColumn& column : more) {
         const bool has = asked && reading < column.values[k].size();
-        row.push_back(has ? base::CsvCell(column.values[k][reading]) : base::CsvCell());
+        row.push_back(has ? CsvCell(column.values[k][reading]) : CsvCell());
       }
-    };
-    for (std::size_t i = 0; i < prediction.before_touch; ++i) {
-      std::vector<base::CsvCell> row(columns.size() - more.size());
-      row[0] = series[k].name;
-      row[1] = displacement[i] / mm;
-      row[2] = 0.0;
-      row[6] = 0LL;
-      row[7] = 1LL;
-      row[11] = 0LL;
-      add_more(row, i, true);
       csv.row(row);
-    }
+    };
+    for (std::size_t i = 0; i < prediction.before_touch; ++i) write(displacement[i], nullptr, {}, i, true);
     std::size_t reading = prediction.before_touch;
     const double offset = prediction.reading.displacement_offset;
     for (std::size_t i = 0; i < prediction.curve.curve.points.size(); ++i) {
-      const coupling::PushPoint& p = prediction.curve.curve.points[i];
+      const PushPoint& p = prediction.curve.curve.points[i];
+      // Branch switching adds points between the readings.
       const bool asked = reading < displacement.size() && p.travel == displacement[reading] - offset;
-      std::vector<base::CsvCell> row{std::string_view(series[k].name),
-                                     asked ? displacement[reading] / mm : (p.travel + offset) / mm,
-                                     p.force,
-                                     p.tension_left,
-                                     p.tension_right,
-                                     p.contact_coordinate / mm,
-                                     static_cast<long long>(p.iterations),
-                                     static_cast<long long>(p.converged),
-                                     prediction.curve.discretisation_error[i],
-                                     p.transverse_force,
-                                     p.wrapped_length / mm,
-                                     static_cast<long long>(p.in_contact),
-                                     static_cast<long long>(p.slipping),
-                                     static_cast<long long>(p.unstable_modes),
-                                     static_cast<long long>(p.out_of_plane_modes),
-                                     p.axial_force,
-                                     p.energy,
-                                     p.dissipated,
-                                     p.imbalance};
-      add_more(row, reading, asked);
-      csv.row(row);
+      write(asked ? displacement[reading] : p.travel + offset, &p, prediction.curve.discretisation_error[i], reading,
+            asked);
       if (asked) ++reading;
     }
   }

@@ -4,13 +4,10 @@
 #include "app/report/distil_report.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "base/parallel.hpp"
 #include "reduction/law_export.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <iostream>
 
 namespace snare::app {
 
@@ -59,7 +56,6 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
 ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
-  if (options.threads > 0) base::set_thread_count(options.threads);
 
   const std::filesystem::path journal = options.out / "distil.journal";
   const reduction::Distillation result =
@@ -73,18 +69,14 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
         fmt::format("{}; the curves that were reached are kept in {}", result.report.message, journal.string()));
     return ExitStatus::solver_stopped;
   }
-  const nlohmann::json json = law_json(wire, result);
-  base::write_text(options.out / "law.json", json.dump(1) + "\n");
+  write_result(options, "law.json", law_json(wire, result));
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
     write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c]);
   }
   base::write_text(options.out / "report.html", distil_report_html(wire, result));
   std::filesystem::remove(journal);
-  if (options.json) {
-    std::cout << json.dump(1) << '\n';
-    return ExitStatus::done;
-  }
+  if (options.json) return ExitStatus::done;
   for (const reduction::DistilledCase& one : result.cases) {
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();

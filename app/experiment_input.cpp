@@ -1,5 +1,4 @@
 #include "app/experiment_input.hpp"
-#include "base/parallel.hpp"
 #include "identification/effects/catalogue.hpp"
 
 namespace snare::app {
@@ -11,10 +10,7 @@ std::vector<base::Override> overrides_of(const CommonOptions& options) {
 }
 
 identification::Experiment open_experiment(const std::filesystem::path& file, const CommonOptions& options) {
-  identification::Experiment experiment =
-      identification::read_experiment(file, identification::parameters(), overrides_of(options));
-  if (options.threads > 0) base::set_thread_count(options.threads);
-  return experiment;
+  return identification::read_experiment(file, identification::parameters(), overrides_of(options));
 }
 
 }  // namespace snare::app

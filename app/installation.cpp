@@ -5,7 +5,7 @@
 namespace snare::app {
 
 std::filesystem::path data_directory() {
-  const std::filesystem::path source = SNARE_SOURCE_DATA_DIR;
+  std::filesystem::path source = SNARE_SOURCE_DATA_DIR;
   if (std::filesystem::exists(source)) return source;
   std::error_code error;
   const std::filesystem::path command = std::filesystem::read_symlink("/proc/self/exe", error);

@@ -1,5 +1,6 @@
 #include "app/law_json.hpp"
 
+#include "app/report/plot.hpp"
 #include "app/report/version.hpp"
 
 #include <nlohmann/json.hpp>
@@ -52,20 +53,16 @@ json law_entry(const FittedLaw& law) {
 json place_json(const DistilledPlace& place) {
   json laws = json::array();
   for (const FittedLaw& law : place.laws) laws.push_back(law_entry(law));
-  json travel = json::array();
-  for (const double d : place.stiffness.travel) travel.push_back(1e3 * d);
   json result{{"position_mm", 1e3 * place.position},
               {"laws", laws},
               {"spring_dashpot",
-               {{"travel_mm", travel},
+               {{"travel_mm", in_mm(place.stiffness.travel)},
                 {"secant_stiffness_N_m", place.stiffness.secant},
                 {"tangent_stiffness_N_m", place.stiffness.tangent}}}};
   if (place.recorded) {
-    json recorded = json::array();
-    for (const double d : place.recorded->stiffness.travel) recorded.push_back(1e3 * d);
     result["recorded"] = {{"displacement_offset_mm", 1e3 * place.recorded->offset},
                           {"quadratic", law_entry(place.recorded->quadratic)},
-                          {"displacement_mm", recorded},
+                          {"displacement_mm", in_mm(place.recorded->stiffness.travel)},
                           {"secant_stiffness_N_m", place.recorded->stiffness.secant}};
   }
   if (place.dissipation) {

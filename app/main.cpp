@@ -1,6 +1,7 @@
 #include "app/arm_command.hpp"
 #include "app/commands.hpp"
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -19,15 +20,19 @@ using snare::app::CommonOptions;
 using snare::app::Console;
 using snare::app::ExitStatus;
 
+void add_overrides(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("--set", options.overrides, "override a key of the file: key=value (repeatable)")
+      ->expected(1)
+      ->take_all();
+}
+
 void add_common(CLI::App& verb, CommonOptions& options, const std::string& default_out) {
   options.out = default_out;
   verb.add_option("--out", options.out, "folder for the results")->capture_default_str();
   verb.add_option("--threads", options.threads, "number of threads; 0: one a processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  verb.add_option("--set", options.overrides, "override a key of the file: key=value (repeatable)")
-      ->expected(1)
-      ->take_all();
+  add_overrides(verb, options);
   verb.add_flag("--quiet", options.quiet, "no messages but errors");
   verb.add_flag("--json", options.json, "the result on standard output");
 }
@@ -75,6 +80,7 @@ const Verb verbs[] = {
 template <typename Run>
 ExitStatus guarded(const CommonOptions& options, const Run& run) {
   Console console(options.quiet);
+  if (options.threads > 0) snare::base::set_thread_count(options.threads);
   try {
     return run(console);
   } catch (const snare::base::InputError& error) {
@@ -117,9 +123,7 @@ int run(int argc, char** argv) {
   CLI::App* arm_show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
   arm_show->add_option("FILE", arm_file, "arm file")->required();
   arm_show->add_option("--pose", arm_pose, "a pose of the file, or angles in degrees: 0,30,-40");
-  arm_show->add_option("--set", arm_options.overrides, "override a key of the file: key=value (repeatable)")
-      ->expected(1)
-      ->take_all();
+  add_overrides(*arm_show, arm_options);
   arm_show->add_flag("--json", arm_options.json, "as JSON");
   arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
 

@@ -14,86 +14,70 @@
 
 // What the structures consist of. A size that no longer fits says that a member came or went: it belongs here too.
 namespace snare::multibody {
-template <class Archive>
-void fields(Archive& a, RigidBodyState& s) {
+void fields(auto& a, RigidBodyState& s) {
   a(s.position)(s.orientation.coeffs())(s.velocity)(s.spin);
 }
-template <class Archive>
-void fields(Archive& a, ArmState& s) {
+void fields(auto& a, ArmState& s) {
   static_assert(sizeof(ArmState) == 4 * sizeof(Eigen::VectorXd));
   a(s.q)(s.v)(s.motor)(s.motor_rate);
 }
-template <class Archive>
-void fields(Archive& a, ArmWork& w) {
+void fields(auto& a, ArmWork& w) {
   static_assert(sizeof(ArmWork) == 3 * sizeof(double));
   a(w.motors)(w.loads)(w.lost);
 }
-template <class Archive>
-void fields(Archive& a, Wrench& w) {
+void fields(auto& a, Wrench& w) {
   a(w.moment)(w.force);
 }
 }  // namespace snare::multibody
 
 namespace snare::numerics {
-template <class Archive>
-void fields(Archive& a, IdaStatistics& s) {
+void fields(auto& a, IdaStatistics& s) {
   static_assert(sizeof(IdaStatistics) == 17 * sizeof(double));
   a(s.steps)(s.residuals)(s.jacobians)(s.factorizations)(s.analyses)(s.newton_iterations)(s.newton_failures)(
       s.error_test_failures)(s.restarts)(s.smallest_step)(s.largest_step)(s.integrands)(s.residual_seconds)(
       s.jacobian_seconds)(s.factor_seconds)(s.solve_seconds)(s.integrand_seconds);
 }
-template <class Archive>
-void fields(Archive& a, IdaReport& r) {
+void fields(auto& a, IdaReport& r) {
   a(r.termination)(r.iterations)(r.residual_norm)(r.message)(r.time)(r.step)(r.worst_unknowns);
 }
 }  // namespace snare::numerics
 
 namespace snare::coupling {
-template <class Archive>
-void fields(Archive& a, ContactSample& s) {
+void fields(auto& a, ContactSample& s) {
   static_assert(sizeof(ContactSample) == 15 * sizeof(double));
   a(s.closed)(s.gap)(s.force)(s.normal_force)(s.point)(s.arc)(s.slip_speed)(s.sticking)(s.points);
 }
-template <class Archive>
-void fields(Archive& a, EnergyBalance& e) {
+void fields(auto& a, EnergyBalance& e) {
   static_assert(sizeof(EnergyBalance) == 6 * sizeof(double));
   a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.work)(e.integrator);
 }
-template <class Archive>
-void fields(Archive& a, MotionSample::Arm& s) {
+void fields(auto& a, MotionSample::Arm& s) {
   a(s.state)(s.work)(s.joint_torque);
 }
-template <class Archive>
-void fields(Archive& a, MotionSample& s) {
+void fields(auto& a, MotionSample& s) {
   static_assert(sizeof(MotionSample) == sizeof(double) + 6 * sizeof(std::vector<double>) + 12 * sizeof(double));
   a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.energy)(s.momentum)(s.angular_momentum);
 }
-template <class Archive>
-void fields(Archive& a, MotionEvent& e) {
+void fields(auto& a, MotionEvent& e) {
   static_assert(sizeof(MotionEvent) == 5 * sizeof(double));
   a(e.time)(e.contact)(e.point)(e.arc)(e.kind)(e.approach_speed);
 }
-template <class Archive>
-void fields(Archive& a, StrengthUse& u) {
+void fields(auto& a, StrengthUse& u) {
   static_assert(sizeof(StrengthUse) == 5 * sizeof(double));
   a(u.share)(u.tension)(u.bending)(u.arc)(u.time);
 }
-template <class Archive>
-void fields(Archive& a, LeftOutInertia& i) {
+void fields(auto& a, LeftOutInertia& i) {
   static_assert(sizeof(LeftOutInertia) == 2 * sizeof(double));
   a(i.kinetic)(i.force);
 }
-template <class Archive>
-void fields(Archive& a, MotionSums& s) {
+void fields(auto& a, MotionSums& s) {
   a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.largest_penetration)(s.largest_drift)(s.start_energy)(
       s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
 }
-template <class Archive>
-void fields(Archive& a, MotionState& s) {
+void fields(auto& a, MotionState& s) {
   a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
 }
-template <class Archive>
-void fields(Archive& a, MotionResult& r) {
+void fields(auto& a, MotionResult& r) {
   a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.left_out)(
       r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
 }
@@ -101,12 +85,10 @@ void fields(Archive& a, MotionResult& r) {
 
 namespace snare::app {
 
-template <class Archive>
-void fields(Archive& a, MotionRecord& m) {
+void fields(auto& a, MotionRecord& m) {
   a(m.samples)(m.result);
 }
-template <class Archive>
-void fields(Archive& a, MotionProgress& p) {
+void fields(auto& a, MotionProgress& p) {
   bool begun = p.state.has_value();
   a(p.finished)(p.samples)(begun);
   if (!begun) return;

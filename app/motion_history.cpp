@@ -4,6 +4,8 @@
 #include "base/index.hpp"
 #include "base/units.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -37,7 +39,7 @@ class Columns {
   void add_vector(const std::string& before, const std::string& after,
                   const std::function<Vector3d(const Sample&)>& vector, int count = 3) {
     for (int k = 0; k < count; ++k)
-      add(before + "xyz"[k] + after, [vector, k](const Sample& s) { return vector(s)[k]; });
+      add(fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const Sample& s) { return vector(s)[k]; });
   }
 
   [[nodiscard]] std::vector<std::string> names() const {
@@ -62,13 +64,8 @@ class Columns {
 };
 
 void add_energies(Columns<MotionSample>& columns) {
-  using Energy = double coupling::EnergyBalance::*;
-  static constexpr std::pair<const char*, Energy> energies[] = {
-      {"kinetic_J", &coupling::EnergyBalance::kinetic},     {"strain_J", &coupling::EnergyBalance::strain},
-      {"potential_J", &coupling::EnergyBalance::potential}, {"dissipated_J", &coupling::EnergyBalance::dissipated},
-      {"work_J", &coupling::EnergyBalance::work},           {"integrator_J", &coupling::EnergyBalance::integrator}};
   for (const auto& [name, energy] : energies)
-    columns.add(name, [energy = energy](const MotionSample& s) { return s.energy.*energy; });
+    columns.add(fmt::format("{}_J", name), [energy = energy](const MotionSample& s) { return s.energy.*energy; });
 }
 
 const RigidBodyState& body(const MotionSample& s) {
@@ -222,6 +219,7 @@ void write(const std::filesystem::path& file, const Columns<Sample>& columns, co
 void write_history(const std::filesystem::path& file, const scenario::WireMotions& motions,
                    const std::vector<FinishedMotion>& finished) {
   std::vector<Run<MotionSample>> runs;
+  runs.reserve(finished.size());
   for (const FinishedMotion& run : finished) runs.push_back({run.asked.name, run.samples});
   write(file, columns_of(motions), runs, motions.probe ? Runs::named : Runs::only);
 }

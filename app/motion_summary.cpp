@@ -43,13 +43,6 @@ json ending(const numerics::IdaReport& report, const numerics::IdaStatistics& n)
 json result_json(const MotionResult& r) {
   json object = ending(r.report, r.statistics);
   object.update({{"time_s", r.report.time},
-                 {"energy_J",
-                  {{"kinetic", r.energy.kinetic},
-                   {"strain", r.energy.strain},
-                   {"potential", r.energy.potential},
-                   {"dissipated", r.energy.dissipated},
-                   {"work", r.energy.work},
-                   {"integrator", r.energy.integrator}}},
                  {"momentum_error_Ns", vector_json(r.momentum_error)},
                  {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
                  {"largest_penetration_m", r.largest_penetration},
@@ -57,6 +50,7 @@ json result_json(const MotionResult& r) {
                  {"analyses", r.statistics.analyses},
                  {"wall_s", r.wall_seconds},
                  {"real_time_factor", real_time_factor(r)}});
+  for (const auto& [name, energy] : energies) object["energy_J"][name] = r.energy.*energy;
   return object;
 }
 

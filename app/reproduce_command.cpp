@@ -12,9 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <iostream>
 #include <limits>
 
 namespace snare::app {
@@ -169,13 +167,13 @@ std::vector<RangeVerdict> verdicts_at_other_ranges(const Experiment& experiment,
 
 /// The wire, mounts and pusher exactly as the experiment file declares them.
 ReproducedModel declared_model(const Experiment& experiment, Console& console) {
-  ReproducedModel model;
-  model.name = "declared";
-  model.label = "declared model";
-  model.description = "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted";
+  ReproducedModel model{
+      .name = "declared",
+      .label = "declared model",
+      .description = "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted"};
   for (const char* key : {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm"}) {
     const identification::Parameter& p = identification::parameters().at(key);
-    model.numbers[key] = {p.shown(p.get(experiment.series.front().test, {}), 0.0), std::nullopt, p.unit};
+    model.numbers[key] = {p.shown(p.number.get(experiment.series.front().test, {}), 0.0), std::nullopt, p.unit};
   }
   model.predictions = curves_of(experiment, {}, console, model.label);
   return model;
@@ -183,10 +181,7 @@ ReproducedModel declared_model(const Experiment& experiment, Console& console) {
 
 /// The final model of a trace.
 ReproducedModel model_of(const Experiment& experiment, const Trace& trace, const ModelWords& words, Console& console) {
-  ReproducedModel model;
-  model.name = words.name;
-  model.label = words.label;
-  model.description = words.description;
+  ReproducedModel model{.name = words.name, .label = words.label, .description = words.description};
   for (const identification::FittedNumber& n : trace.final.numbers) {
     model.numbers[n.key] = {n.value, n.standard_error, n.unit};
   }
@@ -277,19 +272,15 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     }
   }
 
-  const std::string json = reproduce_json(result).dump(1) + "\n";
   write_all_curves(options.out / "curves.csv", result);
-  base::write_text(options.out / "reproduce.json", json);
+  write_result(options, "reproduce.json", reproduce_json(result));
   base::write_text(options.out / "report.html", reproduce_report_html(result, version()));
-  if (options.json) {
-    std::cout << json;
-  } else {
-    console.say(error_table(result));
-    for (const RangeVerdict& v : result.verdicts) {
-      console.say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict));
-    }
-    console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html", options.out.string()));
+  if (options.json) return status;
+  console.say(error_table(result));
+  for (const RangeVerdict& v : result.verdicts) {
+    console.say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict));
   }
+  console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html", options.out.string()));
   return status;
 }
 

@@ -1,6 +1,7 @@
 #include "app/reproduce_json.hpp"
 
 #include "app/commands.hpp"
+#include "app/report/plot.hpp"
 #include "app/report/trace_findings.hpp"
 #include "app/trace_json.hpp"
 

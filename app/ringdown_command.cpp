@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <iostream>
 #include <numbers>
 
 namespace snare::app {
@@ -80,7 +79,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);
-  base::write_text(options.out / "ringdown.json", result.dump(1) + "\n");
+  write_result(options, "ringdown.json", result);
   base::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});
   for (std::size_t s = 0; s < fits.size(); ++s) {
     const identification::RingDown& data = file.series[s].data;
@@ -90,10 +89,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   csv.commit();
   base::write_text(options.out / "report.html", ring_down_report_html(file, fits, split));
-  if (options.json) {
-    std::cout << result.dump(1) << '\n';
-    return status;
-  }
+  if (options.json) return status;
   for (std::size_t s = 0; s < fits.size(); ++s) {
     for (const RingDownMode& m : fits[s].modes) {
       console.say(fmt::format("{}: {} Hz, damping ratio {}{}", file.series[s].data.name, with_error(m.frequency),

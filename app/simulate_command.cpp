@@ -7,14 +7,12 @@
 #include "app/report/motion_pictures.hpp"
 #include "app/report/paraview.hpp"
 #include "base/files.hpp"
-#include "base/parallel.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <iostream>
 #include <variant>
 
 namespace snare::app {
@@ -46,9 +44,8 @@ void tell(const scenario::WireMotions& motions, const std::vector<FinishedMotion
 }
 
 void write_results(const CommonOptions& options, const json& summary, const std::string& page) {
-  base::write_text(options.out / "summary.json", summary.dump(1) + "\n");
+  write_result(options, "summary.json", summary);
   base::write_text(options.out / "report.html", page);
-  if (options.json) std::cout << summary.dump(1) << '\n';
 }
 
 void tell_files(const CommonOptions& options, Console& console) {
@@ -112,9 +109,7 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& 
 }  // namespace
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  const std::vector<base::Override> overrides = overrides_of(options);
-  if (options.threads > 0) base::set_thread_count(options.threads);
-  const scenario::Scenario asked = scenario::read_scenario(file, overrides);
+  const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
   return std::visit([&](const auto& content) { return simulate(asked, content, options, console); }, asked.content);
 }
 

@@ -10,9 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <functional>
-#include <iostream>
-
 namespace snare::app {
 
 namespace {
@@ -30,11 +27,20 @@ std::vector<CurveColumn> columns_of(const Trace& trace) {
   return columns;
 }
 
-std::function<bool(const std::string&)> told_to(Console& console) {
-  return [&console](const std::string& stage) {
+/// The trace of an experiment; its curves are written. What stops it is told to the console.
+Trace trace_and_write_curves(const identification::Experiment& experiment, identification::TraceOptions tracing,
+                             const CommonOptions& options, Console& console) {
+  tracing.progress = [&console](const std::string& stage) {
     console.progress(stage);
     return !interrupted();
   };
+  Trace trace = identification::trace(experiment, tracing);
+  console.end_progress();
+  if (trace.report.usable())
+    write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
+  else
+    console.complain(trace.report.message);
+  return trace;
 }
 
 std::string number_line(const FittedNumber& n) {
@@ -47,21 +53,12 @@ std::string number_line(const FittedNumber& n) {
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
-  identification::TraceOptions tracing;
-  tracing.progress = told_to(console);
-  const Trace trace = identification::trace(experiment, tracing);
-  console.end_progress();
-  if (!trace.report.usable()) {
-    console.complain(trace.report.message);
-    return ExitStatus::solver_stopped;
-  }
+  const Trace trace = trace_and_write_curves(experiment, {}, options, console);
+  if (!trace.report.usable()) return ExitStatus::solver_stopped;
   const nlohmann::json result = trace_json(experiment, trace);
-  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  base::write_text(options.out / "trace.json", result.dump(1) + "\n");
+  write_result(options, "trace.json", result);
   base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version()));
-  if (options.json) {
-    std::cout << result.dump(1) << '\n';
-  } else {
+  if (!options.json) {
     console.say(verdict(trace));
     console.say(fmt::format("rmse: declared {:.4g} N, base {:.4g} N, final {:.4g} N; noise {:.3g} N ({})",
                             trace.declared.rmse, trace.base.rmse, trace.final.rmse,
@@ -84,13 +81,8 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   fitting.intervals = true;
   fitting.attribute = false;
   fitting.draw = false;
-  fitting.progress = told_to(console);
-  const Trace trace = identification::trace(experiment, fitting);
-  console.end_progress();
-  if (!trace.report.usable()) {
-    console.complain(trace.report.message);
-    return ExitStatus::solver_stopped;
-  }
+  const Trace trace = trace_and_write_curves(experiment, fitting, options, console);
+  if (!trace.report.usable()) return ExitStatus::solver_stopped;
   const nlohmann::json whole = trace_json(experiment, trace);
   nlohmann::json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
   for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
@@ -98,11 +90,8 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   }
   result["fit"] = whole["final"];
   result["residual"] = {{"acceptable", trace.base_tests.acceptable()}, {"tests", whole["residual"]["tests"]}};
-  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  base::write_text(options.out / "fit.json", result.dump(1) + "\n");
-  if (options.json) {
-    std::cout << result.dump(1) << '\n';
-  } else {
+  write_result(options, "fit.json", result);
+  if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",
                             trace.declared.rmse, trace.final.rmse, trace.final.chi2_dof));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));

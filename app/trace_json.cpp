@@ -1,6 +1,7 @@
 #include "app/trace_json.hpp"
 
 #include "app/commands.hpp"
+#include "app/report/plot.hpp"
 #include "app/report/trace_findings.hpp"
 #include "identification/effects/catalogue.hpp"
 
@@ -94,13 +95,11 @@ json function_json(const identification::ChannelFunction& f) {
 
 json series_json(const Trace& trace, std::size_t k) {
   const identification::Series& s = trace.series[k];
-  std::vector<double> displacement = s.readings->displacement;
-  for (double& d : displacement) d *= 1e3;
   json result{{"name", s.name},
               {"contact_position_mm", 1e3 * s.test.contact_position},
               {"span_mm", 1e3 * s.test.mount.span},
               {"heldout", static_cast<bool>(trace.heldout[k])},
-              {"displacement_mm", displacement},
+              {"displacement_mm", in_mm(s.readings->displacement)},
               {"measured_N", s.readings->force},
               {"time_s", s.readings->time},
               {"drawn", s.law.has_value()}};

@@ -1,7 +1,6 @@
 #include "app/commands.hpp"
 #include "app/report/report_page.hpp"
 #include "base/files.hpp"
-#include "base/parallel.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
 #include "validation/contact_law_checks.hpp"
@@ -17,7 +16,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
-#include <iostream>
 
 namespace snare::app {
 
@@ -44,13 +42,8 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
   const auto flush = [&] {
     if (!table.rows.empty()) page.table(table);
     table = Table{};
-    table.columns = {{"quantity"},
-                     {"reference", ColumnKind::number},
-                     {"computed", ColumnKind::number},
-                     {"error", ColumnKind::number},
-                     {"limit", ColumnKind::number},
-                     {"verdict"},
-                     {"source"}};
+    table.columns = {"quantity"_text, "reference"_number, "computed"_number, "error"_number,
+                     "limit"_number,  "verdict"_text,     "source"_text};
   };
   for (const validation::Row& row : rows) {
     if (row.group != group) {
@@ -78,7 +71,6 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
 }  // namespace
 
 ExitStatus run_validate(const CommonOptions& options, Console& console) {
-  if (options.threads > 0) base::set_thread_count(options.threads);
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   const std::filesystem::path measured =
@@ -120,9 +112,8 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
                         {"rows", nlohmann::json::array()},
                         {"skipped", skipped}};
   for (const validation::Row& row : rows) result["rows"].push_back(row_json(row));
-  base::write_text(options.out / "validation.json", result.dump(1) + "\n");
+  write_result(options, "validation.json", result);
   base::write_text(options.out / "report.html", page(rows, skipped));
-  if (options.json) std::cout << result.dump(1) << '\n';
   std::string group;
   for (const validation::Row& row : rows) {
     if (row.group != group) console.say((group = row.group) + ":");

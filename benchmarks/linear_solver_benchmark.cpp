@@ -3,8 +3,8 @@
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
+#include "benchmarks/peers/bordered_pattern.hpp"
 #include "benchmarks/peers/cholmod.hpp"
-#include "numerics/bordered_pattern.hpp"
 #include "numerics/klu.hpp"
 
 #include <benchmark/benchmark.h>
@@ -73,7 +73,7 @@ struct LinearSystem {
   explicit LinearSystem(int elements) : wire(pressed_wire(elements, travel)) {
     newton_iteration(*wire.system, wire.point, workspace);
     const numerics::BorderedSystem& system = workspace.system;
-    const numerics::BorderedPattern pattern(system, numerics::BorderedPattern::Zeros::dropped);
+    const BorderedPattern pattern(system, BorderedPattern::Zeros::dropped);
     whole = pattern.pattern();
     if (!pattern.refill(system, whole)) throw std::runtime_error("the pattern does not fit its own system");
     held = system.matrix;

@@ -3,9 +3,9 @@
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
+#include "benchmarks/peers/bordered_pattern.hpp"
 #include "benchmarks/peers/kinsol.hpp"
 #include "coupling/statics/push_solver.hpp"
-#include "numerics/bordered_pattern.hpp"
 #include "wire/equilibrium.hpp"
 
 #include <benchmark/benchmark.h>
@@ -117,7 +117,7 @@ void EquilibriumKinsol(benchmark::State& state) {
   Eigen::VectorXd start(n + m);
   start << wire.point.band, wire.point.border;
   assemble(start);
-  const numerics::BorderedPattern pattern(bordered, numerics::BorderedPattern::Zeros::kept);
+  const BorderedPattern pattern(bordered, BorderedPattern::Zeros::kept);
   NonlinearSystem nonlinear;
   nonlinear.pattern = pattern.pattern();
   nonlinear.residual = [&](const Eigen::VectorXd& u, Eigen::VectorXd& residual) {

@@ -13,7 +13,8 @@ namespace snare::multibody {
 struct InverseDynamicsDerivatives {
   explicit InverseDynamicsDerivatives(const Tree& tree);
 
-  Eigen::MatrixXd position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities, as `moved` moves q
+  Eigen::MatrixXd
+      position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities: joints turn and shift in their own frames
   Eigen::MatrixXd velocity;  ///< d tau / d v, (nv x nv)
   Eigen::MatrixXd mass;      ///< d tau / d v' = H(q), (nv x nv)
 
@@ -35,7 +36,7 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
 /// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md
 /// (A.8)
 struct MomentumDerivatives {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> position;  ///< along velocities, as `moved` moves q
+  Eigen::Matrix<double, 6, Eigen::Dynamic> position;  ///< along velocities: joints turn and shift in their own frames
   Eigen::Matrix<double, 6, Eigen::Dynamic> velocity;
 };
 /// From what `differentiate_inverse_dynamics` left in its storage.

@@ -49,9 +49,6 @@ struct Wrench {
 [[nodiscard]] inline Twist operator+(Twist a, const Twist& b) {
   return a += b;
 }
-[[nodiscard]] inline Twist operator-(const Twist& a, const Twist& b) {
-  return {a.angular - b.angular, a.linear - b.linear};
-}
 [[nodiscard]] inline Twist operator*(double s, const Twist& a) {
   return {s * a.angular, s * a.linear};
 }
@@ -87,9 +84,6 @@ struct Pose {
   [[nodiscard]] Twist to_outer(const Twist& v_B) const {
     const Eigen::Vector3d w = R * v_B.angular;
     return {w, R * v_B.linear + p.cross(w)};
-  }
-  [[nodiscard]] Wrench to_inner(const Wrench& f_A) const {
-    return {R.transpose() * (f_A.moment - p.cross(f_A.force)), R.transpose() * f_A.force};
   }
   [[nodiscard]] Wrench to_outer(const Wrench& f_B) const {
     const Eigen::Vector3d f = R * f_B.force;

@@ -95,17 +95,8 @@ struct TreeState {
 /// Pose of the body in its joint's frame.
 [[nodiscard]] Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q);
 
-/// q' = N(q) v, with the unit quaternion's rate 1/2 quat * (0, omega).                               theory.md (A.3)
-[[nodiscard]] Eigen::VectorXd coordinate_rate(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v);
-
-/// The same of one body on a free joint.
+/// Rate of the coordinates of a body on a free joint, with the unit quaternion's rate 1/2 quat * (0, omega).  theory.md (A.3)
 [[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                const Eigen::VectorXd& v);
-
-/// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come out unit.
-[[nodiscard]] Eigen::VectorXd moved(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time);
-
-/// Divides the quaternions by their norms.
-void normalise(const Tree& tree, Eigen::VectorXd& q);
 
 }  // namespace snare::multibody

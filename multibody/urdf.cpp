@@ -1,11 +1,12 @@
 #include "multibody/urdf.hpp"
 
+#include "base/files.hpp"
+
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <fstream>
+#include <cstddef>
 #include <map>
-#include <sstream>
 
 namespace snare::multibody {
 
@@ -120,15 +121,8 @@ RobotDescription parse_urdf(const std::string& file, const std::string& text) {
 }
 
 RobotDescription read_urdf(const std::filesystem::path& file) {
-  constexpr std::uintmax_t size_limit = 4u << 20u;  // of a description without meshes [byte]
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) throw InputError({file.string(), 0, "", "", "cannot be read"});
-  if (size > size_limit) throw InputError({file.string(), 0, "", "", "must not be larger than 4 MiB"});
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_urdf(file.string(), text.str());
+  constexpr std::size_t size_limit = 4u << 20u;  // of a description without meshes [byte]
+  return parse_urdf(file.string(), base::read_text(file, size_limit));
 }
 
 void add_robot(Tree& tree, int frame, RootJoint root, const RobotDescription& robot) {

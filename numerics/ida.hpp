@@ -70,6 +70,8 @@ class Ida {
  public:
   Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals = {});
   ~Ida();
+  Ida(const Ida&) = delete;
+  Ida& operator=(const Ida&) = delete;
   Ida(Ida&&) noexcept;
   Ida& operator=(Ida&&) noexcept;
 

@@ -23,38 +23,29 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
     report.residual_norm = problem.error(point, w.system);
     finish(w);
     if (!std::isfinite(report.residual_norm)) {
-      report.termination = Termination::not_finite;
-      report.message = "a residual is not finite";
-      return report;
+      return report.end(Termination::not_finite, "a residual is not finite");
     }
     // The extra equation of the arc is linear and holds after one step; the first pass always takes one.
     if (report.residual_norm <= 1.0 &&
         (report.iterations > 0 || w.system.border_residual.size() == point.border.size())) {
-      report.termination = Termination::converged;
-      return report;
+      return report.end(Termination::converged);
     }
     // A step below the last place of the coordinates cannot be improved on.
     if (last_change < 1e-15 * problem.length_scale() && report.residual_norm <= 1e3) {
-      report.termination = Termination::converged;
-      return report;
+      return report.end(Termination::converged);
     }
     // No progress for three iterations ends it.
     worse = report.residual_norm < best ? 0 : worse + 1;
     // Round-off may keep the residual at some times its tolerance: no iteration lowers it then.
     if (worse > 0 && best <= 16.0 && report.residual_norm <= 16.0) {
-      report.termination = Termination::converged;
-      return report;
+      return report.end(Termination::converged);
     }
     best = std::min(best, report.residual_norm);
     if (report.iterations == max_iterations || worse >= 3) {
-      report.termination = Termination::iteration_limit;
-      report.message = "Newton's method did not converge";
-      return report;
+      return report.end(Termination::iteration_limit, "Newton's method did not converge");
     }
     if (!w.solver.factorize(w.system)) {
-      report.termination = Termination::singular_matrix;
-      report.message = "the tangent matrix is singular";
-      return report;
+      return report.end(Termination::singular_matrix, "the tangent matrix is singular");
     }
     w.factored = true;
     // [K C; D E] (dq, db) = -(r_q, r_b).                                                       theory.md (N.1)
@@ -64,9 +55,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
     last_change = w.band_step.lpNorm<Eigen::Infinity>();
     const double far = last_change / (0.1 * problem.length_scale());
     if (!(far < 1e6)) {
-      report.termination = Termination::singular_matrix;
-      report.message = "the tangent matrix is nearly singular";
-      return report;
+      return report.end(Termination::singular_matrix, "the tangent matrix is nearly singular");
     }
     // No step moves a band unknown by more than a tenth of the length.
     if (far > 1.0) {

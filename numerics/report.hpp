@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 namespace snare::numerics {
 
@@ -22,6 +23,12 @@ struct [[nodiscard]] SolveReport {
   std::string message;         ///< one sentence for a person; empty when converged
 
   [[nodiscard]] bool usable() const noexcept { return termination == Termination::converged; }
+  /// Says how it ended and why.
+  SolveReport& end(Termination how, std::string why = {}) {
+    termination = how;
+    message = std::move(why);
+    return *this;
+  }
 };
 
 }  // namespace snare::numerics

@@ -13,17 +13,6 @@ int SparseMatrix::slot(int i, int j) const {
   return found != last && *found == i ? static_cast<int>(found - row.begin()) : -1;
 }
 
-Eigen::VectorXd SparseMatrix::operator*(const Eigen::VectorXd& x) const {
-  assert(x.size() == order);
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(order);
-  for (int j = 0; j < order; ++j) {
-    for (int k = column_start[static_cast<std::size_t>(j)]; k < column_start[static_cast<std::size_t>(j) + 1]; ++k) {
-      y[row[static_cast<std::size_t>(k)]] += value[static_cast<std::size_t>(k)] * x[j];
-    }
-  }
-  return y;
-}
-
 SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& entries) {
   const auto columns = static_cast<std::size_t>(order);
   // Rows by columns, with the repeated ones; then every column in order and without them.
@@ -70,10 +59,6 @@ std::vector<Triplet> triplets_of(const SymmetricBandMatrix& matrix, Triangle tri
     }
   }
   return triplets;
-}
-
-SparseMatrix to_sparse(const SymmetricBandMatrix& matrix, Triangle triangle) {
-  return from_triplets(matrix.order(), triplets_of(matrix, triangle));
 }
 
 }  // namespace snare::numerics

@@ -18,8 +18,6 @@ struct SparseMatrix {
 
   /// Slot of entry (i, j) in `value`, or -1 outside the pattern.
   [[nodiscard]] int slot(int i, int j) const;
-  /// A x.
-  [[nodiscard]] Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
 };
 
 /// Pattern from coordinates (i, j), repeated ones merged; values zero.
@@ -37,6 +35,5 @@ struct Triplet {
 /// Lower triangle, or all, of a band matrix, with the zeros within its band.
 enum class Triangle { lower, both };
 [[nodiscard]] std::vector<Triplet> triplets_of(const SymmetricBandMatrix& matrix, Triangle triangle);
-[[nodiscard]] SparseMatrix to_sparse(const SymmetricBandMatrix& matrix, Triangle triangle);
 
 }  // namespace snare::numerics

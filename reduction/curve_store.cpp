@@ -1,5 +1,6 @@
 #include "reduction/curve_store.hpp"
 
+#include "base/archive.hpp"
 #include "base/files.hpp"
 #include "base/parallel.hpp"
 #include "coupling/statics/push_solver.hpp"
@@ -9,8 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <mutex>
 #include <string_view>
@@ -19,13 +18,6 @@
 namespace snare::reduction {
 
 namespace {
-
-/// Fowler, Noll and Vo's hash, 64 bits, variant 1a.
-std::uint64_t fnv1a(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return hash;
-}
 
 /// Everything that a curve depends on but its place, as text.
 std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
@@ -52,7 +44,7 @@ std::string identity(const WireCase& wire, const DistilSettings& settings, const
                         t.wire.diameter, t.wire.youngs_modulus);
   for (const double factor : t.wire.bending_profile) text += fmt::format(" {}", factor);
   for (const double d : travel) text += fmt::format(" {}", d);
-  return fmt::format("{:016x}", fnv1a(text));
+  return fmt::format("{:016x}", base::fingerprint(text));
 }
 
 void append(std::string& text, const std::vector<double>& values) {
@@ -66,34 +58,22 @@ std::string journal_line(const std::string& identity, const CurvePlace& place, c
                                  curve.largest_strain, curve.dissipated);
   append(text, curve.loading);
   append(text, curve.unloading);
-  return fmt::format("{} {:016x}\n", text, fnv1a(text));
+  return fmt::format("{} {:016x}\n", text, base::fingerprint(text));
 }
 
-/// Numbers of a line, one after the other.
-class NumberReader {
- public:
-  explicit NumberReader(std::string_view text) : text_(text) {}
-  [[nodiscard]] double next() {
-    while (!text_.empty() && text_.front() == ' ') text_.remove_prefix(1);
+/// Numbers with a space before each, up to the first that is none.
+std::vector<double> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data(); at < end;) {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-    good_ = good_ && error == std::errc();
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return value;
+    const auto [after, error] = std::from_chars(at + 1, end, value);
+    if (error != std::errc()) break;
+    numbers.push_back(value);
+    at = after;
   }
-  [[nodiscard]] std::vector<double> list(std::size_t most) {
-    const double count = next();
-    if (!(count >= 0.0 && count <= static_cast<double>(most))) good_ = false;
-    std::vector<double> values;
-    for (std::size_t i = 0; good_ && i < static_cast<std::size_t>(count); ++i) values.push_back(next());
-    return values;
-  }
-  [[nodiscard]] bool good() const { return good_; }
-
- private:
-  std::string_view text_;
-  bool good_ = true;
-};
+  return numbers;
+}
 
 }  // namespace
 
@@ -121,21 +101,17 @@ void CurveStore::read_journal() {
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
     const std::size_t last = line.rfind(' ');
-    if (last == std::string_view::npos || line.substr(last + 1) != fmt::format("{:016x}", fnv1a(line.substr(0, last))))
+    if (last == std::string_view::npos ||
+        line.substr(last + 1) != fmt::format("{:016x}", base::fingerprint(line.substr(0, last))))
       continue;
     if (line.substr(0, identity_.size()) != identity_) continue;
-    NumberReader numbers(line.substr(identity_.size(), last - identity_.size()));
-    CurvePlace place;
-    PushedCurve curve;
-    place.position = numbers.next();
-    place.slack = numbers.next();
-    curve.discretisation_error = numbers.next();
-    curve.largest_strain = numbers.next();
-    curve.dissipated = numbers.next();
-    curve.loading = numbers.list(travel_.size());
-    curve.unloading = numbers.list(travel_.size());
-    curve.complete = true;
-    if (numbers.good() && curve.loading.size() == travel_.size()) curves_.emplace(place, std::move(curve));
+    // The place, what is said of the curve, then each branch after its length: see journal_line.
+    const std::vector<double> n = numbers_in(line.substr(identity_.size(), last - identity_.size()));
+    const std::size_t points = travel_.size();
+    if (n.size() < points + 7 || n[5] != static_cast<double>(points)) continue;
+    const auto unloading = n.begin() + static_cast<std::ptrdiff_t>(points) + 7;
+    curves_.emplace(CurvePlace{n[0], n[1]},
+                    PushedCurve{{n.begin() + 6, unloading - 1}, {unloading, n.end()}, n[2], n[3], n[4], true, {}});
   }
 }
 
@@ -223,14 +199,12 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, 
     if (results[k].loading.empty() && results[k].stopped.empty()) continue;  // not begun
     ++solved_;
     if (!results[k].complete && report.usable()) {
-      report.termination = numerics::Termination::step_too_small;
-      report.message = results[k].stopped;
+      report.end(numerics::Termination::step_too_small, results[k].stopped);
     }
     curves_[wanted[k]] = std::move(results[k]);
   }
   if (stop && report.usable()) {
-    report.termination = numerics::Termination::interrupted;
-    report.message = "interrupted";
+    report.end(numerics::Termination::interrupted, "interrupted");
   }
   return report;
 }

@@ -17,6 +17,7 @@ namespace snare::reduction {
 struct CurvePlace {
   double position = 0.0;
   double slack = 0.0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): it is shown the 0 that the compiler compares with.
   friend auto operator<=>(const CurvePlace&, const CurvePlace&) = default;
 };
 

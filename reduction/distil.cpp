@@ -68,9 +68,7 @@ numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings&
         return report;
       }
       if (observer && !observer(++finished, wanted)) {
-        report.termination = numerics::Termination::interrupted;
-        report.message = "interrupted";
-        return report;
+        return report.end(numerics::Termination::interrupted, "interrupted");
       }
     }
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace snare::reduction {
 
@@ -13,9 +12,10 @@ namespace {
 struct Language {
   std::string comment;     // begins a line of comment
   std::string prefix;      // of mathematical functions
-  std::string array_open;  // "static const double %s[] = {"
+  std::string qualifier;   // of functions: {q} below
+  std::string array_open;  // "static const double {}[] = {"
   std::string array_close;
-  std::string function_open;  // of one argument d
+  std::string function_open;  // of one argument d: {name}
   std::string function_close;
   std::string prelude;
   std::string basis;        // what evaluating a table needs
@@ -81,7 +81,7 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
                         fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()),
                         fmt::arg("scale", table.force_scale()),
                         fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"), fmt::arg("name", name),
-                        fmt::arg("nodes", nodes));
+                        fmt::arg("nodes", nodes), fmt::arg("q", l.qualifier));
   };
   add(l.basis, "", "");
   add(l.table, "force", "nodes");
@@ -90,7 +90,8 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
   for (const DistilledPlace& place : one.places) {
     for (const FittedLaw& law : place.laws) {
       text += "\n" + l.comment + error_words(law) + "\n";
-      text += fmt::format(fmt::runtime(l.function_open), law.form->name() + "_" + position_name(place.position));
+      text += fmt::format(fmt::runtime(l.function_open), fmt::arg("q", l.qualifier),
+                          fmt::arg("name", law.form->name() + "_" + position_name(place.position)));
       text += law.form->expression(law.values, l.prefix) + l.function_close;
     }
     if (!place.load_unload) continue;
@@ -98,17 +99,18 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
     text += "\n" + l.comment +
             fmt::format("load and unload; its memory is 1 and 0 at first; largest error on the way back {:.3g} N\n",
                         place.load_unload->largest_error);
-    text += fmt::format(fmt::runtime(l.load_unload), fmt::arg("name", "load_unload_" + position_name(place.position)),
-                        fmt::arg("turn", law.turn()), fmt::arg("position", place.position),
-                        fmt::arg("slack", one.wire.nominal_slack()), fmt::arg("sum", 0.5 * (1.0 + law.returned())),
+    text += fmt::format(fmt::runtime(l.load_unload), fmt::arg("q", l.qualifier),
+                        fmt::arg("name", "load_unload_" + position_name(place.position)), fmt::arg("turn", law.turn()),
+                        fmt::arg("position", place.position), fmt::arg("slack", one.wire.nominal_slack()),
+                        fmt::arg("sum", 0.5 * (1.0 + law.returned())),
                         fmt::arg("difference", 0.5 * (1.0 - law.returned())));
   }
   return text + l.end;
 }
 
 // The evaluation in C, which C++ takes as well.
-std::string c_basis(const std::string& qualifier) {
-  return "\n" + qualifier + R"(unsigned find_cell_(const double* knots, unsigned count, double x) {{
+constexpr const char* c_basis = R"(
+{q}unsigned find_cell_(const double* knots, unsigned count, double x) {{
   unsigned low = 0, high = count > 1 ? count - 1 : 1;
   while (high - low > 1) {{
     unsigned middle = (low + high) / 2;
@@ -117,8 +119,7 @@ std::string c_basis(const std::string& qualifier) {
   return low;
 }}
 
-)" + qualifier +
-         R"(unsigned basis_(const double* knots, unsigned count, double x, double b[4], unsigned* upper) {{
+{q}unsigned basis_(const double* knots, unsigned count, double x, double b[4], unsigned* upper) {{
   unsigned i = find_cell_(knots, count, x);
   double h, t, u;
   b[0] = 1.0; b[1] = 0.0; b[2] = 0.0; b[3] = 0.0;
@@ -132,13 +133,10 @@ std::string c_basis(const std::string& qualifier) {
   return i;
 }}
 )";
-}
 
-std::string c_table(const std::string& qualifier) {
-  return R"(
+constexpr const char* c_table = R"(
 /* force [N] at travel d, position and slack [m] */
-)" + qualifier +
-         R"(double {name}(double d, double position, double slack) {{
+{q}double {name}(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   double bd[4], bs[4], be[4], total = 0.0;
   unsigned k, k1, i[2], j[2], b, c, p;
@@ -163,10 +161,8 @@ std::string c_table(const std::string& qualifier) {
   return {scale} * total;
 }}
 )";
-}
 
-std::string c_load_unload(const std::string& qualifier) {
-  return qualifier + R"(double {name}(double d, double* branch, double* last) {{
+constexpr const char* c_load_unload = R"({q}double {name}(double d, double* branch, double* last) {{
   *branch += 2.0 * (d - *last) / {turn};
   if (*branch > 1.0) *branch = 1.0;
   if (*branch < -1.0) *branch = -1.0;
@@ -178,18 +174,15 @@ std::string c_load_unload(const std::string& qualifier) {
   return force(d, {position}, {slack}) * ({sum} + *branch * {difference});
 }}
 )";
-}
 
-std::string c_range(const std::string& qualifier) {
-  return "\n" + qualifier +
-         R"(int in_range(double d, double position, double slack) {{
+constexpr const char* c_range = R"(
+{q}int in_range(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   if ({mirror}) s = 1.0 - s;
   return x <= knots_travel[{nd} - 1] + 1e-9 && s >= knots_position[0] - 1e-9 && s <= knots_position[{ns} - 1] + 1e-9 &&
          e >= knots_slack[0] - 1e-9 && e <= knots_slack[{ne} - 1] + 1e-9;
 }}
 )";
-}
 
 constexpr const char* python_basis = R"(
 
@@ -252,11 +245,20 @@ def in_range(d, position, slack):
             and knots_slack[0] - 1e-9 <= e <= knots_slack[-1] + 1e-9)
 )";
 
-const FittedLaw* find_law(const DistilledPlace& place, const std::string& name) {
-  for (const FittedLaw& law : place.laws) {
-    if (law.form->name() == name) return &law;
-  }
-  return nullptr;
+Language cpp_language() {
+  return {.comment = "// ",
+          .prefix = "std::",
+          .qualifier = "inline ",
+          .array_open = "inline constexpr double {}[] = {{",
+          .array_close = "};\n",
+          .function_open = "{q}double {name}(double d) {{\n  return d < 0.0 ? 0.0 : ",
+          .function_close = ";\n}\n",
+          .prelude = "#pragma once\n\n#include <cmath>\n\nnamespace snare_law {\n\n",
+          .basis = c_basis,
+          .table = c_table,
+          .range = c_range,
+          .load_unload = c_load_unload,
+          .end = "\n}  // namespace snare_law\n"};
 }
 
 /// "a, b, c" in lines that ADAMS takes, each continued by a leading comma.
@@ -276,35 +278,15 @@ std::string position_name(double position) {
 }
 
 std::string cpp_header(const DistilledCase& one, const std::string& title) {
-  Language l;
-  l.comment = "// ";
-  l.prefix = "std::";
-  l.array_open = "inline constexpr double {}[] = {{";
-  l.array_close = "};\n";
-  l.function_open = "inline double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
-  l.function_close = ";\n}\n";
-  l.prelude = "#pragma once\n\n#include <cmath>\n\nnamespace snare_law {\n\n";
-  l.basis = c_basis("inline ");
-  l.table = c_table("inline ");
-  l.range = c_range("inline ");
-  l.load_unload = c_load_unload("inline ");
-  l.end = "\n}  // namespace snare_law\n";
-  return generate(one, title, l);
+  return generate(one, title, cpp_language());
 }
 
 std::string c_source(const DistilledCase& one, const std::string& title) {
-  Language l;
+  Language l = cpp_language();
   l.comment = "/* ";
-  l.prefix = "";
+  l.prefix = l.qualifier = l.end = "";
   l.array_open = "static const double {}[] = {{";
-  l.array_close = "};\n";
-  l.function_open = "double {}(double d) {{\n  return d < 0.0 ? 0.0 : ";
-  l.function_close = ";\n}\n";
   l.prelude = "#include <math.h>\n\n";
-  l.basis = c_basis("");
-  l.table = c_table("");
-  l.range = c_range("");
-  l.load_unload = c_load_unload("");
   std::string text = generate(one, title, l);
   // Comments of C end where they should.
   std::string closed;
@@ -325,24 +307,25 @@ std::string c_source(const DistilledCase& one, const std::string& title) {
 }
 
 std::string python_module(const DistilledCase& one, const std::string& title) {
-  Language l;
-  l.comment = "# ";
-  l.prefix = "math.";
-  l.array_open = "{} = (";
-  l.array_close = ",)\n";
-  l.function_open = "def {}(d):\n    return 0.0 if d < 0.0 else ";
-  l.function_close = "\n";
-  l.prelude = "import math\n\n";
-  l.basis = python_basis;
-  l.table = python_table;
-  l.range = python_range;
-  l.load_unload = python_load_unload;
-  return generate(one, title, l);
+  return generate(one, title,
+                  {.comment = "# ",
+                   .prefix = "math.",
+                   .qualifier = "",
+                   .array_open = "{} = (",
+                   .array_close = ",)\n",
+                   .function_open = "def {name}(d):\n    return 0.0 if d < 0.0 else ",
+                   .function_close = "\n",
+                   .prelude = "import math\n\n",
+                   .basis = python_basis,
+                   .table = python_table,
+                   .range = python_range,
+                   .load_unload = python_load_unload,
+                   .end = ""});
 }
 
 std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
   const DistilledPlace& place = one.places.front();
-  const FittedLaw* linear = find_law(place, "linear");
+  const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
   const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
   const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
   // A double hyphen may not stand in a comment of XML.
@@ -373,6 +356,7 @@ std::string adams_splines(const DistilledCase& one, const std::string& title) {
   int number = 1;
   for (const DistilledPlace& place : one.places) {
     std::vector<double> force;
+    force.reserve(travel.size());
     for (const double d : travel) force.push_back(place.full.value(d));
     text += fmt::format("! s = {:.6g} mm, slack {:.6g} mm\nSPLINE/{}\n", 1e3 * place.position,
                         1e3 * one.wire.nominal_slack(), number++);

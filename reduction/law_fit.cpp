@@ -1,8 +1,8 @@
 #include "reduction/law_fit.hpp"
 
+#include "numerics/dense_solvers.hpp"
+
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
       stacked << j * scale.cwiseInverse().asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
       VectorXd right = VectorXd::Zero(stacked.rows());
       right.head(r.size()) = -r;
-      const VectorXd step = stacked.colPivHouseholderQr().solve(right).cwiseQuotient(scale);
+      const VectorXd step = numerics::full_rank_least_squares(stacked, right).cwiseQuotient(scale);
       const VectorXd next = p + step;
       if (!form.admissible(next)) continue;
       const VectorXd r_next = misfit(form, next, points);
@@ -154,7 +154,7 @@ FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteC
   const MatrixXd j = jacobian(*form, law.values, points);
   const VectorXd scale = j.colwise().norm().transpose().cwiseMax(1e-300);
   const MatrixXd unit = j * scale.cwiseInverse().asDiagonal();
-  const MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd inverse = numerics::pseudo_inverse(unit.transpose() * unit);
   law.covariance = variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < curve.knots().size(); ++i) {

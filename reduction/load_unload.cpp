@@ -61,12 +61,14 @@ LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading, const numer
   double best = std::numeric_limits<double>::infinity();
   double turn = 0.1 * end;
   double unused = 0.0;
-  for (double share = 1e-3; share < 1.0; share *= 1.05) {
+  double share = 1e-3;
+  while (share < 1.0) {
     const double rms = misfit(share * end, 0, unused);
     if (rms < best) {
       best = rms;
       turn = share * end;
     }
+    share *= 1.05;
   }
   LoadUnloadFit fit{LoadUnloadLaw(loading, returned, turn)};
   fit.rms_error = misfit(turn, 1, fit.largest_error);

@@ -44,7 +44,9 @@ void fit(JointCycle& cycle) {
   const double slope = (uf - u_sum * f / n) / (uu - u_sum * u_sum / n);
   cycle.linear_r2 = slope * slope * (uu - u_sum * u_sum / n) / (ff - f * f / n);
   double best = std::numeric_limits<double>::infinity();
-  for (double share = 1e-3; share < 0.8; share *= 1.1) {
+  constexpr int shares = 71;  // up to 0.79
+  double share = 1e-3;
+  for (int k = 0; k < shares; ++k, share *= 1.1) {
     // loop = 4 f (a - f/q) with f/q = share * a.
     JointAxis trial;
     trial.friction = cycle.loop / (4.0 * amplitude * (1.0 - share));

@@ -16,6 +16,7 @@ constexpr int most_rounds = 8;
 std::vector<double> spread(const Interval& range, int intervals) {
   if (range.fixed()) return {range.low};
   std::vector<double> x;
+  x.reserve(static_cast<std::size_t>(intervals) + 1);
   for (int i = 0; i < intervals; ++i) x.push_back(range.low + (range.high - range.low) * i / intervals);
   x.push_back(range.high);
   return x;
@@ -23,6 +24,7 @@ std::vector<double> spread(const Interval& range, int intervals) {
 
 std::vector<double> pick(const std::vector<double>& from, const std::vector<std::size_t>& indices) {
   std::vector<double> result;
+  result.reserve(indices.size());
   for (const std::size_t i : indices) result.push_back(from[i]);
   return result;
 }
@@ -101,6 +103,7 @@ bool TableBuilder::place() {
     std::vector<std::vector<double>> result;
     for (std::size_t k = 0; k < store_.travel().size(); k += 8) {
       std::vector<double> line;
+      line.reserve(along.size());
       for (const double x : along) line.push_back(store_.at(place_of(x)).loading[k]);
       result.push_back(std::move(line));
     }

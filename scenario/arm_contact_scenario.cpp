@@ -2,11 +2,11 @@
 
 #include "base/index.hpp"
 #include "base/units.hpp"
+#include "numerics/dense_solvers.hpp"
 #include "scenario/arm_reader.hpp"
 #include "scenario/contact_scenario.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <optional>
@@ -79,7 +79,7 @@ VectorXd rates_with(const multibody::ElasticArm& arm, int tip, const VectorXd& q
   const multibody::Matrix6X J = multibody::frame_jacobian(arm.tree, kinematics, tip);
   Eigen::MatrixXd of_joints(6, arm.motors());
   for (int k = 0; k < arm.motors(); ++k) of_joints.col(k) = J.col(arm.tree.body(arm.joints[at(k)].body).v_index);
-  return of_joints.completeOrthogonalDecomposition().solve(wanted);
+  return numerics::least_squares(of_joints, wanted);
 }
 
 /// The arm with its base in place, at rest or with the body's motion.

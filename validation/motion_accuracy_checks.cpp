@@ -160,7 +160,8 @@ std::vector<Row> tolerance_rows() {
   }
   rows.push_back({"tolerances", "exponent of the tolerance in the error of the impulse", "",
                   "order 2: error ~ step^2, step ~ tolerance^(1/3)", 2.0 / 3.0,
-                  std::log(impulse_error[0] / impulse_error[2]) / std::log(factors[0] / factors[2]), ErrorKind::absolute, 0.4});
+                  std::log(impulse_error[0] / impulse_error[2]) / std::log(factors[0] / factors[2]),
+                  ErrorKind::absolute, 0.4});
   return rows;
 }
 

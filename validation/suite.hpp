@@ -32,7 +32,7 @@ struct Row {
 struct Check {
   std::string name;
   std::function<std::vector<Row>()> run;
-  std::string skipped = "";  ///< why it cannot be run here; empty when it can
+  std::string skipped = {};  ///< why it cannot be run here; empty when it can
 };
 
 }  // namespace snare::validation

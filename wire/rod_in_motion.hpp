@@ -49,8 +49,9 @@ struct RodInMotion {
   RodStrands strands;
 
   /// Its mesh; no contact moves it, so that its middle vertex stays where it is.
-  [[nodiscard]] MaterialMesh mesh() const { return {elements / 2, elements - elements / 2, grading}; }
-  [[nodiscard]] Controls controls() const { return {0.0, length * (elements / 2) / elements, length}; }
+  [[nodiscard]] int middle() const { return elements / 2; }
+  [[nodiscard]] MaterialMesh mesh() const { return {middle(), elements - middle(), grading}; }
+  [[nodiscard]] Controls controls() const { return {0.0, length * middle() / elements, length}; }
 };
 
 /// Tolerances of a wire's unknowns.

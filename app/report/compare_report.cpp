@@ -32,19 +32,18 @@ std::string compare_report_html(const std::string& title, const std::vector<redu
     if (!one.report.usable()) page.callout("The full wire stopped: " + one.report.message, Tone::bad);
     if (one.models.empty()) continue;
     Table table;
-    table.columns = {{"model"},
-                     {"largest error, N", ColumnKind::number},
-                     {"of the force", ColumnKind::number},
-                     {"rms, N", ColumnKind::number},
-                     {"rms to measured, N", ColumnKind::number},
-                     {"an evaluation, s", ColumnKind::number},
-                     {"times cheaper", ColumnKind::number},
-                     {"to, mm", ColumnKind::number},
-                     {"numbers", ColumnKind::number}};
+    table.columns = {"model"_text,
+                     "largest error, N"_number,
+                     "of the force"_number,
+                     "rms, N"_number,
+                     "rms to measured, N"_number,
+                     "an evaluation, s"_number,
+                     "times cheaper"_number,
+                     "to, mm"_number,
+                     "numbers"_number};
     PlotSpecification force{"Force", {"travel", "mm"}, {"force", "N"}};
     PlotSpecification error{"Error against the full wire", {"travel", "mm"}, {"model less full wire", "N"}};
-    std::vector<double> travel = one.travel;
-    for (double& d : travel) d *= 1e3;
+    const Values travel = in_mm(one.travel);
     if (!one.measured.empty()) force.curves.push_back({"measured", travel, one.measured, CurveStyle::points, 0});
     const reduction::ModelResult& full = one.models.front();
     int colour = 1;

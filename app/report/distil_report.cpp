@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace snare::app {
 
 namespace {
@@ -14,11 +12,6 @@ namespace {
 using reduction::DistilledCase;
 using reduction::DistilledPlace;
 using reduction::FittedLaw;
-
-std::vector<double> in_mm(std::vector<double> values) {
-  for (double& v : values) v *= 1e3;
-  return values;
-}
 
 std::string at(const DistilledPlace& place) {
   return fmt::format("s = {:.4g} mm", 1e3 * place.position);
@@ -56,17 +49,18 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
   PlotSpecification error{"Errors at " + at(place), {"travel", "mm"}, {"law less full wire", "N"}};
   const std::vector<double>& d = place.full.knots();
   std::vector<double> full;
+  full.reserve(d.size());
   for (const double x : d) full.push_back(place.full.value(x));
   force.curves.push_back({"full wire", in_mm(d), full, CurveStyle::line, 0});
   Table forms;
-  forms.columns = {{"law"}, {"form"}, {"numbers"}};
+  forms.columns = {"law"_text, "form"_text, "numbers"_text};
   Table table;
-  table.columns = {{"law"},
-                   {"largest error, N", ColumnKind::number},
-                   {"rms, N", ColumnKind::number},
-                   {"of the force", ColumnKind::number},
-                   {"stiffness, largest", ColumnKind::number},
-                   {"energy, largest", ColumnKind::number}};
+  table.columns = {"law"_text,
+                   "largest error, N"_number,
+                   "rms, N"_number,
+                   "of the force"_number,
+                   "stiffness, largest"_number,
+                   "energy, largest"_number};
   int colour = 1;
   for (const FittedLaw& law : place.laws) {
     std::vector<double> values, off;
@@ -145,14 +139,8 @@ void add_damping(ReportPage& page, const DistilledCase& one) {
       "the body with the same "
       "speed; it stands for all that the body loses, to the material and to the vibration that stays in the wire.");
   Table table{"",
-              {{"Position"},
-               {"Speed [m/s]", ColumnKind::number},
-               {"Restitution", ColumnKind::number},
-               {"c [N s/m]", ColumnKind::number},
-               {"Peak, full wire [N]", ColumnKind::number},
-               {"Peak, law [N]", ColumnKind::number},
-               {"Largest travel [mm]", ColumnKind::number}},
-              {}};
+              {"Position"_text, "Speed [m/s]"_number, "Restitution"_number, "c [N s/m]"_number,
+               "Peak, full wire [N]"_number, "Peak, law [N]"_number, "Largest travel [mm]"_number}};
   for (const DistilledPlace& place : one.places) {
     for (const reduction::ImpactDamping& i : place.impacts) {
       table.rows.push_back({at(place), format_significant(i.speed), format_significant(i.restitution),

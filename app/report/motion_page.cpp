@@ -19,19 +19,6 @@ using base::degree;
 using coupling::MotionSample;
 using multibody::ArmSample;
 
-/// A page up to its summary.
-ReportPage open_page(const scenario::Scenario& asked) {
-  ReportPage page(asked.title, asked.source);
-  page.heading("Summary");
-  return page;
-}
-
-std::string close_page(ReportPage& page, const std::string& version) {
-  page.footer(
-      fmt::format("Written by snare {}. The numbers are in history.csv and summary.json beside this page.", version));
-  return page.html();
-}
-
 /// A number of every sample over time.
 template <class Sample, class Number>
 Curve time_curve(const std::string& name, int colour, const std::vector<Sample>& samples, const Number& number) {
@@ -46,16 +33,9 @@ Curve time_curve(const std::string& name, int colour, const std::vector<Sample>&
 /// The outcome of every model in one table, and what stopped early.
 void add_models(const std::vector<FinishedMotion>& finished, ReportPage& page) {
   Table table{"",
-              {{"Model", ColumnKind::code},
-               {"Peak force [N]", ColumnKind::number},
-               {"Impulse along y [N s]", ColumnKind::number},
-               {"Velocity after, y [m/s]", ColumnKind::number},
-               {"Spin after, z [rad/s]", ColumnKind::number},
-               {"Touches", ColumnKind::number},
-               {"Integrator's energy [J]", ColumnKind::number},
-               {"Steps", ColumnKind::number},
-               {"Real-time factor", ColumnKind::number}},
-              {}};
+              {"Model"_code, "Peak force [N]"_number, "Impulse along y [N s]"_number, "Velocity after, y [m/s]"_number,
+               "Spin after, z [rad/s]"_number, "Touches"_number, "Integrator's energy [J]"_number, "Steps"_number,
+               "Real-time factor"_number}};
   for (const FinishedMotion& run : finished) {
     const coupling::MotionResult& r = run.result;
     const multibody::RigidBodyState& after = run.samples.back().bodies.front();
@@ -80,13 +60,9 @@ void add_balance(const coupling::MotionResult& r, ReportPage& page) {
 }
 
 void add_contacts(const FinishedMotion& run, ReportPage& page) {
-  Table table{"",
-              {{"Contact", ColumnKind::code},
-               {"Peak force [N]", ColumnKind::number},
-               {"First touch [s]", ColumnKind::number},
-               {"Touches", ColumnKind::number},
-               {"Points at a time", ColumnKind::number}},
-              {}};
+  Table table{
+      "",
+      {"Contact"_code, "Peak force [N]"_number, "First touch [s]"_number, "Touches"_number, "Points at a time"_number}};
   const std::vector<std::string> contacts = run.asked.motion.contact_names();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Touches touches = touches_of(run.result, k);
@@ -100,14 +76,8 @@ void add_contacts(const FinishedMotion& run, ReportPage& page) {
 /// What wires with a declared strength had to bear at most.
 void add_strength(const std::vector<FinishedMotion>& finished, ReportPage& page) {
   Table table{"Largest load of the wires against their strength",
-              {{"Model", ColumnKind::code},
-               {"Wire", ColumnKind::code},
-               {"Share", ColumnKind::number},
-               {"Tension [N]", ColumnKind::number},
-               {"Bending as tension [N]", ColumnKind::number},
-               {"Along the wire [mm]", ColumnKind::number},
-               {"Time [s]", ColumnKind::number}},
-              {}};
+              {"Model"_code, "Wire"_code, "Share"_number, "Tension [N]"_number, "Bending as tension [N]"_number,
+               "Along the wire [mm]"_number, "Time [s]"_number}};
   for (const FinishedMotion& run : finished) {
     for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
       const coupling::MotionWire& wire = run.asked.motion.wires[k];
@@ -128,11 +98,7 @@ void add_strength(const std::vector<FinishedMotion>& finished, ReportPage& page)
 /// What quasi-static wires leave out.
 void add_left_out(const std::vector<FinishedMotion>& finished, ReportPage& page) {
   Table table{"Left out of the quasi-static wires: largest of what their mass would have",
-              {{"Model", ColumnKind::code},
-               {"Wire", ColumnKind::code},
-               {"Kinetic energy [J]", ColumnKind::number},
-               {"Force of inertia [N]", ColumnKind::number}},
-              {}};
+              {"Model"_code, "Wire"_code, "Kinetic energy [J]"_number, "Force of inertia [N]"_number}};
   for (const FinishedMotion& run : finished) {
     for (std::size_t k = 0; k < run.result.left_out.size(); ++k) {
       const coupling::MotionWire& wire = run.asked.motion.wires[k];
@@ -158,29 +124,23 @@ double velocity_along_push(const MotionSample& s) {
   return s.bodies.front().velocity.y();
 }
 
-const std::vector<ModelPlot>& plots_without_arm() {
-  static const std::vector<ModelPlot> plots{
-      {"Contact force", {"force", "N"}, contact_force},
-      {"Velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
-      {"Spin", {"spin z", "rad/s"}, [](const MotionSample& s) { return s.bodies.front().spin.z(); }},
-      {"Place of the centre of mass",
-       {"y", "mm"},
-       [](const MotionSample& s) { return 1e3 * s.bodies.front().position.y(); }},
-      {"Velocity along the wire",
-       {"velocity x", "m/s"},
-       [](const MotionSample& s) { return s.bodies.front().velocity.x(); }},
-      {"Kinetic energy", {"energy", "J"}, [](const MotionSample& s) { return s.energy.kinetic; }},
-  };
-  return plots;
-}
+const std::vector<ModelPlot> plots_without_arm{
+    {"Contact force", {"force", "N"}, contact_force},
+    {"Velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
+    {"Spin", {"spin z", "rad/s"}, [](const MotionSample& s) { return s.bodies.front().spin.z(); }},
+    {"Place of the centre of mass",
+     {"y", "mm"},
+     [](const MotionSample& s) { return 1e3 * s.bodies.front().position.y(); }},
+    {"Velocity along the wire",
+     {"velocity x", "m/s"},
+     [](const MotionSample& s) { return s.bodies.front().velocity.x(); }},
+    {"Kinetic energy", {"energy", "J"}, [](const MotionSample& s) { return s.energy.kinetic; }},
+};
 
-const std::vector<ModelPlot>& plots_with_arm() {
-  static const std::vector<ModelPlot> plots{
-      {"Contact force", {"force", "N"}, contact_force},
-      {"Body's velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
-  };
-  return plots;
-}
+const std::vector<ModelPlot> plots_with_arm{
+    {"Contact force", {"force", "N"}, contact_force},
+    {"Body's velocity along the push", {"velocity y", "m/s"}, velocity_along_push},
+};
 
 /// Every model in every plot.
 void add_model_plots(const std::vector<ModelPlot>& plots, const std::vector<FinishedMotion>& finished,
@@ -254,7 +214,7 @@ void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedM
   add_strength(finished, page);
   add_left_out(finished, page);
   page.heading("Time histories");
-  add_model_plots(with_arm ? plots_with_arm() : plots_without_arm(), finished, page);
+  add_model_plots(with_arm ? plots_with_arm : plots_without_arm, finished, page);
   if (with_arm) {
     for (const FinishedMotion& run : finished) add_joint_plots(run, page);
   }
@@ -266,10 +226,8 @@ void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedM
 }
 
 void add_swings(const std::vector<scenario::Swing>& swings, ReportPage& page) {
-  Table table{
-      "Swings of the joint, from zero to zero of its deflection",
-      {{"Begin [s]", ColumnKind::number}, {"Peak [deg]", ColumnKind::number}, {"Frequency [Hz]", ColumnKind::number}},
-      {}};
+  Table table{"Swings of the joint, from zero to zero of its deflection",
+              {"Begin [s]"_number, "Peak [deg]"_number, "Frequency [Hz]"_number}};
   for (const scenario::Swing& s : swings) {
     table.rows.push_back(
         {format_significant(s.begin, 4), format_significant(s.peak / degree), format_significant(s.frequency(), 4)});
@@ -281,18 +239,21 @@ void add_swings(const std::vector<scenario::Swing>& swings, ReportPage& page) {
 
 std::string motion_page(const scenario::Scenario& asked, const scenario::WireMotions& motions,
                         const std::vector<FinishedMotion>& finished, const std::string& version) {
-  ReportPage page = open_page(asked);
+  ReportPage page(asked.title, asked.source);
+  page.heading("Summary");
   if (motions.probe)
     add_probe_on_wire(*motions.probe, finished, page);
   else
     add_lists(finished.front(), page);
-  return close_page(page, version);
+  page.footer(written_by(version, "history.csv and summary.json"));
+  return page.html();
 }
 
 std::string arm_page(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const ArmRecord& record,
                      const std::string& version) {
   const multibody::ArmHistory& history = record.history;
-  ReportPage page = open_page(asked);
+  ReportPage page(asked.title, asked.source);
+  page.heading("Summary");
   if (!history.report.usable()) page.callout(history.report.message, Tone::bad);
   page.key_figures(
       {{"Steps", std::to_string(history.statistics.steps), fmt::format("{} events", history.events.size())},
@@ -317,7 +278,8 @@ std::string arm_page(const scenario::Scenario& asked, const scenario::ArmMotion&
   energy.curves = {curve("kinetic, potential and elastic", 0, [](const ArmSample& s) { return s.energy; }),
                    curve("lost", 1, [](const ArmSample& s) { return s.work.lost; })};
   for (const PlotSpecification* plot : {&deflection, &torque, &motor, &energy}) page.line_plot(*plot);
-  return close_page(page, version);
+  page.footer(written_by(version, "history.csv and summary.json"));
+  return page.html();
 }
 
 }  // namespace snare::app

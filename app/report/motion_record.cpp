@@ -7,6 +7,7 @@ namespace snare::app {
 std::vector<FinishedMotion> finished_motions(const scenario::WireMotions& motions,
                                              const std::vector<MotionRecord>& records) {
   std::vector<FinishedMotion> finished;
+  finished.reserve(records.size());
   for (const MotionRecord& record : records)
     finished.push_back({motions.runs[finished.size()], record.samples, record.result});
   return finished;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace snare::app {
@@ -26,6 +27,12 @@ struct FinishedMotion {
 /// Of the first runs of a scenario, as many as have records.
 [[nodiscard]] std::vector<FinishedMotion> finished_motions(const scenario::WireMotions& motions,
                                                            const std::vector<MotionRecord>& records);
+
+/// The energies of a motion by their names in the results.
+inline constexpr std::pair<const char*, double coupling::EnergyBalance::*> energies[] = {
+    {"kinetic", &coupling::EnergyBalance::kinetic},     {"strain", &coupling::EnergyBalance::strain},
+    {"potential", &coupling::EnergyBalance::potential}, {"dissipated", &coupling::EnergyBalance::dissipated},
+    {"work", &coupling::EnergyBalance::work},           {"integrator", &coupling::EnergyBalance::integrator}};
 
 /// How often a contact closed.
 struct Touches {

@@ -58,17 +58,7 @@ std::vector<std::size_t> thinned_indices(const std::vector<double>& values, std:
   return indices;
 }
 
-const char* style_name(CurveStyle style) {
-  switch (style) {
-    case CurveStyle::line:
-      return "line";
-    case CurveStyle::dashes:
-      return "dashes";
-    case CurveStyle::points:
-      return "points";
-  }
-  throw std::logic_error("unknown curve style");
-}
+constexpr const char* style_names[] = {"line", "dashes", "points"};  // of CurveStyle
 
 json curve_data(const Curve& curve, const std::string& plot_title) {
   const std::string what = fmt::format("plot '{}', curve '{}': ", plot_title, curve.name);
@@ -76,7 +66,7 @@ json curve_data(const Curve& curve, const std::string& plot_title) {
   require_length(curve.y.size(), curve.x.size(), what + "y");
   const auto picked = thinned_indices(curve.y, max_points_per_curve);
   json data = {{"name", curve.name},
-               {"style", style_name(curve.style)},
+               {"style", style_names[static_cast<std::size_t>(curve.style)]},
                {"colour", curve.colour},
                {"x", plotted_values(curve.x, picked, what + "x")},
                {"y", plotted_values(curve.y, picked, what + "y")}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -29,25 +30,14 @@ void require_finite(double value) {
 std::string embedded_json(const json& data) {
   std::string text;
   for (const char c : data.dump(-1, ' ', false, json::error_handler_t::replace)) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
+    text += c == '<' ? "\\u003c" : std::string(1, c);
   }
   return text;
 }
 
 const char* tone_class(Tone tone) {
-  switch (tone) {
-    case Tone::plain:
-      return "";
-    case Tone::good:
-      return "good";
-    case Tone::bad:
-      return "bad";
-  }
-  throw std::logic_error("unknown tone");
+  static constexpr const char* names[] = {"", "good", "bad"};
+  return names[static_cast<std::size_t>(tone)];
 }
 
 const char* column_class(ColumnKind kind) {
@@ -230,27 +220,12 @@ std::string escape_html(std::string_view text) {
   // nlohmann's writer repairs what is not UTF-8; parsing it back gives the repaired text.
   const std::string valid =
       json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+  static const std::map<char, std::string> entities{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string safe;
   for (const char c : valid) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
+    const auto entity = entities.find(c);
+    safe += entity == entities.end() ? std::string(1, c) : entity->second;
   }
   return safe;
 }

@@ -32,10 +32,21 @@ struct Column {
   ColumnKind kind = ColumnKind::text;
 };
 
+/// Columns by their headings: "Model"_code, "Peak force [N]"_number.
+[[nodiscard]] inline Column operator""_text(const char* heading, std::size_t) {
+  return {heading, ColumnKind::text};
+}
+[[nodiscard]] inline Column operator""_number(const char* heading, std::size_t) {
+  return {heading, ColumnKind::number};
+}
+[[nodiscard]] inline Column operator""_code(const char* heading, std::size_t) {
+  return {heading, ColumnKind::code};
+}
+
 struct Table {
   std::string caption;  ///< may be empty
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;  ///< each as long as columns
+  std::vector<std::vector<Cell>> rows = {};  ///< each as long as columns
 };
 
 /// One number of the summary, printed large.

@@ -76,8 +76,4 @@ std::vector<Cell> value_cells(std::optional<double> value, std::optional<double>
   return {show(*value), lower ? "from " + show(*lower) : upper ? "up to " + show(*upper) : absent};
 }
 
-Column number_column(std::string heading) {
-  return {std::move(heading), ColumnKind::number};
-}
-
 }  // namespace snare::app

@@ -32,6 +32,5 @@ inline constexpr const char* absent = "\u2013";  ///< stands where a value is mi
 /// leaves meaningful.
 [[nodiscard]] std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
                                             std::optional<double> upper);
-[[nodiscard]] Column number_column(std::string heading);
 
 }  // namespace snare::app

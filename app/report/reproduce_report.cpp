@@ -114,15 +114,8 @@ void add_error_table(ReportPage& page, const Reproduction& result) {
   Table table{
       "rmse: root mean square of computed minus published force. Range: of the published force. \u03c3: "
       "published scatter.",
-      {{"Position"},
-       {"Model"},
-       {"rmse [N]", ColumnKind::number},
-       {"rmse / range", ColumnKind::number},
-       {"rmse / \u03c3", ColumnKind::number},
-       {"Largest force computed [N]", ColumnKind::number},
-       {"Largest force published [N]", ColumnKind::number},
-       {"Pushed to [mm]", ColumnKind::number}},
-      {}};
+      {"Position"_text, "Model"_text, "rmse [N]"_number, "rmse / range"_number, "rmse / \u03c3"_number,
+       "Largest force computed [N]"_number, "Largest force published [N]"_number, "Pushed to [mm]"_number}};
   for (std::size_t k = 0; k < result.experiment.series.size(); ++k) {
     const Series& series = result.experiment.series[k];
     const Values published = identification::measured_force(series);
@@ -170,8 +163,7 @@ std::string parameter_text(const ReproducedNumber& number) {
 void add_parameters(ReportPage& page, const Reproduction& result) {
   Words keys;
   Table table{"\u00b1: one standard error of a fitted number; a number without it was declared or held.",
-              {{"Parameter", ColumnKind::code}, {"Unit"}},
-              {}};
+              {"Parameter"_code, "Unit"_text}};
   for (const ReproducedModel& model : result.models) {
     table.columns.push_back({model.label, ColumnKind::number});
     for (const auto& [key, number] : model.numbers) {
@@ -198,7 +190,7 @@ void add_wire(ReportPage& page, const Reproduction& result) {
   const coupling::PushProblem& test = result.experiment.series.front().test;
   page.subheading("The wire as declared");
   page.table({"",
-              {{"Quantity"}, {"Value", ColumnKind::number}, {"Unit"}},
+              {"Quantity"_text, "Value"_number, "Unit"_text},
               {{"diameter", shown(1e3 * test.wire.diameter), "mm"},
                {"length", shown(1e3 * test.wire.length), "mm"},
                {"span", shown(1e3 * test.mount.span), "mm"},

@@ -67,6 +67,7 @@ std::vector<double> published_stiffness(const Series& series) {
   const std::vector<double>& displacement = identification::measured_displacement(series);
   if (!series.law) return tangent_stiffness(displacement, identification::measured_force(series));
   std::vector<double> stiffness;
+  stiffness.reserve(displacement.size());
   for (const double d : displacement) stiffness.push_back(1e-3 * (2.0 * series.law->a * d + series.law->b));
   return stiffness;
 }
@@ -75,11 +76,6 @@ double largest_force(const Prediction& prediction) {
   double largest = 0.0;
   for (const double f : prediction.force) largest = std::max(largest, f);
   return largest;
-}
-
-std::vector<double> in_mm(std::vector<double> metres) {
-  for (double& v : metres) v *= 1e3;
-  return metres;
 }
 
 }  // namespace snare::app

@@ -18,12 +18,12 @@ struct ReproducedNumber {
 
 /// A model of the wire beside the published curves.
 struct ReproducedModel {
-  std::string name;                                     ///< "declared", "best_fit" or "traced"
-  std::string label;                                    ///< in words, lower case
-  std::string description;                              ///< one sentence
-  std::map<std::string, ReproducedNumber> numbers;      ///< by key of the experiment file
-  int free = 0;                                         ///< how many of them were fitted
-  std::vector<identification::Prediction> predictions;  ///< one a series; fewer when it was not computed at all
+  std::string name;                                          ///< "declared", "best_fit" or "traced"
+  std::string label;                                         ///< in words, lower case
+  std::string description;                                   ///< one sentence
+  std::map<std::string, ReproducedNumber> numbers = {};      ///< by key of the experiment file
+  int free = 0;                                              ///< how many of them were fitted
+  std::vector<identification::Prediction> predictions = {};  ///< one a series; fewer when it was not computed at all
 
   /// Null where the model was not computed.
   [[nodiscard]] const identification::Prediction* at(std::size_t series) const;
@@ -81,7 +81,5 @@ struct Reproduction {
 
 /// Largest computed force [N], >= 0.
 [[nodiscard]] double largest_force(const identification::Prediction& prediction);
-
-[[nodiscard]] std::vector<double> in_mm(std::vector<double> metres);
 
 }  // namespace snare::app

@@ -21,10 +21,8 @@ void add_verdicts(ReportPage& page, const Reproduction& result) {
   if (result.verdicts.empty()) return;
   page.paragraph("The range of travel of the published fits is not printed. What is said depends on it:");
   Table table;
-  table.columns = {number_column("range [mm]"),
-                   {"fit within the published scatter"},
-                   {"rms error over scatter by position"},
-                   {"the tracing says"}};
+  table.columns = {"range [mm]"_number, "fit within the published scatter"_text,
+                   "rms error over scatter by position"_text, "the tracing says"_text};
   for (const RangeVerdict& v : result.verdicts) {
     Words ratios;
     for (const auto& [name, fit] : v.fit) ratios.push_back(fmt::format("{} {:.2f}", name, fit.rmse / fit.scatter));

@@ -26,13 +26,8 @@ std::string ring_down_report_html(const RingDownFile& file, const std::vector<Ri
        {"mass_rate", with_error(split.mass_rate) + " 1/s",
         split.separated ? "95 %" : "if all were mass-proportional"}});
   Table table{"",
-              {{"Series", ColumnKind::code},
-               {"Frequency [Hz]", ColumnKind::number},
-               {"Damping ratio", ColumnKind::number},
-               {"Decay [1/s]", ColumnKind::number},
-               {"Amplitude [mm]", ColumnKind::number},
-               {"Friction [mm/s]", ColumnKind::number}},
-              {}};
+              {"Series"_code, "Frequency [Hz]"_number, "Damping ratio"_number, "Decay [1/s]"_number,
+               "Amplitude [mm]"_number, "Friction [mm/s]"_number}};
   for (std::size_t s = 0; s < fits.size(); ++s) {
     for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
       const RingDownMode& mode = fits[s].modes[m];

@@ -6,7 +6,6 @@
 #include "app/report/trace_rounds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,9 +40,7 @@ bool unchanged(const Trace& trace) {
 }
 
 Values travel_mm(const Series& series) {
-  Values travel = series.readings->displacement;
-  for (double& d : travel) d *= 1e3;
-  return travel;
+  return in_mm(series.readings->displacement);
 }
 
 /// Forces of series k; none where the run was interrupted before.
@@ -181,13 +178,8 @@ PlotSpecification series_plot(const Trace& trace, std::size_t k) {
 /// Distances of the models from the published laws, for series whose readings were drawn about one.
 void add_laws(ReportPage& page, const Trace& trace) {
   Table table{"Distance of the models from the published fits themselves [N rms]; green: within the scatter.",
-              {{"Series"},
-               number_column("R\u00b2"),
-               number_column("Scatter [N]"),
-               number_column("Declared model"),
-               number_column("Base model"),
-               number_column("Final model")},
-              {}};
+              {"Series"_text, "R\u00b2"_number, "Scatter [N]"_number, "Declared model"_number, "Base model"_number,
+               "Final model"_number}};
   Words drawn;
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
     const Series& series = trace.series[k];
@@ -227,21 +219,11 @@ void add_before_and_after(ReportPage& page, const Trace& trace) {
 /// residual, too.
 enum class Abscissa { travel, model_force, time };
 
-Axis axis_of(Abscissa abscissa) {
-  switch (abscissa) {
-    case Abscissa::travel:
-      return {"travel", "mm"};
-    case Abscissa::model_force:
-      return {"force of the model", "N"};
-    case Abscissa::time:
-      return {"time", "s"};
-  }
-  return {};
-}
+const Axis axes[] = {{"travel", "mm"}, {"force of the model", "N"}, {"time", "s"}};  // of Abscissa
 
 PlotSpecification residual_plot(const Trace& trace, const std::string& name, const std::vector<Prediction>& model,
                                 Abscissa abscissa) {
-  const Axis axis = axis_of(abscissa);
+  const Axis& axis = axes[static_cast<std::size_t>(abscissa)];
   PlotSpecification plot{
       .title = fmt::format("Measured minus {} model, against {}", name, axis.label), .x = axis, .y = {"residual", "N"}};
   Values all;
@@ -273,8 +255,7 @@ PlotSpecification residual_plot(const Trace& trace, const std::string& name, con
 void add_tests(ReportPage& page, const Trace& trace) {
   Table table{
       "p: how often pure noise would look at least this bad. Small, below about 0.01: the model misses something.",
-      {{"Test of what is left"}, number_column("Base model"), number_column("Final model")},
-      {}};
+      {"Test of what is left"_text, "Base model"_number, "Final model"_number}};
   const auto add = [&](const char* name, double base, double final) {
     if (known(base) || known(final)) table.rows.push_back({name, shown(base, 2), shown(final, 2)});
   };
@@ -324,15 +305,8 @@ void add_parameters(ReportPage& page, const Trace& trace) {
   latest.insert(base.begin(), base.end());  // what the final model has not, if anything
   if (latest.empty()) return;
   Table table{"",
-              {{"Number", ColumnKind::code},
-               {"Unit"},
-               number_column("Declared"),
-               number_column("Base model"),
-               number_column("95 % interval"),
-               number_column("Final model"),
-               number_column("95 % interval"),
-               {"Found by"}},
-              {}};
+              {"Number"_code, "Unit"_text, "Declared"_number, "Base model"_number, "95 % interval"_number,
+               "Final model"_number, "95 % interval"_number, "Found by"_text}};
   for (const auto& [key, number] : latest) {
     std::vector<Cell> row{key, number.unit.empty() ? "" : name_and_unit(key).second, shown(number.declared)};
     for (const auto* model : {&base, &final}) {
@@ -389,12 +363,8 @@ void add_functions(ReportPage& page, const Trace& trace) {
       "in every series: what is found in some has to explain the others. Carried over: the share of the residual "
       "beyond noise that it explains there. Explained: the same when all series are used to find it.");
   Table table{"",
-              {{"Channel"},
-               {"What it would do, as a function of what"},
-               number_column("Carried over"),
-               number_column("Explained"),
-               {"Accepted"}},
-              {}};
+              {"Channel"_text, "What it would do, as a function of what"_text, "Carried over"_number,
+               "Explained"_number, "Accepted"_text}};
   for (const ChannelFunction& f : trace.functions) {
     table.rows.push_back({to_string(f.channel), f.effect, percent(f.carried_over), percent(f.explained),
                           yes_no(f.accepted, Tone::good, Tone::plain)});
@@ -413,8 +383,8 @@ void add_alternatives(ReportPage& page, const Trace& trace) {
   page.paragraph(
       "A free function in another part of the test, found in some series, explains the others too. These readings "
       "cannot tell it from the effect above, which is the simpler answer.");
-  Table table{
-      "", {{"Channel"}, {"What it would do"}, {"As a function of"}, {"Shape"}, number_column("Carried over")}, {}};
+  Table table{"",
+              {"Channel"_text, "What it would do"_text, "As a function of"_text, "Shape"_text, "Carried over"_number}};
   for (const ChannelFunction& f : trace.alternatives) {
     table.rows.push_back({to_string(f.channel), f.effect, f.argument, f.shape, percent(f.carried_over)});
   }

@@ -23,13 +23,8 @@ bool observable(const Candidate& candidate) {
 
 void add_scores(ReportPage& page, const Round& round) {
   Table table{"Does the residual have the shape that the effect would give it?",
-              {{"Effect", ColumnKind::code},
-               {"What would happen"},
-               {"Where"},
-               number_column("Score z"),
-               number_column("p (Holm)"),
-               number_column("Smallest size that would show")},
-              {}};
+              {"Effect"_code, "What would happen"_text, "Where"_text, "Score z"_number, "p (Holm)"_number,
+               "Smallest size that would show"_number}};
   for (const Candidate& candidate : round.candidates) {
     if (!observable(candidate)) continue;
     const Effect& effect = *candidate.score.effect;
@@ -61,22 +56,15 @@ void add_refit(Table& table, const Candidate& candidate) {
   };
   for (const auto& [key, n] : numbers) {
     const auto [name, unit] = name_and_unit(key);
-    add(name + (unit.empty() ? "" : " [" + unit + "]"), value_cells(n.value, n.lower, n.upper));
+    add(unit.empty() ? name : fmt::format("{} [{}]", name, unit), value_cells(n.value, n.lower, n.upper));
   }
   if (numbers.empty()) add(absent, {absent, absent});
 }
 
 void add_refits(ReportPage& page, const Round& round) {
   Table table{"The best of them, each added to the model and all numbers refitted.",
-              {{"Effect", ColumnKind::code},
-               number_column("Error [N rms]"),
-               number_column("Change of BIC"),
-               {"Its number"},
-               number_column("Value"),
-               number_column("95 % interval"),
-               {"Plausible"},
-               {"Held-out improves"}},
-              {}};
+              {"Effect"_code, "Error [N rms]"_number, "Change of BIC"_number, "Its number"_text, "Value"_number,
+               "95 % interval"_number, "Plausible"_text, "Held-out improves"_text}};
   for (const Candidate& candidate : round.candidates) {
     if (candidate.refitted) add_refit(table, candidate);
   }

@@ -21,6 +21,8 @@ class MeshShape final : public ContactShape {
   /// face inward.
   explicit MeshShape(const TriangleMesh& mesh);
   ~MeshShape() override;
+  MeshShape(const MeshShape&) = delete;
+  MeshShape& operator=(const MeshShape&) = delete;
 
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const override;

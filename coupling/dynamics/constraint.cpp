@@ -33,7 +33,7 @@ VectorXd project(const std::vector<const Constraint*>& constraints, const Vector
       velocity_error(unit, flexibility.col(column++));
     }
   }
-  const VectorXd multipliers = -flexibility.partialPivLu().solve(missing);
+  VectorXd multipliers = -flexibility.partialPivLu().solve(missing);
   Eigen::Index first = 0;
   for (const Constraint* c : constraints) {
     c->apply_impulse(y, multipliers.segment(first, c->constraints()), dv);

@@ -38,7 +38,7 @@ struct ContactGeometry : CurvePoint {
   double run = 0.0;                                                                   ///< |u|
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and o
   bool by_law = false;
-  BristleState state;                              ///< z, the sliding velocity w in a and b, lambda
+  BristleState state;  ///< z, the sliding velocity w in a and b, lambda
   TangentForce friction;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
 

@@ -96,8 +96,9 @@ NearestPoint ContactSearch::nearest(const VectorView& y) const {
   for (int e = 0; e < curve_.elements(); ++e) order.emplace_back(lower_bound(control(where, e, y)), e);
   std::sort(order.begin(), order.end());
   NearestPoint best{0.0, std::numeric_limits<double>::infinity()};
-  for (const auto& [bound, e] : order) {
+  for (const auto& [bound, element] : order) {
     if (bound >= best.gap) break;
+    const int e = element;
     const BezierWire::Control c = control(where, e, y);
     const auto gap = [&](double u) { return shape_->distance(c * bernstein(u)) - wire_radius_; };
     const auto look = [&](double u) {

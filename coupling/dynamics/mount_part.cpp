@@ -50,6 +50,7 @@ void MountPart::append_curvatures(std::vector<int>& list) const {
 std::vector<int> MountPart::places() const {
   const int i = vertex(), j = end_ == wire::End::left ? 1 : i - 1;
   std::vector<int> list;
+  list.reserve(9);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.position_of(j) + k);
   list.push_back(rod_.end_angle(end_));
@@ -60,6 +61,7 @@ std::vector<int> MountPart::places() const {
 std::vector<int> MountPart::balances() const {
   const int i = vertex(), j = end_ == wire::End::left ? 1 : i - 1;
   std::vector<int> list;
+  list.reserve(9);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(i) + k);
   for (int k = 0; k < 3; ++k) list.push_back(rod_.velocity_of(j) + k);
   list.push_back(rod_.end_angle(end_));

@@ -47,6 +47,7 @@ std::vector<int> MovingFrame::coordinates() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->position() : (arm_ != nullptr ? arm_->coordinates() : 0);
   const int count = body_ != nullptr ? BodyPart::coordinates : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
+  list.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
 }
@@ -55,6 +56,7 @@ std::vector<int> MovingFrame::velocities() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->velocity() : (arm_ != nullptr ? arm_->velocities() : 0);
   const int count = body_ != nullptr ? BodyPart::velocities : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
+  list.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
 }

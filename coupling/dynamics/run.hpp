@@ -90,7 +90,7 @@ class MotionRun {
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
   PeakForce peak_;
-  ForceRecord forces_;  // rates of the integrals that belong to contacts
+  ForceRecord forces_;                     // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire
   double time_ = 0.0;
   MotionSums sums_;

@@ -360,8 +360,7 @@ void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const
   }
   for (int h = 0; has_bristle() && h < 2; ++h) {
     const BristleRate r = bristle(n, h, g, y);
-    const double share =
-        n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.own][n.places[0].element + h];
+    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.own][n.places[0].element + h];
     for (int a = 0; a < 2; ++a) {
       const Eigen::Index column = column_of_bristle + 2 * h + a;
       PairDirection d;

@@ -63,7 +63,8 @@ bool PlanarPush::leave_unstable_branch() {
     workspace_.solver.solve(workspace_.system, direction, border);
     direction /= direction.lpNorm<Eigen::Infinity>();
   }
-  for (double size = 1e-4; size < 0.1; size *= 2.0) {
+  double size = 1e-4;
+  for (int k = 0; k < 10; ++k, size *= 2.0) {
     for (const double sign : {1.0, -1.0}) {
       trial_ = start;
       trial_.band += sign * size * system_.length_scale() * direction;
@@ -133,7 +134,7 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
     }
     const wire::EquilibriumReport report = wire::find_equilibrium(system_.rod(), free);
     iterations_ += report.iterations;
-    worst = report;
+    worst = static_cast<const numerics::SolveReport&>(report);
     if (!report.usable()) continue;
     const ContactStates saved = system_.contact_states();
     trial_ = point_;

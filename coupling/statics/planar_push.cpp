@@ -83,18 +83,14 @@ numerics::SolveReport PlanarPush::solve(double travel) {
     if (round == 0 && past_.size() >= 2) {
       const double miss = (trial_.band - predicted).lpNorm<Eigen::Infinity>();
       if (miss > 0.5 * predicted_move + 1e-6 * system_.length_scale()) {
-        report.termination = numerics::Termination::step_too_small;
-        report.message = "the step leaves the path";
-        return report;
+        return report.end(numerics::Termination::step_too_small, "the step leaves the path");
       }
     }
     if (system_.sliding[0].status != ContactStatus::open) pressed_ = trial_;
     if (!settle_contact(system_, trial_, memory_)) return report;
     if (system_.sliding[0].status == ContactStatus::open && pressed_.parameter == travel) return report;
   }
-  report.termination = numerics::Termination::iteration_limit;
-  report.message = "the contact does not settle";
-  return report;
+  return report.end(numerics::Termination::iteration_limit, "the contact does not settle");
 }
 
 StepOutcome PlanarPush::step_to(double travel) {

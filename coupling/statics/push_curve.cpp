@@ -1,35 +1,14 @@
 #include "coupling/statics/push_curve.hpp"
 
+#include <cstddef>
+
 namespace snare::coupling {
 
 std::string to_string(PushEvent::Kind kind) {
-  switch (kind) {
-    case PushEvent::Kind::first_touch:
-      return "first touch";
-    case PushEvent::Kind::lift_off:
-      return "lift-off";
-    case PushEvent::Kind::touch:
-      return "touch";
-    case PushEvent::Kind::slip_begins:
-      return "slip begins";
-    case PushEvent::Kind::slip_ends:
-      return "slip ends";
-    case PushEvent::Kind::wrap_begins:
-      return "wrap begins";
-    case PushEvent::Kind::wrap_ends:
-      return "wrap ends";
-    case PushEvent::Kind::mount_slips:
-      return "mount slips";
-    case PushEvent::Kind::mount_holds:
-      return "mount holds";
-    case PushEvent::Kind::fold:
-      return "fold";
-    case PushEvent::Kind::bifurcation:
-      return "bifurcation";
-    case PushEvent::Kind::snap:
-      return "snap";
-  }
-  return "unknown";
+  static constexpr const char* names[] = {"first touch", "lift-off",    "touch",       "slip begins",
+                                          "slip ends",   "wrap begins", "wrap ends",   "mount slips",
+                                          "mount holds", "fold",        "bifurcation", "snap"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace snare::coupling

@@ -9,7 +9,7 @@
 
 namespace snare::coupling {
 
-/// Something that happened along the path.
+/// Something that happened along the path. to_string has their names in this order.
 struct PushEvent {
   enum class Kind {
     first_touch,

@@ -103,8 +103,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
   if (test.mount.kind == wire::MountKind::supports) {
     if (test.wire.natural_curvature != 0.0) {
       // It would touch the supports in a shape and a roll of its own.
-      setup.report.termination = numerics::Termination::step_too_small;
-      setup.report.message = "a naturally curved wire on supports is not computed";
+      setup.report.end(numerics::Termination::step_too_small, "a naturally curved wire on supports is not computed");
       return setup;
     }
     const wire::Controls controls = initial_controls(test);
@@ -132,7 +131,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
     setup.iterations += loose.report.iterations;
   }
-  setup.report = loose.report;
+  setup.report = static_cast<const numerics::SolveReport&>(loose.report);
   if (!loose.report.usable()) return setup;
 
   setup.system = std::make_unique<PushSystem>(*setup.rod, controls);

@@ -55,7 +55,7 @@ numerics::SolveReport push_to(PushSystem& system, numerics::PathPoint& at, doubl
   while (at.parameter < seat) {
     numerics::PathPoint trial = at;
     trial.parameter = std::min(seat, at.parameter + step);
-    const numerics::SolveReport report = numerics::correct(system, trial, workspace, newton_iterations);
+    numerics::SolveReport report = numerics::correct(system, trial, workspace, newton_iterations);
     if (report.usable()) {
       at = trial;
       continue;
@@ -100,8 +100,8 @@ StepOutcome HeldWire::step_to(double way) {
     return {StepOutcome::Kind::failed, report};
   }
   if (contact_->pin().pressed && contact_->wraps(trial)) {
-    report.termination = numerics::Termination::step_too_small;
-    report.message = "a wire begins to wrap the shaft, which is computed for a push in the plane only";
+    report.end(numerics::Termination::step_too_small,
+               "a wire begins to wrap the shaft, which is computed for a push in the plane only");
     return {StepOutcome::Kind::stopped, report};
   }
   contact_->accept(trial);

@@ -63,8 +63,7 @@ SpatialContact::Settled SpatialContact::settle(numerics::PathPoint& trial, int m
     if (!event) return settled;
     settled.event = event;
   }
-  settled.report.termination = numerics::Termination::iteration_limit;
-  settled.report.message = "the contact does not settle";
+  settled.report.end(numerics::Termination::iteration_limit, "the contact does not settle");
   return settled;
 }
 

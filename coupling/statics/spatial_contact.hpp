@@ -22,6 +22,7 @@ class SpatialContact {
   /// friction; the rest follows from the plane.
   SpatialContact(const PushSetup& planar, const numerics::PathPoint& at, const wire::SpatialRod& rod,
                  const SpatialPin& pin, SlidingLength sliding_length);
+  ~SpatialContact() = default;
   SpatialContact(const SpatialContact&) = delete;
   SpatialContact& operator=(const SpatialContact&) = delete;
 

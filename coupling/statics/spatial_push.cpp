@@ -60,14 +60,11 @@ class SpatialPush final : public PushPath {
 };
 
 numerics::SolveReport SpatialPush::interrupted() const {
-  numerics::SolveReport report;
-  report.termination = numerics::Termination::interrupted;
-  report.message = "interrupted";
-  return report;
+  return numerics::SolveReport().end(numerics::Termination::interrupted, "interrupted");
 }
 
 numerics::SolveReport SpatialPush::solve(numerics::PathPoint& trial) {
-  const numerics::SolveReport report = contact_->solve(trial, start_iterations);
+  numerics::SolveReport report = contact_->solve(trial, start_iterations);
   iterations_ += report.iterations;
   return report;
 }
@@ -267,8 +264,7 @@ void SpatialPush::record(double travel) {
 
 PushCurve refused(const char* message) {
   PushCurve curve;
-  curve.report.termination = numerics::Termination::step_too_small;
-  curve.report.message = message;
+  curve.report.end(numerics::Termination::step_too_small, message);
   return curve;
 }
 

@@ -6,14 +6,15 @@ namespace {
 
 /// EA.
 Parameter axial_stiffness() {
-  return {.key = "wire.axial_stiffness_N",
-          .unit = "N",
-          .parametrisation = Parametrisation::ratio,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.axial_stiffness(); },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.axial_stiffness_override = v; },
-          .lower = [](const PushProblem& p) { return 1e-3 * p.wire.axial_stiffness(); },
-          .upper = [](const PushProblem& p) { return 5.0 * p.wire.axial_stiffness(); },
-          .step = 1e-3};
+  return {
+      .key = "wire.axial_stiffness_N",
+      .unit = "N",
+      .parametrisation = Parametrisation::ratio,
+      .number = {[](const PushProblem& p, const ReadingModel&) { return p.wire.axial_stiffness(); },
+                 [](PushProblem& p, ReadingModel&, double v) { p.wire.axial_stiffness_override = v; }},
+      .limits =
+          [](const PushProblem& p) { return between(1e-3 * p.wire.axial_stiffness(), 5.0 * p.wire.axial_stiffness()); },
+      .step = 1e-3};
 }
 
 }  // namespace

@@ -9,10 +9,12 @@ Parameter bending_stiffness() {
   return {.key = "wire.bending_stiffness_Nm2",
           .unit = "N m^2",
           .parametrisation = Parametrisation::ratio,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.bending_stiffness(); },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.bending_stiffness_override = v; },
-          .lower = [](const PushProblem& p) { return 1e-4 * p.wire.bending_stiffness(); },
-          .upper = [](const PushProblem& p) { return 5.0 * p.wire.bending_stiffness(); },
+          .number = {[](const PushProblem& p, const ReadingModel&) { return p.wire.bending_stiffness(); },
+                     [](PushProblem& p, ReadingModel&, double v) { p.wire.bending_stiffness_override = v; }},
+          .limits =
+              [](const PushProblem& p) {
+                return between(1e-4 * p.wire.bending_stiffness(), 5.0 * p.wire.bending_stiffness());
+              },
           .step = 1e-3};
 }
 

@@ -7,10 +7,8 @@ namespace {
 /// Coulomb's coefficient between wire and pusher.
 Parameter coefficient() {
   return {.key = "pusher.friction",
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.friction; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.friction = v; },
-          .lower = [](const PushProblem&) { return 0.0; },
-          .upper = [](const PushProblem&) { return 2.0; },
+          .number = member([](auto& p, auto&) -> auto& { return p.pusher.friction; }),
+          .limits = [](const PushProblem&) { return between(0.0, 2.0); },
           .step = 1e-5};
 }
 

@@ -11,10 +11,12 @@ Parameter shift() {
   return {.key = "contact_position.shift_mm",
           .unit = "mm",
           .unit_size = base::mm,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.contact_position; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.contact_position = v; },
-          .lower = [](const PushProblem& p) { return 0.6 * p.contact_position; },
-          .upper = [](const PushProblem& p) { return p.contact_position + 0.4 * (p.mount.span - p.contact_position); },
+          .number = member([](auto& p, auto&) -> auto& { return p.contact_position; }),
+          .limits =
+              [](const PushProblem& p) {
+                return between(0.6 * p.contact_position,
+                               p.contact_position + 0.4 * (p.mount.span - p.contact_position));
+              },
           .step = 1e-7,
           .reports_change = true};
 }

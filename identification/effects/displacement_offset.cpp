@@ -11,10 +11,8 @@ Parameter offset() {
   return {.key = "reading.displacement_offset_mm",
           .unit = "mm",
           .unit_size = base::mm,
-          .get = [](const PushProblem&, const ReadingModel& r) { return r.displacement_offset; },
-          .set = [](PushProblem&, ReadingModel& r, double v) { r.displacement_offset = v; },
-          .lower = [](const PushProblem&) { return -5e-3; },
-          .upper = [](const PushProblem&) { return 5e-3; },
+          .number = member([](auto&, auto& r) -> auto& { return r.displacement_offset; }),
+          .limits = [](const PushProblem&) { return between(-5e-3, 5e-3); },
           .step = 1e-7,
           .travel = -1.0};
 }

@@ -1,25 +1,13 @@
 #include "identification/effects/effect.hpp"
 
 #include <cmath>
+#include <cstddef>
 
 namespace snare::identification {
 
 std::string to_string(Channel channel) {
-  switch (channel) {
-    case Channel::wire:
-      return "wire";
-    case Channel::mount:
-      return "mount";
-    case Channel::contact:
-      return "contact";
-    case Channel::pusher:
-      return "pusher";
-    case Channel::sensor:
-      return "sensor";
-    case Channel::geometry:
-      return "geometry";
-  }
-  return "unknown";
+  static constexpr const char* names[] = {"wire", "mount", "contact", "pusher", "sensor", "geometry"};
+  return names[static_cast<std::size_t>(channel)];
 }
 
 std::string needs_mounts(const std::vector<Series>& series) {

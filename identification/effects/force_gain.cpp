@@ -8,10 +8,8 @@ namespace {
 Parameter gain() {
   return {.key = "reading.force_gain",
           .parametrisation = Parametrisation::ratio,
-          .get = [](const PushProblem&, const ReadingModel& r) { return r.force_gain; },
-          .set = [](PushProblem&, ReadingModel& r, double v) { r.force_gain = v; },
-          .lower = [](const PushProblem&) { return 0.2; },
-          .upper = [](const PushProblem&) { return 5.0; },
+          .number = member([](auto&, auto& r) -> auto& { return r.force_gain; }),
+          .limits = [](const PushProblem&) { return between(0.2, 5.0); },
           .step = 1e-3,
           .derivative = Derivative::force_gain};
 }

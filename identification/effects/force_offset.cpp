@@ -8,10 +8,8 @@ namespace {
 Parameter offset() {
   return {.key = "reading.force_offset_N",
           .unit = "N",
-          .get = [](const PushProblem&, const ReadingModel& r) { return r.force_offset; },
-          .set = [](PushProblem&, ReadingModel& r, double v) { r.force_offset = v; },
-          .lower = [](const PushProblem&) { return -1e3; },
-          .upper = [](const PushProblem&) { return 1e3; },
+          .number = member([](auto&, auto& r) -> auto& { return r.force_offset; }),
+          .limits = [](const PushProblem&) { return between(-1e3, 1e3); },
           .step = 1e-3,
           .derivative = Derivative::force_offset};
 }

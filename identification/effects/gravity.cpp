@@ -8,10 +8,8 @@ namespace {
 Parameter along_bulge() {
   return {.key = "gravity.along_bulge_m_s2",
           .unit = "m/s^2",
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.gravity[1]; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.gravity[1] = v; },
-          .lower = [](const PushProblem&) { return -100.0; },
-          .upper = [](const PushProblem&) { return 100.0; },
+          .number = member([](auto& p, auto&) -> auto& { return p.gravity[1]; }),
+          .limits = [](const PushProblem&) { return between(-100.0, 100.0); },
           .step = 1e-2};
 }
 

@@ -6,14 +6,14 @@ namespace {
 
 /// Of each mount along the chord.
 Parameter axial_compliance() {
-  return {.key = "mount_axial_compliance.compliance_m_N",
-          .unit = "m/N",
-          .get = [](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.translational_stiffness); },
-          .set = [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); },
-          .lower = [](const PushProblem&) { return 0.0; },
-          .upper = [](const PushProblem&) { return 1e-3; },
-          .step = 1e-12,
-          .mount_gives = true};
+  return {
+      .key = "mount_axial_compliance.compliance_m_N",
+      .unit = "m/N",
+      .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.translational_stiffness); },
+                 [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); }},
+      .limits = [](const PushProblem&) { return between(0.0, 1e-3); },
+      .step = 1e-12,
+      .mount_gives = true};
 }
 
 }  // namespace

@@ -8,10 +8,9 @@ namespace {
 Parameter rotational_compliance() {
   return {.key = "mount_rotational_compliance.compliance_rad_Nm",
           .unit = "rad/(N m)",
-          .get = [](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
-          .set = [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); },
-          .lower = [](const PushProblem&) { return 0.0; },
-          .upper = [](const PushProblem&) { return 10.0; },
+          .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
+                     [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); }},
+          .limits = [](const PushProblem&) { return between(0.0, 10.0); },
           .step = 1e-6};
 }
 

@@ -13,11 +13,11 @@ Parameter tension() {
       .key = "mount_slip.tension_N",
       .unit = "N",
       .parametrisation = Parametrisation::magnitude,
-      .get = [](const PushProblem& p,
-                const ReadingModel&) { return p.mount.slip_tension.value_or(std::numeric_limits<double>::infinity()); },
-      .set = [](PushProblem& p, ReadingModel&, double v) { p.mount.slip_tension = v; },
-      .lower = [](const PushProblem& p) { return 1e-9 * p.wire.axial_stiffness(); },
-      .upper = [](const PushProblem& p) { return p.wire.axial_stiffness(); },
+      .number = {[](const PushProblem& p, const ReadingModel&) {
+                   return p.mount.slip_tension.value_or(std::numeric_limits<double>::infinity());
+                 },
+                 [](PushProblem& p, ReadingModel&, double v) { p.mount.slip_tension = v; }},
+      .limits = [](const PushProblem& p) { return between(1e-9 * p.wire.axial_stiffness(), p.wire.axial_stiffness()); },
       .step = 1e-4};
 }
 

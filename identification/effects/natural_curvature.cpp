@@ -8,10 +8,8 @@ namespace {
 Parameter natural_curvature() {
   return {.key = "wire.natural_curvature_1_m",
           .unit = "1/m",
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.natural_curvature; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.natural_curvature = v; },
-          .lower = [](const PushProblem&) { return -100.0; },
-          .upper = [](const PushProblem&) { return 100.0; },
+          .number = member([](auto& p, auto&) -> auto& { return p.wire.natural_curvature; }),
+          .limits = [](const PushProblem&) { return between(-100.0, 100.0); },
           .step = 1e-3};
 }
 

@@ -15,33 +15,27 @@ Parameter yield_stress() {
           .unit = "MPa",
           .unit_size = 1e6,
           .parametrisation = Parametrisation::magnitude,
-          .get =
-              [](const PushProblem& p, const ReadingModel&) {
-                return p.wire.yielding ? p.wire.yielding->yield_stress : std::numeric_limits<double>::infinity();
-              },
-          .set =
-              [](PushProblem& p, ReadingModel&, double v) {
-                if (!p.wire.yielding) p.wire.yielding = wire::Yielding{};
-                p.wire.yielding->yield_stress = v;
-              },
-          .lower = [](const PushProblem&) { return 1e6; },
-          .upper = [](const PushProblem& p) { return 0.5 * p.wire.youngs_modulus; },
+          .number = {[](const PushProblem& p, const ReadingModel&) {
+                       return p.wire.yielding ? p.wire.yielding->yield_stress : std::numeric_limits<double>::infinity();
+                     },
+                     [](PushProblem& p, ReadingModel&, double v) {
+                       if (!p.wire.yielding) p.wire.yielding = wire::Yielding{};
+                       p.wire.yielding->yield_stress = v;
+                     }},
+          .limits = [](const PushProblem& p) { return between(1e6, 0.5 * p.wire.youngs_modulus); },
           .step = 1e-3};
 }
 
 /// Tangent modulus over E once the metal yields.
 Parameter hardening_ratio() {
   return {.key = "plasticity.hardening_ratio",
-          .get =
-              [](const PushProblem& p, const ReadingModel&) {
-                return p.wire.yielding ? p.wire.yielding->hardening_ratio : wire::Yielding::usual_hardening;
-              },
-          .set =
-              [](PushProblem& p, ReadingModel&, double v) {
-                if (p.wire.yielding) p.wire.yielding->hardening_ratio = v;
-              },
-          .lower = [](const PushProblem&) { return 0.002; },
-          .upper = [](const PushProblem&) { return 0.9; },
+          .number = {[](const PushProblem& p, const ReadingModel&) {
+                       return p.wire.yielding ? p.wire.yielding->hardening_ratio : wire::Yielding::usual_hardening;
+                     },
+                     [](PushProblem& p, ReadingModel&, double v) {
+                       if (p.wire.yielding) p.wire.yielding->hardening_ratio = v;
+                     }},
+          .limits = [](const PushProblem&) { return between(0.002, 0.9); },
           .step = 1e-5};
 }
 

@@ -11,10 +11,8 @@ Parameter misalignment() {
   return {.key = "pusher.misalignment_deg",
           .unit = "deg",
           .unit_size = base::degree,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.misalignment; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.misalignment = v; },
-          .lower = [](const PushProblem&) { return -45.0 * base::degree; },
-          .upper = [](const PushProblem&) { return 45.0 * base::degree; },
+          .number = member([](auto& p, auto&) -> auto& { return p.pusher.misalignment; }),
+          .limits = [](const PushProblem&) { return between(-45.0 * base::degree, 45.0 * base::degree); },
           .step = 1e-6};
 }
 

@@ -8,10 +8,8 @@ namespace {
 Parameter pusher_compliance() {
   return {.key = "pusher.compliance_m_N",
           .unit = "m/N",
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.pusher.compliance; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.pusher.compliance = v; },
-          .lower = [](const PushProblem&) { return 0.0; },
-          .upper = [](const PushProblem&) { return 1e-3; },
+          .number = member([](auto& p, auto&) -> auto& { return p.pusher.compliance; }),
+          .limits = [](const PushProblem&) { return between(0.0, 1e-3); },
           .step = 1e-10};
 }
 

@@ -8,10 +8,8 @@ namespace {
 Parameter relaxation_time() {
   return {.key = "rate_viscosity.relaxation_time_s",
           .unit = "s",
-          .get = [](const PushProblem&, const ReadingModel& r) { return r.relaxation_time; },
-          .set = [](PushProblem&, ReadingModel& r, double v) { r.relaxation_time = v; },
-          .lower = [](const PushProblem&) { return 0.0; },
-          .upper = [](const PushProblem&) { return 1e6; },
+          .number = member([](auto&, auto& r) -> auto& { return r.relaxation_time; }),
+          .limits = [](const PushProblem&) { return between(0.0, 1e6); },
           .step = 1e-6,
           .derivative = Derivative::rate};
 }

@@ -11,10 +11,8 @@ Parameter span() {
   return {.key = "mount.span_mm",
           .unit = "mm",
           .unit_size = base::mm,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.mount.span; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.mount.span = v; },
-          .lower = [](const PushProblem& p) { return 0.8 * p.mount.span; },
-          .upper = [](const PushProblem& p) { return p.wire.length / 0.99; },
+          .number = member([](auto& p, auto&) -> auto& { return p.mount.span; }),
+          .limits = [](const PushProblem& p) { return between(0.8 * p.mount.span, p.wire.length / 0.99); },
           .step = 1e-7};
 }
 

@@ -9,19 +9,20 @@ namespace {
 
 /// EI that the strands add while they stick.
 Parameter extra_stiffness() {
-  return {
-      .key = "strand_hysteresis.extra_stiffness_Nm2",
-      .unit = "N m^2",
-      .get = [](const PushProblem& p,
-                const ReadingModel&) { return p.wire.strand_friction ? p.wire.strand_friction->extra_stiffness : 0.0; },
-      .set =
-          [](PushProblem& p, ReadingModel&, double v) {
-            if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
-            p.wire.strand_friction->extra_stiffness = v;
-          },
-      .lower = [](const PushProblem& p) { return 1e-4 * p.wire.bending_stiffness(); },
-      .upper = [](const PushProblem& p) { return 1e3 * p.wire.bending_stiffness(); },
-      .step = 1e-6};
+  return {.key = "strand_hysteresis.extra_stiffness_Nm2",
+          .unit = "N m^2",
+          .number = {[](const PushProblem& p, const ReadingModel&) {
+                       return p.wire.strand_friction ? p.wire.strand_friction->extra_stiffness : 0.0;
+                     },
+                     [](PushProblem& p, ReadingModel&, double v) {
+                       if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
+                       p.wire.strand_friction->extra_stiffness = v;
+                     }},
+          .limits =
+              [](const PushProblem& p) {
+                return between(1e-4 * p.wire.bending_stiffness(), 1e3 * p.wire.bending_stiffness());
+              },
+          .step = 1e-6};
 }
 
 /// Change of curvature at which they slide.
@@ -29,18 +30,15 @@ Parameter slip_curvature() {
   return {.key = "strand_hysteresis.slip_curvature_1_m",
           .unit = "1/m",
           .parametrisation = Parametrisation::magnitude,
-          .get =
-              [](const PushProblem& p, const ReadingModel&) {
-                return p.wire.strand_friction ? p.wire.strand_friction->slip_curvature
-                                              : std::numeric_limits<double>::infinity();
-              },
-          .set =
-              [](PushProblem& p, ReadingModel&, double v) {
-                if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
-                p.wire.strand_friction->slip_curvature = v;
-              },
-          .lower = [](const PushProblem&) { return 1e-4; },
-          .upper = [](const PushProblem&) { return 1e3; },
+          .number = {[](const PushProblem& p, const ReadingModel&) {
+                       return p.wire.strand_friction ? p.wire.strand_friction->slip_curvature
+                                                     : std::numeric_limits<double>::infinity();
+                     },
+                     [](PushProblem& p, ReadingModel&, double v) {
+                       if (!p.wire.strand_friction) p.wire.strand_friction = wire::StrandFriction{0.0, 1.0};
+                       p.wire.strand_friction->slip_curvature = v;
+                     }},
+          .limits = [](const PushProblem&) { return between(1e-4, 1e3); },
           .step = 1e-3};
 }
 

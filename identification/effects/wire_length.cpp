@@ -11,10 +11,8 @@ Parameter length() {
   return {.key = "wire.length_mm",
           .unit = "mm",
           .unit_size = base::mm,
-          .get = [](const PushProblem& p, const ReadingModel&) { return p.wire.length; },
-          .set = [](PushProblem& p, ReadingModel&, double v) { p.wire.length = v; },
-          .lower = [](const PushProblem& p) { return 0.99 * p.mount.span; },
-          .upper = [](const PushProblem& p) { return 1.2 * p.mount.span; },
+          .number = member([](auto& p, auto&) -> auto& { return p.wire.length; }),
+          .limits = [](const PushProblem& p) { return between(0.99 * p.mount.span, 1.2 * p.mount.span); },
           .step = 1e-7};
 }
 

@@ -157,7 +157,7 @@ Source read_source(const TomlTable& table) {
 
 std::string read_name(const TomlTable& table) {
   constexpr std::size_t longest = 64;
-  const std::string name = table.text("name");
+  std::string name = table.text("name");
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
            c == '.';
@@ -264,7 +264,7 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
   const TomlTable fit = root.table("fit");
   std::vector<std::string> keys = parameters.keys();
   for (const std::string& name : names) {
-    for (const std::string& key : parameters.keys()) keys.push_back("series[" + name + "]." + key);
+    for (const std::string& key : parameters.keys()) keys.push_back(fmt::format("series[{}].{}", name, key));
   }
   experiment.free = read_names(fit, "free", keys, "a number that can be fitted");
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");

@@ -1,7 +1,8 @@
 #include "identification/fitting/least_squares.hpp"
 
+#include "numerics/dense_solvers.hpp"
+
 #include <ceres/ceres.h>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -155,11 +156,11 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian) {
   if (n == 0) return {};
   Eigen::VectorXd scale(n);
   for (Eigen::Index k = 0; k < n; ++k) scale[k] = 1.0 / std::max(jacobian.col(k).norm(), 1e-300);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
+  const numerics::ThinSvd svd = numerics::thin_svd(jacobian * scale.asDiagonal());
+  const Eigen::VectorXd& s = svd.s;
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < s.size(); ++k) {
-    if (s[k] > 1e-10 * s[0]) inverse += svd.matrixV().col(k) * svd.matrixV().col(k).transpose() / (s[k] * s[k]);
+    if (s[k] > 1e-10 * s[0]) inverse += svd.V.col(k) * svd.V.col(k).transpose() / (s[k] * s[k]);
   }
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
@@ -177,8 +178,7 @@ void take(const Data& data, Evaluation evaluation, Fit& fit) {
 }
 
 void fail(const std::string& message, Fit& fit) {
-  fit.report.termination = numerics::Termination::step_too_small;
-  fit.report.message = message;
+  fit.report.end(numerics::Termination::step_too_small, message);
 }
 
 /// The unknown is the coordinate over a scale by which it changes the residual by about one standard deviation in all.
@@ -257,8 +257,7 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   const ceres::Solver::Summary summary = solve(options, problem);
   result.report.iterations = static_cast<int>(summary.iterations.size());
   if (summary.termination_type == ceres::USER_FAILURE) {
-    result.report.termination = numerics::Termination::interrupted;
-    result.report.message = "interrupted";
+    result.report.end(numerics::Termination::interrupted, "interrupted");
   } else if (!summary.IsSolutionUsable()) {
     fail("the least squares did not converge", result);
     return result;

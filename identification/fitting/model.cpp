@@ -40,11 +40,11 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
         variations[k].push_back({nullptr, p.step, 0.0, 1.0});
         continue;
       }
-      const double own = p.get(declared[k].test, {});
+      const double own = p.number.get(declared[k].test, {});
       variations[k].push_back({[&p, own, at](PushProblem& test, double amount) {
                                  if (p.travel != 0.0) return;
                                  ReadingModel unused;
-                                 p.set(test, unused, p.value(own, at + amount));
+                                 p.number.set(test, unused, p.value(own, at + amount));
                                },
                                p.step, p.travel});
     }
@@ -91,9 +91,9 @@ Model::Model(std::vector<Series> series, const SolverSettings& solver, bool thin
 
 double Model::declared(const Parameter& p) const {
   for (const Series& s : series_) {
-    if (s.name == p.only) return p.get(s.test, {});
+    if (s.name == p.only) return p.number.get(s.test, {});
   }
-  return p.get(series_.front().test, {});
+  return p.number.get(series_.front().test, {});
 }
 
 double Model::shown(const Setting& s) const {
@@ -102,12 +102,12 @@ double Model::shown(const Setting& s) const {
 
 double Model::lower(const Parameter& p) const {
   const double d = declared(p);
-  const double c = p.coordinate(d, p.lower(series_.front().test));
+  const double c = p.coordinate(d, p.limits(series_.front().test).lower);
   return std::isfinite(c) ? c : -50.0;
 }
 
 double Model::upper(const Parameter& p) const {
-  return p.coordinate(declared(p), p.upper(series_.front().test));
+  return p.coordinate(declared(p), p.limits(series_.front().test).upper);
 }
 
 Model::Applied Model::apply(const std::vector<Setting>& settings) const {
@@ -117,8 +117,8 @@ Model::Applied Model::apply(const std::vector<Setting>& settings) const {
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (!concerns(p, series_[k])) continue;
       // Relative to what the series declares itself.
-      const double own = p.get(series_[k].test, {});
-      p.set(result.series[k].test, result.reading[k], p.value(own, setting.coordinate));
+      const double own = p.number.get(series_[k].test, {});
+      p.number.set(result.series[k].test, result.reading[k], p.value(own, setting.coordinate));
     }
   }
   return result;
@@ -134,7 +134,6 @@ Evaluation Model::predict_with(const Applied& model, const PredictionOptions& op
     if (!variations.empty()) own.variations = variations[k];
     result.predictions[k] = predict(series[k], solver_, model.reading[k], own);
   });
-  evaluations_ += static_cast<std::ptrdiff_t>(series.size());
   result.complete = true;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Prediction& p = result.predictions[k];

@@ -58,9 +58,6 @@ class Model {
   /// spread stations of the material between the mounts. Empty where the model is not differentiable.
   [[nodiscard]] Evaluation evaluate_windows(const std::vector<Setting>& settings, int windows) const;
 
-  /// Predictions of whole series so far.
-  [[nodiscard]] long evaluations() const { return evaluations_; }
-
  private:
   [[nodiscard]] Evaluation predict_with(const Applied& model, const PredictionOptions& options,
                                         const std::vector<std::vector<coupling::PushVariation>>& variations) const;
@@ -71,7 +68,6 @@ class Model {
   std::vector<Series> series_;
   SolverSettings solver_;
   bool thin_;
-  mutable long evaluations_ = 0;
 };
 
 }  // namespace snare::identification

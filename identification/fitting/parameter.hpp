@@ -26,6 +26,26 @@ enum class Derivative {
   rate           ///< gain v k_viscous, v the pusher's speed
 };
 
+/// How a number is read and written.
+struct Access {
+  double (*get)(const PushProblem&, const ReadingModel&) = nullptr;
+  void (*set)(PushProblem&, ReadingModel&, double) = nullptr;
+};
+
+/// Access to a plain member: member([](auto& p, auto&) -> auto& { return p.wire.length; }).
+template <class Member>
+[[nodiscard]] Access member(Member) {
+  return {[](const PushProblem& p, const ReadingModel& r) -> double { return Member{}(p, r); },
+          [](PushProblem& p, ReadingModel& r, double v) { Member{}(p, r) = v; }};
+}
+
+struct Limits {
+  double lower = 0.0, upper = 0.0;
+};
+[[nodiscard]] inline Limits between(double lower, double upper) {
+  return {lower, upper};
+}
+
 /// A number that a fit may change: what it is called, how it enters the model, what it may be. SI units, but
 /// for key and unit, which are as in files. A number of an effect stands in the effect's file
 /// (identification/effects), others in construction_numbers.cpp.
@@ -34,12 +54,10 @@ struct Parameter {
   std::string unit{};      ///< as printed: "mm"; empty for a pure number
   double unit_size = 1.0;  ///< SI value of one unit
   Parametrisation parametrisation = Parametrisation::shift;
-  double (*get)(const PushProblem&, const ReadingModel&) = nullptr;
-  void (*set)(PushProblem&, ReadingModel&, double) = nullptr;
-  double (*lower)(const PushProblem&) = nullptr;  ///< admissible values
-  double (*upper)(const PushProblem&) = nullptr;
-  double step = 0.0;    ///< of the coordinate, for differences of the residual, > 0
-  double travel = 0.0;  ///< d travel / d coordinate: -1 for the zero of the displacement
+  Access number{};
+  Limits (*limits)(const PushProblem&) = nullptr;  ///< admissible values
+  double step = 0.0;                               ///< of the coordinate, for differences of the residual, > 0
+  double travel = 0.0;                             ///< d travel / d coordinate: -1 for the zero of the displacement
   Derivative derivative = Derivative::implicit;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
   bool mount_gives = false;     ///< the compliance of the mounts: differentiated as such where they are rigid

@@ -2,15 +2,17 @@
 
 #include "identification/fitting/statistics.hpp"
 #include "identification/ring_down/oscillations.hpp"
+#include "numerics/dense_solvers.hpp"
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -84,8 +86,7 @@ Solution solve(const OscillationLayout& layout, const VectorXd& start, const Vec
   solution.report.termination = summary.termination_type == ceres::CONVERGENCE ? numerics::Termination::converged
                                                                                : numerics::Termination::iteration_limit;
   if (!summary.IsSolutionUsable() || !solution.numbers.allFinite()) {
-    solution.report.termination = numerics::Termination::not_finite;
-    solution.report.message = summary.message;
+    solution.report.end(numerics::Termination::not_finite, summary.message);
   }
   return solution;
 }
@@ -229,8 +230,7 @@ MatrixXd covariance_of(const MatrixXd& by, const VectorXd& residual) {
   const VectorXd scale = by.colwise().norm().cwiseMax(1e-300);
   const MatrixXd scaled = by * scale.cwiseInverse().asDiagonal();
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size() - by.cols());
-  return variance * scale.cwiseInverse().asDiagonal() *
-         (scaled.transpose() * scaled).completeOrthogonalDecomposition().pseudoInverse() *
+  return variance * scale.cwiseInverse().asDiagonal() * numerics::pseudo_inverse(scaled.transpose() * scaled) *
          scale.cwiseInverse().asDiagonal();
 }
 

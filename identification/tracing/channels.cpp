@@ -3,9 +3,7 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/projection.hpp"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,12 +130,12 @@ double channel_p(const ChannelColumns& channel, const Fit& current) {
     for (Eigen::Index j = 0; j < m; ++j)
       prior(i, j) = std::exp(-0.5 * std::pow(static_cast<double>(i - j) / length, 2));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(prior);
+  const numerics::SymmetricEigen root = numerics::symmetric_eigen(prior);
   const Eigen::MatrixXd half =
-      root.eigenvectors() * root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose();
+      root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.vectors.transpose();
   const Eigen::MatrixXd c = Projection(current.jacobian).without(channel.columns) * half;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(c.transpose() * c, Eigen::EigenvaluesOnly);
-  return chi_square_mixture_tail((c.transpose() * current.residual).squaredNorm(), spectrum.eigenvalues());
+  return chi_square_mixture_tail((c.transpose() * current.residual).squaredNorm(),
+                                 numerics::symmetric_eigen(c.transpose() * c).values);
 }
 
 }  // namespace snare::identification

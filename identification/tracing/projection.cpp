@@ -1,6 +1,6 @@
 #include "identification/tracing/projection.hpp"
 
-#include <Eigen/SVD>
+#include "numerics/dense_solvers.hpp"
 
 namespace snare::identification {
 
@@ -11,10 +11,10 @@ Projection::Projection(const Eigen::MatrixXd& jacobian) {
     const double norm = scaled.col(k).norm();
     if (norm > 0.0) scaled.col(k) /= norm;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
+  const numerics::ThinSvd svd = numerics::thin_svd(scaled);
   Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > 1e-9 * svd.singularValues()[0]) ++rank;
-  basis_ = svd.matrixU().leftCols(rank);
+  while (rank < svd.s.size() && svd.s[rank] > 1e-9 * svd.s[0]) ++rank;
+  basis_ = svd.U.leftCols(rank);
 }
 
 Eigen::MatrixXd Projection::without(const Eigen::MatrixXd& columns) const {

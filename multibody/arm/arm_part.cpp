@@ -75,18 +75,37 @@ void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   }
 }
 
-void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  for (const TreeBody& body : arm_.tree.bodies()) {
+template <class Keep>
+void ElasticArmPart::for_each_entry(const Keep& keep) const {
+  const Tree& tree = arm_.tree;
+  for (const TreeBody& body : tree.bodies()) {
     const int q = q_ + body.q_index, v = v_ + body.v_index;
     for (int i = 0; i < body.coordinates(); ++i) {
-      for (int j = 0; j < body.coordinates(); ++j) entries.emplace_back(q + i, q + j);
-      for (int j = 0; j < body.velocities(); ++j) entries.emplace_back(q + i, v + j);
+      for (int j = 0; j < body.coordinates(); ++j) keep(&Slots::coordinate, q + i, q + j);
+      for (int j = 0; j < body.velocities(); ++j) keep(&Slots::coordinate, q + i, v + j);
     }
   }
-  for (int i = 0; i < arm_.tree.velocities(); ++i) {
-    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(v_ + i, q_ + j);
-    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(v_ + i, v_ + j);
+  for (int j = 0; j < tree.coordinates(); ++j) {
+    for (int i = 0; i < tree.velocities(); ++i) keep(&Slots::motion_by_q, v_ + i, q_ + j);
   }
+  for (int j = 0; j < tree.velocities(); ++j) {
+    for (int i = 0; i < tree.velocities(); ++i) keep(&Slots::motion_by_v, v_ + i, v_ + j);
+  }
+  for (const int row : {drive_work(), load_work(), lost()}) keep(&Slots::work, row, row);
+  for (int j = 0; !loads_.empty() && j < tree.coordinates(); ++j) keep(&Slots::work_by_q, load_work(), q_ + j);
+  for (int j = 0; !loads_.empty() && j < tree.velocities(); ++j) keep(&Slots::work_by_v, load_work(), v_ + j);
+  if (base_ != BaseEquations::momentum) return;
+  for (int i = 0; i < 6; ++i) {
+    keep(&Slots::momentum, v_ + i, momentum_ + i);
+    keep(&Slots::momentum, momentum_ + i, momentum_ + i);
+  }
+  for (int j = 0; !loads_.empty() && j < tree.coordinates(); ++j) {
+    for (int i = 0; i < 3; ++i) keep(&Slots::momentum_by_q, momentum_ + i, q_ + j);
+  }
+}
+
+void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
+  for_each_entry([&entries](auto /*group*/, int i, int j) { entries.emplace_back(i, j); });
   for (int k = 0; k < arm_.motors(); ++k) {
     const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
     for (const int row : {v_ + body.v_index, rate_ + k, drive_work(), lost()}) {
@@ -96,41 +115,12 @@ void ElasticArmPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
     entries.emplace_back(motor_ + k, motor_ + k);
     entries.emplace_back(motor_ + k, rate_ + k);
   }
-  for (int i = 0; i < 3; ++i) entries.emplace_back(work_ + i, work_ + i);
-  if (!loads_.empty()) {
-    for (int j = 0; j < arm_.tree.coordinates(); ++j) entries.emplace_back(load_work(), q_ + j);
-    for (int j = 0; j < arm_.tree.velocities(); ++j) entries.emplace_back(load_work(), v_ + j);
-  }
-  if (base_ == BaseEquations::momentum) {
-    for (int i = 0; i < 6; ++i) {
-      entries.emplace_back(v_ + i, momentum_ + i);
-      entries.emplace_back(momentum_ + i, momentum_ + i);
-      for (int j = 0; i < 3 && !loads_.empty() && j < arm_.tree.coordinates(); ++j)
-        entries.emplace_back(momentum_ + i, q_ + j);
-    }
-  }
 }
 
 void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   joint_slots_.clear();
-  for (auto* slots : {&coordinate_slots_, &motion_by_q_, &motion_by_v_, &work_slots_, &work_by_q_, &work_by_v_,
-                      &momentum_slots_, &momentum_by_q_}) {
-    slots->clear();
-  }
-  const auto keep = [&pattern](std::vector<int>& slots, int i, int j) { slots.push_back(pattern.slot(i, j)); };
-  for (const TreeBody& body : arm_.tree.bodies()) {
-    const int q = q_ + body.q_index, v = v_ + body.v_index;
-    for (int i = 0; i < body.coordinates(); ++i) {
-      for (int j = 0; j < body.coordinates(); ++j) keep(coordinate_slots_, q + i, q + j);
-      for (int j = 0; j < body.velocities(); ++j) keep(coordinate_slots_, q + i, v + j);
-    }
-  }
-  for (int j = 0; j < arm_.tree.coordinates(); ++j) {
-    for (int i = 0; i < arm_.tree.velocities(); ++i) keep(motion_by_q_, v_ + i, q_ + j);
-  }
-  for (int j = 0; j < arm_.tree.velocities(); ++j) {
-    for (int i = 0; i < arm_.tree.velocities(); ++i) keep(motion_by_v_, v_ + i, v_ + j);
-  }
+  slots_ = {};
+  for_each_entry([&](auto group, int i, int j) { (slots_.*group).push_back(pattern.slot(i, j)); });
   for (int k = 0; k < arm_.motors(); ++k) {
     const TreeBody& body = arm_.tree.body(arm_.joints[at(k)].body);
     const auto slots_of = [&](int row) {
@@ -139,20 +129,6 @@ void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
     };
     joint_slots_.push_back({slots_of(v_ + body.v_index), slots_of(motor_ + k), slots_of(rate_ + k),
                             slots_of(drive_work()), slots_of(lost())});
-  }
-  for (const int row : {drive_work(), load_work(), lost()}) keep(work_slots_, row, row);
-  if (!loads_.empty()) {
-    for (int j = 0; j < arm_.tree.coordinates(); ++j) keep(work_by_q_, load_work(), q_ + j);
-    for (int j = 0; j < arm_.tree.velocities(); ++j) keep(work_by_v_, load_work(), v_ + j);
-  }
-  if (base_ == BaseEquations::momentum) {
-    for (int i = 0; i < 6; ++i) {
-      keep(momentum_slots_, v_ + i, momentum_ + i);
-      keep(momentum_slots_, momentum_ + i, momentum_ + i);
-    }
-    for (int j = 0; !loads_.empty() && j < arm_.tree.coordinates(); ++j) {
-      for (int i = 0; i < 3; ++i) keep(momentum_by_q_, momentum_ + i, q_ + j);
-    }
   }
 }
 
@@ -272,16 +248,16 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
   std::size_t slot = 0;
   for (const TreeBody& body : tree.bodies()) {
     if (body.joint != JointKind::free) {
-      values[at(coordinate_slots_[slot++])] += c;
-      values[at(coordinate_slots_[slot++])] -= 1.0;
+      values[at(slots_.coordinate[slot++])] += c;
+      values[at(slots_.coordinate[slot++])] -= 1.0;
       continue;
     }
     const FreeRateDerivatives d = differentiate_free_coordinate_rate(body, q_values_, v_values_);
     for (int i = 0; i < 7; ++i) {
       for (int j = 0; j < 7; ++j) {
-        values[at(coordinate_slots_[slot++])] += (i == j ? c : 0.0) - d.by_coordinates(i, j);
+        values[at(slots_.coordinate[slot++])] += (i == j ? c : 0.0) - d.by_coordinates(i, j);
       }
-      for (int j = 0; j < 6; ++j) values[at(coordinate_slots_[slot++])] -= d.by_velocities(i, j);
+      for (int j = 0; j < 6; ++j) values[at(slots_.coordinate[slot++])] -= d.by_velocities(i, j);
     }
   }
 
@@ -292,17 +268,17 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
   for (const TreeBody& body : tree.bodies()) {
     for (int i = 0; i < nv; ++i) {
       if (body.joint != JointKind::free) {
-        values[at(motion_by_q_[at(body.q_index * nv + i)])] += derivatives_.position(i, body.v_index);
+        values[at(slots_.motion_by_q[at(body.q_index * nv + i)])] += derivatives_.position(i, body.v_index);
         continue;
       }
       const Eigen::Matrix<double, 6, 7> motion = free_coordinate_motion(body, q_values_);
       const Eigen::Matrix<double, 1, 7> row = derivatives_.position.row(i).segment<6>(body.v_index) * motion;
-      for (int j = 0; j < 7; ++j) values[at(motion_by_q_[at((body.q_index + j) * nv + i)])] += row[j];
+      for (int j = 0; j < 7; ++j) values[at(slots_.motion_by_q[at((body.q_index + j) * nv + i)])] += row[j];
     }
   }
   for (int j = 0; j < nv; ++j) {
     for (int i = 0; i < nv; ++i) {
-      values[at(motion_by_v_[at(j * nv + i)])] += derivatives_.velocity(i, j) + c * derivatives_.mass(i, j);
+      values[at(slots_.motion_by_v[at(j * nv + i)])] += derivatives_.velocity(i, j) + c * derivatives_.mass(i, j);
     }
   }
 
@@ -335,7 +311,7 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     add(s.lost.q, -loss_by_deflection);
     add(s.lost.angle, loss_by_deflection);
   }
-  for (const int diagonal : work_slots_) values[at(diagonal)] += c;
+  for (const int diagonal : slots_.work) values[at(diagonal)] += c;
 }
 
 void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& values) {
@@ -374,15 +350,15 @@ void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& valu
     }
     for (const TreeBody& body : tree.bodies()) {
       if (body.joint != JointKind::free) {
-        values[at(work_by_q_[at(body.q_index)])] -= power_by_motion[body.v_index];
+        values[at(slots_.work_by_q[at(body.q_index)])] -= power_by_motion[body.v_index];
       } else {
         const Eigen::Matrix<double, 1, 7> row =
             power_by_motion.segment<6>(body.v_index).transpose() * free_coordinate_motion(body, q_values_);
-        for (int i = 0; i < 7; ++i) values[at(work_by_q_[at(body.q_index + i)])] -= row[i];
+        for (int i = 0; i < 7; ++i) values[at(slots_.work_by_q[at(body.q_index + i)])] -= row[i];
       }
     }
     for (int j = 0; j < tree.velocities(); ++j) {
-      values[at(work_by_v_[at(j)])] -= J.col(j).head<3>().dot(M) + J.col(j).tail<3>().dot(F);
+      values[at(slots_.work_by_v[at(j)])] -= J.col(j).head<3>().dot(M) + J.col(j).tail<3>().dot(F);
     }
   }
 }

@@ -138,7 +138,14 @@ class ElasticArmPart : public numerics::DaePart {
     };
     Row link, motor_angle, motor_rate, drive_work, lost;
   };
+  /// Slots of all else, by what they hold.
+  struct Slots {
+    std::vector<int> coordinate, motion_by_q, motion_by_v, work, work_by_q, work_by_v, momentum, momentum_by_q;
+  };
   struct Terms;
+  /// keep(group of Slots, row, column) for every entry that belongs to no joint.
+  template <class Keep>
+  void for_each_entry(const Keep& keep) const;
   [[nodiscard]] Terms terms(double time, numerics::VectorView y, int joint) const;
   [[nodiscard]] JointFriction friction(int joint) const;
   [[nodiscard]] bool fixed(int joint) const;
@@ -170,8 +177,7 @@ class ElasticArmPart : public numerics::DaePart {
   Eigen::VectorXd q_values_, v_values_, a_values_;
 
   std::vector<JointSlots> joint_slots_;
-  std::vector<int> coordinate_slots_, motion_by_q_, motion_by_v_, work_slots_, work_by_q_, work_by_v_, momentum_slots_,
-      momentum_by_q_;
+  Slots slots_;
 };
 
 }  // namespace snare::multibody

@@ -36,8 +36,8 @@ void ElasticArmPart::add_momentum_derivatives(double time, double c, std::vector
   derivatives_.velocity.topRows<6>() = d.velocity;
   derivatives_.mass.topRows<6>().setZero();
   for (std::size_t i = 0; i < 6; ++i) {
-    values[at(momentum_slots_[2 * i])] -= 1.0;
-    values[at(momentum_slots_[2 * i + 1])] += c;
+    values[at(slots_.momentum[2 * i])] -= 1.0;
+    values[at(slots_.momentum[2 * i + 1])] += c;
   }
   for (const TimedLoad& load : loads_) {
     const double share = load.share(inside(time));
@@ -49,7 +49,7 @@ void ElasticArmPart::add_momentum_derivatives(double time, double c, std::vector
       by_motion.col(j) = share * J.col(j).tail<3>().cross(load.peak.force);
     const Eigen::Matrix<double, 3, Eigen::Dynamic> by_coordinates = by_motion * coordinate_motion(arm_.tree, q_values_);
     for (int j = 0; j < arm_.tree.coordinates(); ++j) {
-      for (int i = 0; i < 3; ++i) values[at(momentum_by_q_[at(3 * j + i)])] -= by_coordinates(i, j);
+      for (int i = 0; i < 3; ++i) values[at(slots_.momentum_by_q[at(3 * j + i)])] -= by_coordinates(i, j);
     }
   }
 }

@@ -21,7 +21,7 @@ double sign(int branch) {
 
 DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading, DampingRate damping_rate,
                              double jump_width)
-    : pieces_(std::move(pieces)), reading_(reading), damping_rate_(damping_rate) {
+    : pieces_(std::move(pieces)), damping_rate_(damping_rate) {
   if (pieces_.empty() || pieces_.front().from != 0.0) throw std::invalid_argument("the first piece must begin at 0");
   double torque = 0.0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -34,7 +34,7 @@ DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReadi
       if (!(length > 0.0)) throw std::invalid_argument("the pieces must begin one after another");
       torque += before.stiffness * length;
     }
-    if (reading_ == StiffnessReading::literal) torque = now.stiffness * now.from;
+    if (reading == StiffnessReading::literal) torque = now.stiffness * now.from;
     torque_from_.push_back(torque);
   }
   if (!(jump_width >= 0.0)) throw std::invalid_argument("the width of the jumps must be >= 0");
@@ -76,10 +76,6 @@ void DeflectionLaw::add_ramps(double width) {
 
 DeflectionLaw DeflectionLaw::linear(double stiffness, double damping) {
   return DeflectionLaw({{0.0, stiffness, damping, 0.0}});
-}
-
-DeflectionLaw DeflectionLaw::backlash(double half_gap, double stiffness, double damping) {
-  return DeflectionLaw({{0.0, 0.0, 0.0, 0.0}, {half_gap, stiffness, damping, 0.0}});
 }
 
 const DeflectionPiece& DeflectionLaw::piece(int branch) const {

@@ -40,8 +40,6 @@ class DeflectionLaw {
   explicit DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading = StiffnessReading::continuous,
                          DampingRate damping_rate = DampingRate::deflection, double jump_width = 0.0);
   [[nodiscard]] static DeflectionLaw linear(double stiffness, double damping);
-  /// Play of +-half_gap, then a spring. half_gap > 0 [rad].
-  [[nodiscard]] static DeflectionLaw backlash(double half_gap, double stiffness, double damping);
 
   [[nodiscard]] int branch_of(double deflection) const;
   [[nodiscard]] double lower_end(int branch) const;  ///< [rad]; -infinity for the outermost
@@ -59,7 +57,6 @@ class DeflectionLaw {
 
   /// With the ramps that the width of the jumps puts between those that were given.
   [[nodiscard]] const std::vector<DeflectionPiece>& pieces() const { return pieces_; }
-  [[nodiscard]] StiffnessReading reading() const { return reading_; }
   [[nodiscard]] DampingRate damping_rate() const { return damping_rate_; }
 
  private:
@@ -69,7 +66,6 @@ class DeflectionLaw {
   std::vector<DeflectionPiece> pieces_;
   std::vector<double> torque_from_;  // torque at the beginning of a piece, continued into it [N m]
   std::vector<double> energy_from_;  // energy there [J]
-  StiffnessReading reading_;
   DampingRate damping_rate_;
 };
 

@@ -1,6 +1,7 @@
 // The command as its users see it: exit status, messages, files.
 
 #include "tests/app/command_fixture.hpp"
+#include "tests/support/wire_text.hpp"
 
 #include <array>
 #include <cstdio>
@@ -13,25 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* const experiment_text = R"(schema = "snare-experiment/1"
+const std::string experiment_text = R"(schema = "snare-experiment/1"
 title = "test"
 source = "none"
-[wire]
-construction = "solid"
-diameter_mm = 1.5
-length_mm = 180.0
-youngs_modulus_GPa = 193.0
-poisson_ratio = 0.29
-density_kg_m3 = 7930.0
-[mount]
-kind = "clamped"
-span_mm = 175.0
-[pusher]
-shape = "cylinder"
-radius_mm = 6.0
-friction = 0.0
-direction = "outward"
-[solver]
+)" + test::wire_tables("180.0") + R"([solver]
 elements = 32
 [[series]]
 name = "s40"
@@ -55,7 +41,6 @@ class Command : public CommandFixture {
  protected:
   void SetUp() override { write("x.toml", experiment_text); }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   [[nodiscard]] Result run(const std::string& arguments) const {
     return {CommandFixture::run(arguments), contents("out.txt"), contents("err.txt")};
   }

@@ -2,7 +2,7 @@
 
 #include "coupling/contact/force_table.hpp"
 #include "tests/app/command_fixture.hpp"
-#include "tests/support/traced_wire_text.hpp"
+#include "tests/support/wire_text.hpp"
 
 #include <algorithm>
 #include <cmath>

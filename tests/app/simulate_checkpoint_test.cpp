@@ -43,6 +43,7 @@ class SimulateCheckpoint : public CommandFixture {
   /// Starts the command; what it says is added to log.txt.
   [[nodiscard]] pid_t start(const std::vector<std::string>& list) const {
     std::vector<char*> argv;
+    argv.reserve(list.size() + 1);
     for (const std::string& a : list) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
     const std::string log = (folder_ / "log.txt").string();

@@ -1,6 +1,7 @@
 // The verbs fit and trace as their users see them: files, fields that others rely on, exit status.
 
 #include "tests/app/command_fixture.hpp"
+#include "tests/support/wire_text.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -22,22 +23,8 @@ class TraceCommand : public CommandFixture {
     std::string text = R"(schema = "snare-experiment/1"
 title = "short"
 source = "made for this test"
-[wire]
-construction = "solid"
-diameter_mm = 1.5
-length_mm = 176.0
-youngs_modulus_GPa = 193.0
-poisson_ratio = 0.29
-density_kg_m3 = 7930.0
-[mount]
-kind = "clamped"
-span_mm = 175.0
-[pusher]
-shape = "cylinder"
-radius_mm = 6.0
-friction = 0.0
-direction = "outward"
-[solver]
+)" + test::wire_tables("176.0") +
+                       R"([solver]
 elements = 32
 )";
     std::string plain = text;

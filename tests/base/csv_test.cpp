@@ -1,6 +1,7 @@
 #include "base/csv.hpp"
 
 #include "base/errors.hpp"
+#include "tests/support/folder_fixture.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -24,27 +25,9 @@ const std::vector<CsvColumn> columns{
     {"force_N"},
     {"time_s", CsvColumn::Presence::optional, Range::finite(), 1.0, CsvColumn::Order::non_decreasing}};
 
-/// A folder of this test alone, removed afterwards.
-class CsvFiles : public testing::Test {
+class CsvFiles : public test::FolderFixture {
  protected:
-  CsvFiles() {
-    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) / ("snare_csv_" + test + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  ~CsvFiles() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string content(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  [[nodiscard]] std::string path(const std::string& name) const { return FolderFixture::path(name).string(); }
   [[nodiscard]] std::string message_of(const std::string& name) const {
     try {
       static_cast<void>(read_csv(path(name), columns));
@@ -53,9 +36,6 @@ class CsvFiles : public testing::Test {
     }
     return "accepted";
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 std::string message_of_text(const std::string& text) {
@@ -230,7 +210,7 @@ TEST_F(CsvFiles, WriterRoundTripsExactly) {
   for (const double value : values) writer.row({"s,4\"0", value, 3LL, std::monostate{}});
   EXPECT_FALSE(std::filesystem::exists(path("a.csv")));
   writer.commit();
-  EXPECT_EQ(content("a.csv").substr(0, 76),
+  EXPECT_EQ(contents("a.csv").substr(0, 76),
             "# unit: N\nseries,force_N,iterations,measured_N\n\"s,4\"\"0\",0,3,\n\"s,4\"\"0\",-0,3,\n");
   // The smallest subnormal reads back too: it is in the range of a double.
   EXPECT_EQ(read_csv(path("a.csv"), {{"force_N"}}).columns[0], values);
@@ -249,7 +229,7 @@ TEST_F(CsvFiles, WriterRefusesWhatIsNotFiniteAndLeavesNothingBehind) {
     }
     EXPECT_THROW(writer.row({std::numeric_limits<double>::infinity(), 2.0}), std::domain_error);
   }
-  EXPECT_EQ(content("a.csv"), "before");
+  EXPECT_EQ(contents("a.csv"), "before");
   const std::filesystem::path folder = std::filesystem::path(path("a.csv")).parent_path();
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }

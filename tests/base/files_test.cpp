@@ -1,6 +1,7 @@
 #include "base/files.hpp"
 
 #include "base/errors.hpp"
+#include "tests/support/folder_fixture.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,23 +14,9 @@
 namespace snare::base {
 namespace {
 
-class Files : public testing::Test {
+class Files : public test::FolderFixture {
  protected:
-  Files() {
-    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) / ("snare_files_" + test + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  ~Files() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] auto entries() const { return std::distance(std::filesystem::directory_iterator(folder_), {}); }
-
- private:
-  std::filesystem::path folder_;
 };
 
 TEST_F(Files, TextIsWrittenWithItsFoldersAndReadBack) {

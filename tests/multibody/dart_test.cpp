@@ -121,7 +121,7 @@ TEST(Dart, AgreesOnTrajectories) {
       return dart.forward_dynamics(Eigen::VectorXd::Zero(tree.velocities()));
     };
     const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
-      return multibody::coordinate_rate(tree, q, v);
+      return test::coordinate_rate(tree, q, v);
     };
     const int steps = 1000;
     const double h = run.end / steps;

@@ -25,7 +25,7 @@ void compare(test::Base base, unsigned seed) {
     // Differences are good to some 1e-11 of the largest entry (derivatives.hpp) where the torques are of order one;
     // they reach a hundred here.
     const auto by_motion = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      return multibody::inverse_dynamics(tree, multibody::moved(tree, state.q, x, 1.0), state.v, acceleration, wrenches,
+      return multibody::inverse_dynamics(tree, test::moved(tree, state.q, x, 1.0), state.v, acceleration, wrenches,
                                          workspace);
     };
     EXPECT_LT(test::compare_jacobian(by_motion, Eigen::VectorXd::Zero(n), derivatives.position).relative, 1e-9);
@@ -50,10 +50,9 @@ void compare(test::Base base, unsigned seed) {
     EXPECT_LT(test::compare_jacobian(by_coordinates, q, derivatives.position * multibody::coordinate_motion(tree, q))
                   .relative,
               1e-9);
-    EXPECT_LT(
-        test::relative_difference(
-            multibody::coordinate_motion(tree, state.q) * multibody::coordinate_rate(tree, state.q, state.v), state.v),
-        1e-14);
+    EXPECT_LT(test::relative_difference(
+                  multibody::coordinate_motion(tree, state.q) * test::coordinate_rate(tree, state.q, state.v), state.v),
+              1e-14);
   }
 }
 

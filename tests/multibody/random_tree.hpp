@@ -1,6 +1,7 @@
 #pragma once
 
 #include "multibody/tree.hpp"
+#include "tests/multibody/tree_motion.hpp"
 
 #include <Eigen/Geometry>
 
@@ -112,7 +113,7 @@ inline multibody::Tree make_tree(const PlainTree& plain) {
 inline multibody::TreeState random_state(std::mt19937& random, const multibody::Tree& tree) {
   multibody::TreeState state{random_values(random, tree.coordinates(), 3.0),
                              random_values(random, tree.velocities(), 2.0)};
-  multibody::normalise(tree, state.q);
+  normalise(tree, state.q);
   return state;
 }
 

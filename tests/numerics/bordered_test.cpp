@@ -1,7 +1,8 @@
 // Bordered systems where the blocks lose their digits, and their sparse form.
 
 #include "numerics/bordered.hpp"
-#include "numerics/bordered_pattern.hpp"
+#include "benchmarks/peers/bordered_pattern.hpp"
+#include "tests/support/sparse_product.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,8 @@
 
 namespace snare::numerics {
 namespace {
+
+using benchmarks::BorderedPattern;
 
 /// Free-standing chain of n masses and unit springs (singular: it can move as a whole), times `scale`.
 SymmetricBandMatrix free_chain(int n, double scale = 1.0) {

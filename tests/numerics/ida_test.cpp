@@ -1,6 +1,7 @@
 #include "numerics/ida.hpp"
 
 #include "tests/support/derivatives.hpp"
+#include "tests/support/sparse_product.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Bordered systems and path following, on small problems with known paths.
 
 #include "numerics/path.hpp"
-#include "numerics/sparse_matrix.hpp"
+#include "tests/support/sparse_product.hpp"
 
 #include <gtest/gtest.h>
 

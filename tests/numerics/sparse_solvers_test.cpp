@@ -1,9 +1,11 @@
 // KLU, CHOLMOD and KINSOL behind our handles, against dense Eigen.
 
 #include "base/errors.hpp"
+#include "benchmarks/peers/bordered_pattern.hpp"
 #include "benchmarks/peers/cholmod.hpp"
 #include "benchmarks/peers/kinsol.hpp"
 #include "numerics/klu.hpp"
+#include "tests/support/sparse_product.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,6 +23,7 @@ using benchmarks::Cholmod;
 using benchmarks::KinsolOptions;
 using benchmarks::NonlinearSystem;
 using benchmarks::solve_kinsol;
+using benchmarks::to_sparse;
 
 SymmetricBandMatrix random_band(int n, int b, std::mt19937& random, double diagonal) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "reduction/wire_file.hpp"
-#include "tests/support/traced_wire_text.hpp"
+#include "tests/support/wire_text.hpp"
 
 #include <string>
 

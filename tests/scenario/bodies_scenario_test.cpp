@@ -1,6 +1,7 @@
 #include "scenario/scenario.hpp"
 
 #include "base/errors.hpp"
+#include "tests/support/folder_fixture.hpp"
 #include "tests/support/mesh_files.hpp"
 
 #include <gmock/gmock.h>
@@ -128,20 +129,17 @@ height_mm = [0.0, 0.0, 5.0, 5.0, 25.0, 25.0, 30.0, 30.0]
 rounding_mm = [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.0]
 )";
 
-class MotionScenarios : public testing::Test {
+class MotionScenarios : public test::FolderFixture {
  protected:
-  MotionScenarios() : folder_(fs::temp_directory_path() / ("snare_scenarios_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-    test::write_mesh(folder_ / "box.stl", test::cuboid(8e-3, 6e-3, 4e-3), 1e-3);
-    std::ofstream(folder_ / "every_kind.toml") << every_kind;
+  MotionScenarios() {
+    test::write_mesh(path("box.stl"), test::cuboid(8e-3, 6e-3, 4e-3), 1e-3);
+    write("every_kind.toml", every_kind);
   }
-  ~MotionScenarios() override { fs::remove_all(folder_); }
   [[nodiscard]] NamedMotion read(const std::vector<std::string>& settings) const {
     std::vector<base::Override> overrides;
     for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-    return std::get<WireMotions>(read_scenario(folder_ / "every_kind.toml", overrides).content).runs.at(0);
+    return std::get<WireMotions>(read_scenario(path("every_kind.toml"), overrides).content).runs.at(0);
   }
-  fs::path folder_;
 };
 
 TEST_F(MotionScenarios, ReadEveryKindOfShape) {

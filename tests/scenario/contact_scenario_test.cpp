@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "coupling/dynamics/law_part.hpp"
+#include "tests/support/sparse_product.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 
 #include "numerics/dae.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/sparse_product.hpp"
 
 namespace snare::test {
 

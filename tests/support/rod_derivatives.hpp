@@ -5,6 +5,8 @@
 #include "wire/planar_rod.hpp"
 #include "wire/spatial_rod.hpp"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -78,6 +80,20 @@ template <class Rod, class State>
       compare_jacobian([&](const VectorXd& c) { return VectorXd(assembled(rod, with_controls(c)).control_gradient); },
                        controls, at.control_hessian);
   return errors;
+}
+
+/// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge
+/// (truncation h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for
+/// other seeds.
+inline constexpr double difference_error = 1e-10;
+
+inline void expect_exact(const RodDerivativeErrors& errors) {
+  EXPECT_LT(errors.gradient.relative, difference_error) << errors.gradient.worst;
+  EXPECT_LT(errors.hessian.relative, difference_error) << errors.hessian.worst;
+  EXPECT_LT(errors.control_columns.relative, difference_error) << errors.control_columns.worst;
+  EXPECT_LT(errors.control_gradient.relative, difference_error) << errors.control_gradient.worst;
+  EXPECT_LT(errors.control_hessian.relative, difference_error) << errors.control_hessian.worst;
+  EXPECT_LT(errors.energy_mismatch, 1e-13);  // order-one sums of 30 terms in another order
 }
 
 }  // namespace snare::test

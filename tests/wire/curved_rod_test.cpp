@@ -3,6 +3,7 @@
 #include "numerics/dae.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/random_rods.hpp"
+#include "tests/support/sparse_product.hpp"
 #include "wire/edge_beam.hpp"
 #include "wire/rod_part.hpp"
 

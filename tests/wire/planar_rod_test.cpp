@@ -14,20 +14,6 @@ namespace {
 
 constexpr Controls kControls{0.0, 0.45, 1.05};
 
-// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge
-// (truncation h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for
-// other seeds.
-constexpr double kDifference = 1e-10;
-
-void expect_exact(const test::RodDerivativeErrors& errors) {
-  EXPECT_LT(errors.gradient.relative, kDifference) << errors.gradient.worst;
-  EXPECT_LT(errors.hessian.relative, kDifference) << errors.hessian.worst;
-  EXPECT_LT(errors.control_columns.relative, kDifference) << errors.control_columns.worst;
-  EXPECT_LT(errors.control_gradient.relative, kDifference) << errors.control_gradient.worst;
-  EXPECT_LT(errors.control_hessian.relative, kDifference) << errors.control_hessian.worst;
-  EXPECT_LT(errors.energy_mismatch, 1e-13);  // order-one sums of 30 terms in another order
-}
-
 TEST(PlanarRod, DerivativesMatchDifferences) {
   std::mt19937 random(20240601);
   for (const PlanarEnd::Kind kind : {PlanarEnd::Kind::clamp, PlanarEnd::Kind::pin, PlanarEnd::Kind::free}) {
@@ -35,7 +21,7 @@ TEST(PlanarRod, DerivativesMatchDifferences) {
     p.left.kind = kind;
     const PlanarRod rod(MaterialMesh(4, 6, 0.8), p);
     SCOPED_TRACE(static_cast<int>(kind));
-    expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
+    test::expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
   }
 }
 

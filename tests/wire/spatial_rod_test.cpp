@@ -19,20 +19,6 @@ using std::numbers::pi;
 
 constexpr Controls kControls{0.0, 0.45, 1.05};
 
-// Fourth-order differences reach 1e-12 of the largest entry at their best step, about 1e-3 of an edge
-// (truncation h^4 against round-off 1e-16/h); a wrong or missing term is of order 1e-2. A margin of 100 for
-// other seeds.
-constexpr double kDifference = 1e-10;
-
-void expect_exact(const test::RodDerivativeErrors& errors) {
-  EXPECT_LT(errors.gradient.relative, kDifference) << errors.gradient.worst;
-  EXPECT_LT(errors.hessian.relative, kDifference) << errors.hessian.worst;
-  EXPECT_LT(errors.control_columns.relative, kDifference) << errors.control_columns.worst;
-  EXPECT_LT(errors.control_gradient.relative, kDifference) << errors.control_gradient.worst;
-  EXPECT_LT(errors.control_hessian.relative, kDifference) << errors.control_hessian.worst;
-  EXPECT_LT(errors.energy_mismatch, 1e-13);  // the same sum in another order, order one
-}
-
 constexpr SpatialEnd::Kind kKinds[] = {SpatialEnd::Kind::clamp, SpatialEnd::Kind::twisting_pin, SpatialEnd::Kind::pin,
                                        SpatialEnd::Kind::free};
 
@@ -43,7 +29,7 @@ TEST(SpatialRod, DerivativesOfARoundRodMatchDifferences) {
     SpatialRodProperties p = test::round_properties();
     p.left.kind = kind;
     const SpatialRod rod(MaterialMesh(3, 4, 0.8), p);
-    expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
+    test::expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
   }
 }
 
@@ -54,7 +40,7 @@ TEST(SpatialRod, DerivativesOfAGeneralRodMatchDifferences) {
     SpatialRodProperties p = test::general_properties();
     p.right.kind = kind;
     const SpatialRod rod(MaterialMesh(3, 4, 0.8), p);
-    expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
+    test::expect_exact(test::check_rod_derivatives(rod, test::random_state(rod, kControls, random, 0.4)));
   }
 }
 

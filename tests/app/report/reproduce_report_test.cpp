@@ -33,10 +33,10 @@ void stop(identification::Prediction& prediction, const std::string& why) {
 
 TEST(ReproduceReport, SaysTheErrorsInWords) {
   expect_all(page_of(reproduction()),
-             {"The declared model with nothing fitted differs from the published force by 64.5 N rms over all "
-              "positions, 32.3 times its range and 645 times the published scatter. A solid wire.",
-              "The best fit with 1 fitted number differs from the published force by 0.200 N rms over all positions, "
-              "10.0 % of its range and 2.0 times the published scatter.",
+             {("The declared model with nothing fitted differs from the published force by 64.5 N rms over all "
+               "positions, 32.3 times its range and 645 times the published scatter. A solid wire."),
+              ("The best fit with 1 fitted number differs from the published force by 0.200 N rms over all positions, "
+               "10.0 % of its range and 2.0 times the published scatter."),
               "The published curves are not explained: even the best fit stays 2.0 times the published scatter away",
               "<li>the range is assumed</li>", "Written by snare 0.1.0. The numbers are in reproduce.json"});
 }

@@ -27,8 +27,8 @@ std::string page_of(const Trace& trace) {
 TEST(TraceReport, SaysWhatWasFound) {
   const std::string html = page_of(explained_trace());
   expect_all(html, {"<h1>Push on a wire</h1>",
-                    "<p class=\"callout good\">Explained. plasticity: the metal of the wire yields. The error falls "
-                    "from 0.183 N to 0.162 N.</p>",
+                    ("<p class=\"callout good\">Explained. plasticity: the metal of the wire yields. The error falls "
+                     "from 0.183 N to 0.162 N.</p>"),
                     "348 N rms", "nothing fitted; 2400 times the noise; 29.6 times the force&#39;s range",
                     "0.183 N rms", "1 number fitted; 1.2 times the noise", "0.162 N rms", "0.148 N",
                     "with plasticity; 1.1 times the noise; 1.4 % of the force&#39;s range",
@@ -153,11 +153,11 @@ TEST(TraceReport, DrawsResidualsAgainstTimeWhereItWasRecorded) {
 TEST(TraceReport, SaysWhenNothingWasFound) {
   const std::string html = page_of(unexplained_trace());
   expect_all(html,
-             {"<p class=\"callout bad\">Not explained: the catalogue has no effect that brings the error of 0.183 "
-              "N down to the noise. No single function of one channel carries over from series to series; the "
-              "pusher comes nearest (40 %).</p>",
-              "<div class=\"value\">not explained</div><div class=\"remark\">not settled by plasticity and "
-              "gravity</div>",
+             {("<p class=\"callout bad\">Not explained: the catalogue has no effect that brings the error of 0.183 "
+               "N down to the noise. No single function of one channel carries over from series to series; the "
+               "pusher comes nearest (40 %).</p>"),
+              ("<div class=\"value\">not explained</div><div class=\"remark\">not settled by plasticity and "
+               "gravity</div>"),
               "the base model, nothing added", "0.500 \u2192 0.700 N", "the effect makes it worse",
               "None carries over well enough", "base model, also final",
               "plasticity and gravity. With them the error would be 0.233 N rms."});

@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "coupling/contact/revolved_solids.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/folder_fixture.hpp"
 #include "tests/support/mesh_files.hpp"
 
 #include <gmock/gmock.h>
@@ -25,16 +26,8 @@ using test::cuboid;
 using test::revolved_mesh;
 using ::testing::HasSubstr;
 
-class MeshFiles : public testing::Test {
+class MeshFiles : public test::FolderFixture {
  protected:
-  MeshFiles() : folder_(fs::temp_directory_path() / ("snare_mesh_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~MeshFiles() override { fs::remove_all(folder_); }
-  [[nodiscard]] fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
   /// What the reader says of a file.
   [[nodiscard]] std::string complaint(const std::string& name, const std::string& text) const {
     try {
@@ -44,7 +37,6 @@ class MeshFiles : public testing::Test {
     }
     return "accepted";
   }
-  fs::path folder_;
 };
 
 /// Distance to a cuboid about the origin, from its definition as a product of intervals.

@@ -20,7 +20,7 @@ class ScriptedPath final : public FollowedPath {
   [[nodiscard]] double parameter() const override { return at; }
   [[nodiscard]] StepOutcome step_to(double to) override {
     asked.push_back(to);
-    const StepOutcome outcome = rule_(at, to);
+    StepOutcome outcome = rule_(at, to);
     if (outcome.kind == Kind::taken) at = to;
     return outcome;
   }

@@ -109,13 +109,12 @@ TEST_P(EachEffect, SaysWhatItIs) {
     EXPECT_TRUE(p.key.ends_with(unit_in_key(p.unit))) << p.unit;
     EXPECT_GT(p.step, 0.0);
     EXPECT_LT(n.plausible_lower, n.plausible_upper);
-    const double lower = p.lower(declared);
-    const double upper = p.upper(declared);
+    const auto [lower, upper] = p.limits(declared);
     ASSERT_LT(lower, upper);
     // What is set is what is got, and what a coordinate stands for. Roundings only.
     const double value = lower + 0.3 * (upper - lower);
-    p.set(series.test, reading, value);
-    EXPECT_NEAR(p.get(series.test, reading), value, 1e-12 * std::abs(value));
+    p.number.set(series.test, reading, value);
+    EXPECT_NEAR(p.number.get(series.test, reading), value, 1e-12 * std::abs(value));
     EXPECT_NEAR(p.value(0.7, p.coordinate(0.7, 0.4)), 0.4, 1e-15);
   }
 }
@@ -137,7 +136,7 @@ TEST_P(EachEffect, DerivativeMatchesDifferences) {
   ASSERT_TRUE(here.complete) << here.message;
   const auto force = [&](double coordinate) -> Eigen::VectorXd { return model.evaluate({{&p, coordinate}}).force[0]; };
   const double h = p.parametrisation == Parametrisation::shift ? 100.0 * p.step : p.step;
-  const bool at_end = p.get(series.test, {}) <= p.lower(series.test);
+  const bool at_end = p.number.get(series.test, {}) <= p.limits(series.test).lower;
   Eigen::VectorXd difference;
   if (at_end) {
     difference = (4.0 * force(h) - force(2.0 * h) - 3.0 * force(0.0)) / (2.0 * h);

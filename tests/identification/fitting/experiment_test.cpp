@@ -4,6 +4,7 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "tests/identification/valid_experiment.hpp"
+#include "tests/support/folder_fixture.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,24 +23,13 @@ using base::InputError;
 using base::write_text;
 
 /// A folder with an experiment whose first series has a CSV file.
-class ExperimentFiles : public testing::Test {
+class ExperimentFiles : public test::FolderFixture {
  protected:
-  ExperimentFiles() {
-    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / ("snare_experiment_" + test + "_" + std::to_string(::getpid()));
-    write_text(folder_ / "x.toml", edited("travel_mm = 2.0\npoints = 21", "file = \"s40.csv\""));
-  }
-  ~ExperimentFiles() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  ExperimentFiles() { write("x.toml", edited("travel_mm = 2.0\npoints = 21", "file = \"s40.csv\"")); }
 
   /// Message for a CSV file with this content, the folder taken out.
   [[nodiscard]] std::string message_of_csv(const std::string& content) const {
-    write_text(path("s40.csv"), content);
+    write("s40.csv", content);
     return message();
   }
   [[nodiscard]] std::string message(const std::vector<Override>& overrides = {}) const {
@@ -48,14 +38,11 @@ class ExperimentFiles : public testing::Test {
     } catch (const InputError& error) {
       std::string text = error.what();
       const std::string prefix = folder_.string() + "/";
-      for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) text.erase(at, prefix.size());
+      for (std::size_t at = 0; (at = text.find(prefix)) != std::string::npos;) text.erase(at, prefix.size());
       return text;
     }
     return "accepted";
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 TEST(Experiment, ValidFileIsReadInSi) {

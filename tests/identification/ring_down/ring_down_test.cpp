@@ -5,6 +5,7 @@
 #include "base/errors.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
+#include "tests/support/folder_fixture.hpp"
 #include "wire/rod_constants.hpp"
 #include "wire/rod_modes.hpp"
 
@@ -240,37 +241,32 @@ TEST(RingDown, RecoversTheDampingOfALooseWire) {
   EXPECT_NEAR(split.mass_rate.value, rate, 0.1 * rate);
 }
 
-class RingDownFileTest : public testing::Test {
+class RingDownFileTest : public test::FolderFixture {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
+  RingDownFileTest() {
     const RingDown data = modal_sum({{20.0, 1.0, 1e-3, 0.0}}, 1.0, 100, 1e-5, 2);
-    std::ofstream csv(folder_ / "good.csv");
+    std::ofstream csv(path("good.csv"));
     csv << "time_s,displacement_mm\n";
     for (Eigen::Index i = 0; i < 100; ++i) csv << data.time[i] << ',' << 1e3 * data.displacement[i] << '\n';
-    std::ofstream(folder_ / "still.csv") << "time_s,displacement_mm\n" << still();
-    std::ofstream(folder_ / "short.csv") << "time_s,displacement_mm\n0,1\n1,2\n";
-    std::ofstream(folder_ / "columns.csv") << "time_s,force_N\n0,1\n";
-    std::ofstream(folder_ / "words.csv") << "time_s,displacement_mm\n0,one\n";
-    std::ofstream(folder_ / "back.csv") << "time_s,displacement_mm\n1,1\n0,2\n";
+    write("still.csv", "time_s,displacement_mm\n" + still());
+    write("short.csv", "time_s,displacement_mm\n0,1\n1,2\n");
+    write("columns.csv", "time_s,force_N\n0,1\n");
+    write("words.csv", "time_s,displacement_mm\n0,one\n");
+    write("back.csv", "time_s,displacement_mm\n1,1\n0,2\n");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   static std::string still() {
     std::string rows;
     for (int i = 0; i < 30; ++i) rows += std::to_string(i) + ",1.5\n";
     return rows;
   }
   std::string message_of(const std::string& text) {
-    std::ofstream(folder_ / "x.toml") << text;
     try {
-      static_cast<void>(read_ring_down_file(folder_ / "x.toml"));
+      static_cast<void>(read_ring_down_file(write("x.toml", text)));
     } catch (const base::InputError& error) {
       return error.what();
     }
     return "accepted";
   }
-  std::filesystem::path folder_;
 };
 
 TEST_F(RingDownFileTest, IsReadAndChecked) {

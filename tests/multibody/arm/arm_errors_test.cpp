@@ -125,7 +125,7 @@ const WrongFile wrong_urdfs[] = {
 const WrongFile wrong_arms[] = {
     {"schema = \"snare-arm/1\"", "schema = \"snare-arm/2\"",
      "x.toml:1: schema = \"snare-arm/2\", must be \"snare-arm/1\""},
-    {"urdf   = \"two_links.urdf\"", "urdf   = \"three_links.urdf\"", "three_links.urdf: cannot be read"},
+    {"urdf   = \"two_links.urdf\"", "urdf   = \"three_links.urdf\"", "three_links.urdf: no such file"},
     {"urdf   = \"two_links.urdf\"\n", "", "x.toml: urdf, missing, must name a URDF file"},
     {"tip    = \"tip\"", "tip    = \"tipp\"", "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
     {"[joint.elbow]", "[joint.elbwo]", "x.toml:17: joint.elbwo, unknown key; did you mean elbow?"},

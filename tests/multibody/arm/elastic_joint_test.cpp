@@ -208,8 +208,9 @@ TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
 
 TEST(ElasticJoint, BacklashLetsTheLinkFlyFreely) {
   const double gap = 0.01, speed = 0.02, H = 2.0, K = 50.0;
-  auto run = validation::at_rest(test::one_joint(H, 1.0, multibody::DeflectionLaw::backlash(gap, K, 0.0)),
-                                 Drive::locked(), 20.0, 1e-11);
+  auto run =
+      validation::at_rest(test::one_joint(H, 1.0, multibody::DeflectionLaw({{0.0, 0.0, 0.0, 0.0}, {gap, K, 0.0, 0.0}})),
+                          Drive::locked(), 20.0, 1e-11);
   run.initial.v[0] = speed;
   run.tolerances = {1e-13, 1e-13};  // of angles of 1e-2 and an energy of 4e-4 J
   const auto history = multibody::simulate(run);

@@ -5,7 +5,10 @@
 
 #include <vector>
 
-namespace snare::numerics {
+namespace snare::benchmarks {
+
+using numerics::BorderedSystem;
+using numerics::SparseMatrix;
 
 /// The whole matrix [K C; D E] of a bordered system with a pattern that is found once: each entry knows its slot, and
 /// a refill searches and sorts nothing.
@@ -49,4 +52,7 @@ class BorderedPattern {
   std::vector<int> corner_;    // E, row by row
 };
 
-}  // namespace snare::numerics
+/// Lower triangle, or all, of a band matrix, with the zeros within its band.
+[[nodiscard]] SparseMatrix to_sparse(const numerics::SymmetricBandMatrix& matrix, numerics::Triangle triangle);
+
+}  // namespace snare::benchmarks

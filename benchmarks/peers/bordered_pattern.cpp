@@ -1,10 +1,10 @@
-#include "numerics/bordered_pattern.hpp"
+#include "benchmarks/peers/bordered_pattern.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
-namespace snare::numerics {
+namespace snare::benchmarks {
 
 namespace {
 
@@ -37,7 +37,7 @@ BorderedPattern::BorderedPattern(const BorderedSystem& system, Zeros zeros)
   for (int i = 0; i < m_; ++i) {
     for (int j = 0; j < m_; ++j) want(n_ + i, n_ + j, system.corner(i, j));
   }
-  pattern_ = make_pattern(n_ + m_, entries);
+  pattern_ = numerics::make_pattern(n_ + m_, entries);
 
   for (int j = 0; j < n_; ++j) {
     for (int k = 0; k <= b_; ++k) {
@@ -106,4 +106,8 @@ bool BorderedPattern::refill(const BorderedSystem& system, SparseMatrix& matrix)
   return fits;
 }
 
-}  // namespace snare::numerics
+SparseMatrix to_sparse(const numerics::SymmetricBandMatrix& matrix, numerics::Triangle triangle) {
+  return numerics::from_triplets(matrix.order(), numerics::triplets_of(matrix, triangle));
+}
+
+}  // namespace snare::benchmarks

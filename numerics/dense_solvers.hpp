@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+/// Decompositions of dense matrices, compiled once: in every source that uses them they take seconds.
+namespace snare::numerics {
+
+/// Eigenvalues of a symmetric matrix, rising, and its eigenvectors in the same order.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
+
+/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls.
+struct ThinSvd {
+  Eigen::MatrixXd U;
+  Eigen::VectorXd s;
+  Eigen::MatrixXd V;
+};
+[[nodiscard]] ThinSvd thin_svd(const Eigen::MatrixXd& a);
+
+/// Pseudo-inverse, by the complete orthogonal decomposition.
+[[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a);
+
+/// x of least |a x - b|, and among them the one of least norm; by the same decomposition.
+[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+/// x of least |a x - b| for a matrix of full rank, by Householder's QR decomposition with column pivoting.
+[[nodiscard]] Eigen::VectorXd full_rank_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+}  // namespace snare::numerics
