@@ -21,7 +21,7 @@ namespace snare::coupling {
 /// lets go. With a law of fast simulators the force of each local minimum of the gap acts there instead.
 /// Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and across it, with hats H_i
 /// between:
-///   int H_i lambda (dz_i/dt - rate(w, z_i)) dS + W (dz_i/dt + z_i/t_0) = 0
+///   dz_i/dt = (int H_i lambda rate(w, z_i) dS - W z_i/t_0)/(int H_i lambda dS + W)
 /// where W is a load that matters nowhere but makes bristles forget in t_0 what they held when nothing presses any more.
 class ContactPart final : public numerics::DaePart {
  public:

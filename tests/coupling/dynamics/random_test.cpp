@@ -97,8 +97,13 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
     });
     ASSERT_TRUE(r.report.usable()) << r.report.message;
     touched += r.events.empty() ? 0 : 1;
-    EXPECT_LT(deepest, 1e-6);
-    EXPECT_LT(r.largest_penetration, 1e-6);
+    // Where it crosses an edge of the shape, d = (F/(4/3 k sqrt(2 (R + r))))^(2/3) (M.8).
+    const wire::SpatialRodProperties& p = rod.properties;
+    const double modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, 2.0 * wire_radius);
+    const double edge = std::sqrt(2.0 * (contact.shape->smallest_radius() + wire_radius));
+    const double give = std::pow(r.peak_force[0] / (4.0 / 3.0 * modulus * edge), 2.0 / 3.0);
+    EXPECT_LT(deepest, std::max(1e-6, 1.3 * give));
+    EXPECT_LT(r.largest_penetration, std::max(1e-6, 1.3 * give));
     EXPECT_LT(r.events.size(), 2000u);
     // Of the body's energy, and of 0.05 J: bending the loose wire takes 0.03 to 0.4 J.
     const double energy = 0.5 * body.properties.mass * speed * speed + 0.05;

@@ -99,6 +99,8 @@ TEST(WirePairBalance, WhatIsPressedOnAMountIsItsReaction) {
   MotionOptions options = test::fine_tolerances();
   // What Newton's method leaves, times the stiffness of the contact, is missing from the clamp's force.
   options.newton_share = 1e-6;
+  options.velocity_tolerance = 1e-5;
+  options.position_tolerance = 1e-9;
   options.duration = 0.005;
   const MotionResult r = simulate(motion, options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
