@@ -140,7 +140,9 @@ ContactScenario read_contact(TomlDocument& document) {
   }
   require_simple_motion(tables, scenario.push);
 
-  scenario.damping = read_damping(root.table("damping"));
+  const TomlTable damping = root.table("damping");
+  scenario.damping = read_damping(damping);
+  scenario.strand_time = damping.number_or("strand_time_s", scenario.strand_time, Range::from(1e-9, 1.0));
   scenario.strength = read_strength(tables.wire, scenario.push.wire);
   read_body(root.table("body"), scenario);
   scenario.foundation = read_foundation(root.table("foundation"));

@@ -99,6 +99,13 @@ TEST(ContactScenario, NamesTheFormulationOfItsWire) {
 }
 
 // Digest of Table 4: the quadratic at s = 90 mm, head-on, without damping: 8.9 kg at 0.1 m/s.
+TEST(ContactScenario, TakesModelsAndDampingOfTheWire) {
+  const ContactScenario s = air_table_with({"damping.strand_time_s=2e-5"});
+  EXPECT_DOUBLE_EQ(s.strand_time, 2e-5);
+  EXPECT_TRUE(motion_of(s, {"still", "quasi_static", {}, true}).wires[0].rod.quasi_static);
+  EXPECT_FALSE(motion_of(s, s.models[0]).wires[0].rod.quasi_static);
+}
+
 TEST(ContactScenario, QuadraticLawHeadOn) {
   const ContactScenario s =
       air_table_with({"body.probe_mm=[0.0, 100.0, 0.0]", "duration_s=0.4", "solver.relative_tolerance=1e-7",
