@@ -43,7 +43,7 @@ struct RodInMotion {
   int elements = 60;                ///< >= 4
   double grading = 0.0;             ///< of the mesh, see MaterialMesh; 0: equal edges
   Formulation formulation = Formulation::vertices;
-  /// Its inertia is left out: positions follow the forces at once, but for what damping delays (M.18).
+  /// All but a thousandth of its inertia is left out: positions follow the forces at once, but for what damping delays (M.18).
   bool quasi_static = false;
   RodDamping damping;
   RodStrands strands;

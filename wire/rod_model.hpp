@@ -46,8 +46,10 @@ class RodModel {
   [[nodiscard]] std::optional<End> end_of(int i) const;
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
-  /// Of that mass what resists acceleration [kg]: nothing when the wire is quasi-static.
-  [[nodiscard]] double inertia_of(int vertex) const { return constants_.quasi_static ? 0.0 : mass_of(vertex); }
+  /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt, and what friction
+  /// lets go still passes from one place to the next.                                         theory.md (M.18)
+  [[nodiscard]] double inertial_share() const { return constants_.quasi_static ? 1e-3 : 1.0; }
+  [[nodiscard]] double inertia_of(int vertex) const { return inertial_share() * mass_of(vertex); }
   /// Whether bending dissipates.
   [[nodiscard]] bool bends_with_loss() const { return damping().bending_time > 0.0 || strands().act(); }
   /// Drag on the rate of theta_0 where no mount holds the twist [N m s]; 0: none.             theory.md (M.4)

@@ -275,12 +275,12 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
   for (int e = 0; e < model_.edges(); ++e) {
     result.potential -= 0.5 * model_.rest_length(e) * weight.dot(vertex(state, e) + vertex(state, e + 1));
   }
-  result.kinetic = 0.5 * square;
-  if (constants().quasi_static) {
-    result.left_out_kinetic = std::exchange(result.kinetic, 0.0);
-    result.left_out_momentum = std::exchange(result.momentum, Vector3d::Zero());
-    result.angular_momentum.setZero();
-  }
+  const double share = model_.inertial_share();
+  result.kinetic = 0.5 * share * square;
+  result.left_out_kinetic = 0.5 * (1.0 - share) * square;
+  result.left_out_momentum = (1.0 - share) * result.momentum;
+  result.momentum *= share;
+  result.angular_momentum *= share;
   result.strain = assembly_.energy - result.potential + losses_.strand_energy;
   result.dissipation = losses_.power + model_.damping().mass_rate * square;
   for (int i = 0; weight != Vector3d::Zero() && i < vertices(); ++i) {

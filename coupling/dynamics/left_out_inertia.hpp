@@ -8,7 +8,7 @@
 
 namespace snare::coupling {
 
-/// Largest of what a quasi-static wire leaves out: what its mass would have at the velocities that it has.
+/// Largest of what a quasi-static wire leaves out: what its mass would have more at the velocities that it has.
 struct LeftOutInertia {
   double kinetic = 0.0;  ///< energy [J]
   double force = 0.0;    ///< |d/dt sum m v|, as a mean over the window of the peak force [N]

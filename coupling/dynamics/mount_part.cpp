@@ -187,7 +187,7 @@ VectorXd MountPart::acceleration_bias(const VectorView& y, const VectorXd& rate)
 }
 
 void MountPart::apply_impulse(const VectorView& y, const VectorXd& multipliers, VectorXd& dv) const {
-  dv.segment<3>(rod_.velocity_of(vertex())) += multipliers / rod_.mass_of(vertex());
+  dv.segment<3>(rod_.velocity_of(vertex())) += multipliers / rod_.model().inertia_of(vertex());
   if (carrier().moves_freely()) carrier().apply_impulse(y, carrier().jacobian(y), {Vector3d::Zero(), -multipliers}, dv);
 }
 

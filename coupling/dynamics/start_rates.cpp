@@ -24,7 +24,7 @@ void MotionRun::make_rates() {
   for (const wire::RodPart& r : rods_) {
     for (int i = 0; i < r.vertices(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        if (!r.is_held(i, k)) rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.mass_of(i);
+        if (!r.is_held(i, k)) rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.model().inertia_of(i);
       }
       if (r.constants().strands.act()) rate_.segment<2>(r.strand_of(i)) = -rows.segment<2>(r.strand_of(i));
     }
@@ -39,10 +39,6 @@ void MotionRun::make_rates() {
   }
   constraints_->solve_rates(y_, rows, rate_);
   constraints_->set_multipliers(constraints_->hold_rates(y_, rate_), y_);
-  // Nothing determines how the velocities of a quasi-static wire change; its masses have served to share out the forces.
-  for (const wire::RodPart& r : rods_) {
-    if (r.constants().quasi_static) rate_.segment(r.velocity_of(0), 3 * r.vertices()).setZero();
-  }
   for (const ContactGroup& c : contacts_) {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
   }
