@@ -258,6 +258,17 @@ double RodPart::mount_error(const numerics::VectorView& y) const {
   return worst;
 }
 
+RodPart::LeftOut RodPart::left_out(const numerics::VectorView& y) const {
+  LeftOut sum;
+  for (int i = 0; i < vertices(); ++i) {
+    const double mass = mass_of(i) - model_.inertia_of(i);
+    const Vector3d v = y.segment<3>(velocity_of(i));
+    sum.kinetic += 0.5 * mass * v.squaredNorm();
+    sum.momentum += mass * v;
+  }
+  return sum;
+}
+
 RodPart::Energies RodPart::energies(const DaePoint& at) {
   evaluate(at);
   const SpatialState& state = trial_.state;
@@ -277,8 +288,6 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
   }
   const double share = model_.inertial_share();
   result.kinetic = 0.5 * share * square;
-  result.left_out_kinetic = 0.5 * (1.0 - share) * square;
-  result.left_out_momentum = (1.0 - share) * result.momentum;
   result.momentum *= share;
   result.angular_momentum *= share;
   result.strain = assembly_.energy - result.potential + losses_.strand_energy;

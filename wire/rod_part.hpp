@@ -84,11 +84,8 @@ class RodPart final : public numerics::DaePart {
     double dissipation = 0.0;
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
     Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
-    /// What a quasi-static wire would have of them, were its mass counted.                     theory.md (M.18)
-    double left_out_kinetic = 0.0;
-    Eigen::Vector3d left_out_momentum = Eigen::Vector3d::Zero();
-    Eigen::Vector3d drag = Eigen::Vector3d::Zero();         ///< of `mass_rate`, against the motion [N]
-    Eigen::Vector3d drag_moment = Eigen::Vector3d::Zero();  ///< about the origin [N m]
+    Eigen::Vector3d drag = Eigen::Vector3d::Zero();              ///< of `mass_rate`, against the motion [N]
+    Eigen::Vector3d drag_moment = Eigen::Vector3d::Zero();       ///< about the origin [N m]
     /// Forces of the left and the right mount that balance the wire's own forces [N].
     std::array<Eigen::Vector3d, 2> mount_forces{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     /// The same as moments about the origin, with the couples of mounts that orient [N m].   theory.md (M.11)
@@ -96,6 +93,13 @@ class RodPart final : public numerics::DaePart {
     Eigen::Vector3d weight_moment = Eigen::Vector3d::Zero();  ///< of the weight about the origin [N m]
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
+
+  /// What a quasi-static wire would have more, were all its mass counted.                      theory.md (M.18)
+  struct LeftOut {
+    double kinetic = 0.0;                                ///< [J]
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  ///< [kg m/s]
+  };
+  [[nodiscard]] LeftOut left_out(const numerics::VectorView& y) const;
 
  private:
   /// What damping and strands do at the last point of evaluation.

@@ -15,6 +15,20 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using numerics::DaePoint;
 
+namespace {
+
+// What contact presses on rigidly held components of a wire's ends is no part of the rod's own reaction.
+void add_held(const wire::RodPart& rod, const std::array<Vector3d, 2>& on_mounts, const DaePoint& at,
+              Eigen::Ref<VectorXd> rates) {
+  const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};
+  for (std::size_t k = 0; k < 2; ++k) {
+    rates.segment<3>(integral::outer) -= on_mounts[k];
+    rates.segment<3>(integral::outer_moment) -= Vector3d(at.y.segment<3>(ends[k])).cross(on_mounts[k]);
+  }
+}
+
+}  // namespace
+
 EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
   EnergyBalance e;
   for (wire::RodPart& r : rods_) {
@@ -44,17 +58,11 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
   return e;
 }
 
-// Of a contact's force on its wire: what a driven body gives, with its work, and what goes on to rigidly held components,
-// where it is no part of the rod's own reaction.
+// Of a contact's force on its wire: what goes on to rigidly held components, and what a driven body gives, with its work.
 void MotionRun::add_reactions(std::size_t contact, const ContactPart::Sums& sums, const DaePoint& at,
                               Eigen::Ref<VectorXd> rates) const {
-  const wire::RodPart& rod = rods_[static_cast<std::size_t>(motion_.contacts[contact].wire)];
-  const BodyPart& body = bodies_[static_cast<std::size_t>(motion_.contacts[contact].body)];
-  const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};
-  for (std::size_t k = 0; k < 2; ++k) {
-    rates.segment<3>(integral::outer) -= sums.on_mounts[k];
-    rates.segment<3>(integral::outer_moment) -= Vector3d(at.y.segment<3>(ends[k])).cross(sums.on_mounts[k]);
-  }
+  const BodyPart& body = bodies_[base::at(motion_.contacts[contact].body)];
+  add_held(rods_[base::at(motion_.contacts[contact].wire)], sums.on_mounts, at, rates);
   if (body.moves_freely()) return;
   rates[integral::work] += sums.body_power;
   rates.segment<3>(integral::outer) += sums.force;
@@ -70,14 +78,8 @@ void MotionRun::add_pair(std::size_t pair, const DaePoint& at, Eigen::Ref<Vector
   rates[integral::contacts + 3 * static_cast<Eigen::Index>(touching()) + index] = s.normal;
   rates[integral::dissipated] += s.lost_power;
   rates.segment<3>(integral::outer_moment) -= s.held_moment;
-  for (std::size_t w = 0; w < 2; ++w) {
-    const wire::RodPart& rod = rods_[base::at(motion_.wire_pairs[pair].wires[w])];
-    const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};
-    for (std::size_t k = 0; k < 2; ++k) {
-      rates.segment<3>(integral::outer) -= s.on_mounts[w][k];
-      rates.segment<3>(integral::outer_moment) -= Vector3d(at.y.segment<3>(ends[k])).cross(s.on_mounts[w][k]);
-    }
-  }
+  for (std::size_t w = 0; w < 2; ++w)
+    add_held(rods_[base::at(motion_.wire_pairs[pair].wires[w])], s.on_mounts[w], at, rates);
 }
 
 void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
@@ -136,28 +138,26 @@ double MotionRun::longest_step() const {
 void MotionRun::watch(double time_before, const VectorXd& before) {
   const auto count = static_cast<Eigen::Index>(touching());
   VectorXd forces(count);
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const ContactSample sum = contacts_[k].closed_sample(y_);
-    for (MotionEvent& e : contacts_[k].observe(time_, sum, y_, time_before, before)) {
-      e.contact = static_cast<int>(k);
+  const auto note = [&](std::size_t contact, const ContactSample& sum, std::vector<MotionEvent> events, bool by_law) {
+    for (MotionEvent& e : events) {
+      e.contact = static_cast<int>(contact);
       sums_.events.push_back(e);
     }
-    forces[static_cast<Eigen::Index>(k)] = sum.normal_force;
-    if (motion_.contacts[k].law) continue;
+    forces[static_cast<Eigen::Index>(contact)] = sum.normal_force;
+    if (by_law) return;
     for (const ContactSample& s : sum.points) sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+  };
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const ContactSample sum = contacts_[k].closed_sample(y_);
+    note(k, sum, contacts_[k].observe(time_, sum, y_, time_before, before), static_cast<bool>(motion_.contacts[k].law));
   }
   const DaePoint at{time_, y_, rate_};
   for (std::size_t k = 0; k < springs_.size(); ++k)
     forces[static_cast<Eigen::Index>(contacts_.size() + k)] = springs_[k].sample(at).normal_force;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const std::size_t index = contacts_.size() + springs_.size() + k;
     const ContactSample sum = pairs_[k].closed_sample(y_);
-    for (MotionEvent& e : pairs_[k].observe(sum, {time_, y_}, {time_before, before})) {
-      e.contact = static_cast<int>(index);
-      sums_.events.push_back(e);
-    }
-    forces[static_cast<Eigen::Index>(index)] = sum.normal_force;
-    for (const ContactSample& s : sum.points) sums_.largest_penetration = std::max(sums_.largest_penetration, -s.gap);
+    note(contacts_.size() + springs_.size() + k, sum, pairs_[k].observe(sum, {time_, y_}, {time_before, before}),
+         false);
   }
   peak_.add(time_before, time_, forces, integrals_.tail(count), sums_.peak_force);
   // Laws take no mass of the wire along at once.
@@ -176,8 +176,8 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))
       broken_ = wire.name + *broken;
     if (!wire.rod.quasi_static) continue;
-    const wire::RodPart::Energies e = rods_[w].energies(at);
-    left_out_[w].add(time_, e.left_out_kinetic, e.left_out_momentum, sums_.left_out[w]);
+    const wire::RodPart::LeftOut left_out = rods_[w].left_out(y_);
+    left_out_[w].add(time_, left_out.kinetic, left_out.momentum, sums_.left_out[w]);
   }
 }
 

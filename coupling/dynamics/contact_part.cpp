@@ -202,23 +202,18 @@ void ContactPart::find_geometries(const VectorView& y, Found& found) const {
   for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
 }
 
-// z_i' = (sum H_i p z'(w, z_i) - W z_i/t_0)/(sum H_i p + W): a mean, so that Newton's method does not meet a row that nothing
-// has weighed until the first touch.                                                                                    (M.9)
 void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
-  const auto z = y.segment(bristle_, 2 * rod_.vertices()).reshaped(2, rod_.vertices());
-  found.bristle_rates = -idle_load / idle_time * z;
-  found.loads = Eigen::VectorXd::Constant(rod_.vertices(), idle_load);
+  found.bristles.begin(y.segment(bristle_, 2 * rod_.vertices()));
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const Node& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
     for (int h = 0; h < 2; ++h) {
       const int i = n.element + h;
-      const double load = n.weight * g.state.normal * n.hats[base::at(h)];
-      found.bristle_rates.col(i) += load * bristle_rate(contact_.friction, {z.col(i), g.state.sliding, 0.0}).rate;
-      found.loads[i] += load;
+      found.bristles.add(i, n.weight * g.state.normal * n.hats[base::at(h)],
+                         bristle_rate(contact_.friction, {y.segment<2>(bristle_of(i)), g.state.sliding, 0.0}).rate);
     }
   }
-  found.bristle_rates.array().rowwise() /= found.loads.array().transpose();
+  found.bristles.finish();
 }
 
 void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
@@ -242,7 +237,7 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
   if (!has_bristle()) return;
   const int count = 2 * rod_.vertices();
   add_up_bristles(at.y, found_);
-  rows.segment(bristle_, count) += at.rate.segment(bristle_, count) - found_.bristle_rates.reshaped();
+  rows.segment(bristle_, count) += at.rate.segment(bristle_, count) - found_.bristles.rates.reshaped();
 }
 
 void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
@@ -251,8 +246,7 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
   if (has_bristle()) {
     add_up_bristles(at.y, found_);
     for (int i = 0; i < rod_.vertices(); ++i) {
-      const double forgets = idle_load / idle_time / found_.loads[i];
-      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + forgets);
+      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + found_.bristles.forgetting(i));
     }
   }
   for (std::size_t q = 0; q < found_.nodes.size(); ++q)
@@ -289,12 +283,10 @@ void ContactPart::add_node_jacobian(const Node& n, const ContactGeometry& g, con
       into.add(body_.spin() + a, unknown, -n.weight * d.torque[a]);
     }
     for (int h = 0; has_bristle() && h < 2; ++h) {
-      // -d(sum/load) = -(dsum - (sum/load) dload)/load
-      const int z = bristle_of(n.element + h);
+      const int i = n.element + h, z = bristle_of(i);
       const BristleRate& r = bristles[base::at(h)];
-      const Vector2d mean = found_.bristle_rates.col(n.element + h);
-      const Vector2d row = n.weight * n.hats[base::at(h)] / found_.loads[n.element + h] *
-                           (d.load * (mean - r.rate) - g.state.normal * r.by_sliding * d.sliding);
+      const Vector2d row = found_.bristles.change(i, n.weight * n.hats[base::at(h)], d.load, r.rate,
+                                                  g.state.normal * r.by_sliding * d.sliding);
       for (int a = 0; a < 2; ++a) into.add(z + a, unknown, row[a]);
     }
   };
@@ -332,7 +324,7 @@ void ContactPart::add_node_jacobian(const Node& n, const ContactGeometry& g, con
   // The bristles themselves.
   for (int h = 0; has_bristle() && h < 2; ++h) {
     const int z = bristle_of(n.element + h);
-    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.element + h];
+    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.bristles.loads[n.element + h];
     for (int a = 0; a < 2; ++a) {
       for (int b = 0; b < 2; ++b) into.add(z + a, z + b, -share * bristles[base::at(h)].by_bristle(a, b));
     }
@@ -379,7 +371,7 @@ void ContactPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& r
   Found found;
   find_geometries(y, found);
   add_up_bristles(y, found);
-  rate.segment(bristle_, 2 * rod_.vertices()) = found.bristle_rates.reshaped();
+  rate.segment(bristle_, 2 * rod_.vertices()) = found.bristles.rates.reshaped();
 }
 
 std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {

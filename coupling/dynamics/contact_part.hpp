@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_geometry.hpp"
 #include "coupling/dynamics/contact_search.hpp"
@@ -22,7 +23,7 @@ namespace snare::coupling {
 /// Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and across it, with hats H_i
 /// between:
 ///   dz_i/dt = (int H_i lambda rate(w, z_i) dS - W z_i/t_0)/(int H_i lambda dS + W)
-/// where W is a load that matters nowhere but makes bristles forget in t_0 what they held when nothing presses any more.
+/// where W lets bristles forget what they held: see BristleMeans.
 class ContactPart final : public numerics::DaePart {
  public:
   ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece, const wire::RodPart& rod,
@@ -84,9 +85,7 @@ class ContactPart final : public numerics::DaePart {
     std::vector<int> elements;             // of each stretch
     std::vector<GapPlace> minima;
     std::vector<ContactGeometry> geometries;  // of the nodes
-    // Of the vertices' bristles: dz/dt, and what presses on them [N].
-    Eigen::Matrix2Xd bristle_rates;
-    Eigen::VectorXd loads;
+    BristleMeans bristles;
   };
   void find(const numerics::VectorView& y, Found& found) const;
   void find_geometries(const numerics::VectorView& y, Found& found) const;

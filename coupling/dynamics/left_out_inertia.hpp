@@ -1,8 +1,9 @@
 #pragma once
 
+#include "coupling/dynamics/window_record.hpp"
+
 #include <Eigen/Core>
 
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -19,20 +20,15 @@ struct LeftOutInertia {
 class LeftOutMomentum {
  public:
   /// window [s], >= 0: shorter steps are taken together.
-  explicit LeftOutMomentum(double window = 0.0) : window_(window) {}
+  explicit LeftOutMomentum(double window = 0.0) : record_(window) {}
 
   /// After a step to `time` [s]: kinetic energy [J] and momentum [kg m/s] there. Raises what is larger in `largest`.
   void add(double time, double kinetic, const Eigen::Vector3d& momentum, LeftOutInertia& largest);
-  void save_state(std::vector<double>& memory) const;
-  void restore_state(std::span<const double>& memory);
+  void save_state(std::vector<double>& memory) const { record_.save_state(memory); }
+  void restore_state(std::span<const double>& memory) { record_.restore_state(memory); }
 
  private:
-  struct Record {
-    double time = 0.0;
-    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
-  };
-  double window_ = 0.0;
-  std::deque<Record> records_;  // the first at or before the beginning of the window
+  WindowRecord record_;  // of the momentum
 };
 
 }  // namespace snare::coupling

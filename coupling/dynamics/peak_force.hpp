@@ -1,8 +1,9 @@
 #pragma once
 
+#include "coupling/dynamics/window_record.hpp"
+
 #include <Eigen/Core>
 
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -15,22 +16,17 @@ namespace snare::coupling {
 class PeakForce {
  public:
   /// window [s], >= 0; 0: of the force at the steps.
-  explicit PeakForce(double window = 0.0) : window_(window) {}
+  explicit PeakForce(double window = 0.0) : record_(window) {}
 
   /// After a step from `before` to `time` [s]: the forces there [N], and their integrals [N s] since any time. Raises what is
   /// larger in `peaks` [N]. A step longer than the window counts with the force at its end.
   void add(double before, double time, const Eigen::VectorXd& forces, const Eigen::VectorXd& impulses,
            std::vector<double>& peaks);
-  void save_state(std::vector<double>& memory) const;
-  void restore_state(std::span<const double>& memory);
+  void save_state(std::vector<double>& memory) const { record_.save_state(memory); }
+  void restore_state(std::span<const double>& memory) { record_.restore_state(memory); }
 
  private:
-  struct Record {
-    double time = 0.0;
-    Eigen::VectorXd impulses;
-  };
-  double window_ = 0.0;
-  std::deque<Record> records_;  // the first at or before the beginning of the window
+  WindowRecord record_;  // of the impulses
 };
 
 }  // namespace snare::coupling

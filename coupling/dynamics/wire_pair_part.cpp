@@ -234,24 +234,17 @@ void WirePairPart::find_geometries(const VectorView& y, Found& found) const {
   for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
 }
 
-// z_i' as a mean over what presses, see ContactPart.
 void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
-  for (std::size_t w = 0; w < 2; ++w) {
-    const int vertices = rods_[w]->vertices();
-    found.bristle_rates[w] = -idle_load / idle_time * y.segment(bristles_[w], 2 * vertices).reshaped(2, vertices);
-    found.loads[w] = Eigen::VectorXd::Constant(vertices, idle_load);
-  }
+  for (std::size_t w = 0; w < 2; ++w) found.bristles[w].begin(y.segment(bristles_[w], 2 * rods_[w]->vertices()));
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const Node& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
     for (int h = 0; h < 2; ++h) {
-      const int i = n.places[0].element + h;
-      const double load = n.weight * g.state.normal * n.hats[base::at(h)];
-      found.bristle_rates[n.own].col(i) += load * bristle(n, h, g, y).rate;
-      found.loads[n.own][i] += load;
+      found.bristles[n.own].add(n.places[0].element + h, n.weight * g.state.normal * n.hats[base::at(h)],
+                                bristle(n, h, g, y).rate);
     }
   }
-  for (std::size_t w = 0; w < 2; ++w) found.bristle_rates[w].array().rowwise() /= found.loads[w].array().transpose();
+  for (BristleMeans& b : found.bristles) b.finish();
 }
 
 void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
@@ -274,7 +267,7 @@ void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows
   add_up_bristles(at.y, found_);
   for (std::size_t w = 0; w < 2; ++w) {
     const int count = 2 * rods_[w]->vertices();
-    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found_.bristle_rates[w].reshaped();
+    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found_.bristles[w].rates.reshaped();
   }
 }
 
@@ -284,8 +277,8 @@ void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& v
   if (has_bristle()) add_up_bristles(at.y, found_);
   for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
     for (int i = 0; i < rods_[w]->vertices(); ++i) {
-      const double forgets = idle_load / idle_time / found_.loads[w][i];
-      for (int a = 0; a < 2; ++a) into.add(bristle_of(w, i) + a, bristle_of(w, i) + a, c + forgets);
+      for (int a = 0; a < 2; ++a)
+        into.add(bristle_of(w, i) + a, bristle_of(w, i) + a, c + found_.bristles[w].forgetting(i));
     }
   }
   LocalBlock block = LocalBlock::Zero();
@@ -323,12 +316,10 @@ void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDi
     }
   }
   for (int h = 0; has_bristle() && h < 2; ++h) {
-    // -d(sum/load) = -(dsum - (sum/load) dload)/load
     const BristleRate r = bristle(n, h, g, y);
-    const int i = n.places[0].element + h;
     column.segment<2>(row_of_bristle + 2 * h) +=
-        n.weight * n.hats[base::at(h)] / found_.loads[n.own][i] *
-        (c.load * (found_.bristle_rates[n.own].col(i) - r.rate) - g.state.normal * r.by_sliding * c.sliding);
+        found_.bristles[n.own].change(n.places[0].element + h, n.weight * n.hats[base::at(h)], c.load, r.rate,
+                                      g.state.normal * r.by_sliding * c.sliding);
   }
 }
 
@@ -360,7 +351,8 @@ void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const
   }
   for (int h = 0; has_bristle() && h < 2; ++h) {
     const BristleRate r = bristle(n, h, g, y);
-    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.loads[n.own][n.places[0].element + h];
+    const double share =
+        n.weight * g.state.normal * n.hats[base::at(h)] / found_.bristles[n.own].loads[n.places[0].element + h];
     for (int a = 0; a < 2; ++a) {
       const Eigen::Index column = column_of_bristle + 2 * h + a;
       PairDirection d;

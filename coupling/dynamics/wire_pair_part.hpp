@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_touches.hpp"
 #include "coupling/dynamics/result.hpp"
@@ -95,11 +96,9 @@ class WirePairPart final : public numerics::DaePart {
     std::vector<Stretch> stretches;
     std::array<CubicPieces, 2> pieces;
     std::vector<PairGeometry> geometries;  // of the nodes
-    // Of the bristles at the vertices of both wires: dz/dt, and what presses on them [N].
-    std::array<Eigen::Matrix2Xd, 2> bristle_rates;
-    std::array<Eigen::VectorXd, 2> loads;
-    std::vector<ClosedStretch> closed;  // workspace
-    std::vector<GapPlace> minima;       // workspace
+    std::array<BristleMeans, 2> bristles;  // of both wires
+    std::vector<ClosedStretch> closed;     // workspace
+    std::vector<GapPlace> minima;          // workspace
   };
   /// Forces on the four vertices on which a place depends [N], and the moment that is taken as held [N m].
   struct NodalLoad {

@@ -48,7 +48,7 @@ void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& 
   find_geometries(y, found_);
   add_up_bristles(y, found_);
   for (std::size_t w = 0; w < 2; ++w)
-    rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found_.bristle_rates[w].reshaped();
+    rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found_.bristles[w].rates.reshaped();
 }
 
 // Stretches of the first wire are points of the contact; what is integrated along the second wire belongs to the one beside

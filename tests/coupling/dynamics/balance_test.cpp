@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gmock/gmock.h>
@@ -182,55 +183,15 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
   EXPECT_LT(result.angular_momentum_error.norm(), 1e-6 * weight * options.duration * length);
 }
 
-/// Everything that a sample has, to compare bits.
-std::vector<double> numbers(const MotionSample& s) {
-  std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated, s.energy.integrator};
-  for (const auto& b : s.bodies) {
-    for (int k = 0; k < 3; ++k)
-      list.insert(list.end(), {b.position[k], b.velocity[k], b.spin[k], b.orientation.vec()[k]});
-  }
-  for (const auto& c : s.contacts) list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.x(), c.force.y()});
-  for (const auto& w : s.wires) list.insert(list.end(), w.data(), w.data() + w.size());
-  return list;
-}
-
 TEST(MotionState, GoingOnFromACheckpointGivesTheSameBits) {
   Motion motion = oblique_impact(soft_rod(End::clamp, End::pin));
   motion.bodies[0].start.spin = {1.0, -2.0, 3.0};
   MotionOptions options;
   options.duration = 0.05;
   options.checkpoint_interval = 0.012;
-  std::vector<std::vector<double>> whole;
-  std::vector<MotionState> states;
-  const MotionResult through = simulate(
-      motion, options,
-      [&](const MotionSample& s) {
-        whole.push_back(numbers(s));
-        return false;
-      },
-      nullptr, [&](const MotionState& s) { states.push_back(s); });
-  ASSERT_TRUE(through.report.usable()) << through.report.message;
+  const std::vector<MotionState> states = test::expect_same_bits_from_checkpoints(motion, options);
   ASSERT_EQ(states.size(), 4u);
   EXPECT_EQ(states[1].time, 0.024);
-  for (const MotionState& from : states) {
-    std::vector<std::vector<double>> parts(whole.begin(), whole.begin() + from.sums.samples);
-    const MotionResult on = simulate(
-        motion, options,
-        [&](const MotionSample& s) {
-          parts.push_back(numbers(s));
-          return false;
-        },
-        &from);
-    ASSERT_TRUE(on.report.usable()) << on.report.message;
-    EXPECT_EQ(parts, whole) << "from " << from.time << " s";
-    EXPECT_EQ(on.last.unknowns, through.last.unknowns);
-    EXPECT_EQ(on.last.integrals, through.last.integrals);
-    EXPECT_EQ(on.last.memory, through.last.memory);
-    EXPECT_EQ(on.statistics.steps, through.statistics.steps);
-    EXPECT_EQ(on.events.size(), through.events.size());
-    EXPECT_EQ(on.largest_penetration, through.largest_penetration);
-    EXPECT_EQ(on.peak_force, through.peak_force);
-  }
 }
 
 // Runs share nothing that they change, the motion with its shapes included.

@@ -4,6 +4,7 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
 #include "coupling/statics/push_solver.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/soft_wire.hpp"
 #include "validation/declared_wire.hpp"
 #include "wire/rod_constants.hpp"
@@ -128,18 +129,7 @@ TEST(QuasiStaticWire, GoesOnFromACheckpointWithTheSameBits) {
   MotionOptions options;
   options.duration = 0.04;
   options.checkpoint_interval = 0.012;
-  std::vector<MotionState> states;
-  const MotionResult whole =
-      simulate(motion, options, {}, nullptr, [&](const MotionState& state) { states.push_back(state); });
-  ASSERT_TRUE(whole.report.usable()) << whole.report.message;
-  ASSERT_EQ(states.size(), 3u);
-  for (const MotionState& state : states) {
-    const MotionResult rest = simulate(motion, options, {}, &state);
-    EXPECT_EQ(rest.last.unknowns, whole.last.unknowns);
-    EXPECT_EQ(rest.last.memory, whole.last.memory);
-    EXPECT_EQ(rest.peak_force, whole.peak_force);
-    EXPECT_EQ(rest.left_out[0].force, whole.left_out[0].force);
-  }
+  EXPECT_EQ(test::expect_same_bits_from_checkpoints(motion, options).size(), 3u);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "coupling/contact/revolved_solids.hpp"
 #include "tests/support/crossed_wires.hpp"
+#include "tests/support/same_bits.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -279,37 +280,7 @@ TEST(WirePairState, GoingOnFromACheckpointGivesTheSameBits) {
   MotionOptions options;
   options.duration = 0.01;
   options.checkpoint_interval = 0.003;
-  const auto numbers = [](const MotionSample& s) {
-    std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated};
-    for (const ContactSample& c : s.contacts) list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.y()});
-    for (const auto& w : s.wires) list.insert(list.end(), w.data(), w.data() + w.size());
-    return list;
-  };
-  std::vector<std::vector<double>> whole;
-  std::vector<MotionState> states;
-  const MotionResult through = simulate(
-      motion, options,
-      [&](const MotionSample& s) {
-        whole.push_back(numbers(s));
-        return false;
-      },
-      nullptr, [&](const MotionState& s) { states.push_back(s); });
-  ASSERT_TRUE(through.report.usable()) << through.report.message;
-  ASSERT_FALSE(through.events.empty());
-  for (const MotionState& from : states) {
-    std::vector<std::vector<double>> parts(whole.begin(), whole.begin() + from.sums.samples);
-    const MotionResult on = simulate(
-        motion, options,
-        [&](const MotionSample& s) {
-          parts.push_back(numbers(s));
-          return false;
-        },
-        &from);
-    EXPECT_EQ(parts, whole) << "from " << from.time << " s";
-    EXPECT_EQ(on.last.unknowns, through.last.unknowns);
-    EXPECT_EQ(on.last.memory, through.last.memory);
-    EXPECT_EQ(on.events.size(), through.events.size());
-  }
+  EXPECT_EQ(test::expect_same_bits_from_checkpoints(motion, options).size(), 3u);
 }
 
 /// The three slack wires of a snare about a free shaft: each from a fixed ring to a turning one below it, along the outside at the
