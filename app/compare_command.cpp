@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/compare_motions.hpp"
 #include "app/experiment_input.hpp"
 #include "app/report/compare_report.hpp"
 #include "app/report/plot.hpp"
@@ -79,7 +80,7 @@ Comparison from_wire(const std::filesystem::path& file, const Overrides& overrid
   return result;
 }
 
-/// Kinds of files that can be compared, by their schema. A dynamic scenario is one more line here.
+/// Kinds of files of static pushes that can be compared, by their schema.
 struct Kind {
   const char* schema;
   Comparison (*read)(const std::filesystem::path&, const Overrides&);
@@ -126,6 +127,9 @@ nlohmann::json case_json(const CaseComparison& one) {
 
 ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const Overrides overrides = overrides_of(options);
+  const base::TomlNode root = base::parse_toml(file.string(), base::read_text(file));
+  const base::TomlNode* schema = root.find("schema");
+  if (schema != nullptr && schema->text.starts_with("snare-scenario/")) return compare_motions(file, options, console);
   const Comparison comparison = read(file, overrides);
 
   // One after the other: their cost is measured.

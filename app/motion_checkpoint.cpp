@@ -54,9 +54,13 @@ void fields(auto& a, EnergyBalance& e) {
 void fields(auto& a, MotionSample::Arm& s) {
   a(s.state)(s.work)(s.joint_torque);
 }
+void fields(auto& a, MotionSample::Bushing& b) {
+  a(b.shift)(b.turn)(b.on_second);
+}
 void fields(auto& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 6 * sizeof(std::vector<double>) + 12 * sizeof(double));
-  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.energy)(s.momentum)(s.angular_momentum);
+  static_assert(sizeof(MotionSample) == sizeof(double) + 7 * sizeof(std::vector<double>) + 12 * sizeof(double));
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.bushings)(s.energy)(s.momentum)(
+      s.angular_momentum);
 }
 void fields(auto& a, MotionEvent& e) {
   static_assert(sizeof(MotionEvent) == 5 * sizeof(double));
@@ -66,20 +70,27 @@ void fields(auto& a, StrengthUse& u) {
   static_assert(sizeof(StrengthUse) == 5 * sizeof(double));
   a(u.share)(u.tension)(u.bending)(u.arc)(u.time);
 }
+void fields(auto& a, WireUse& u) {
+  static_assert(sizeof(WireUse) == 6 * sizeof(double));
+  a(u.peak_tension)(u.peak_time)(u.tight_since)(u.tight_at)(u.last_tension)(u.last_time);
+}
+void fields(auto& a, PhaseBeginning& p) {
+  a(p.phase)(p.time)(p.angles);
+}
 void fields(auto& a, LeftOutInertia& i) {
   static_assert(sizeof(LeftOutInertia) == 2 * sizeof(double));
   a(i.kinetic)(i.force);
 }
 void fields(auto& a, MotionSums& s) {
-  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.largest_penetration)(s.largest_drift)(s.start_energy)(
-      s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.wires)(s.phases)(s.largest_penetration)(s.largest_drift)(
+      s.start_energy)(s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
 }
 void fields(auto& a, MotionState& s) {
   a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
 }
 void fields(auto& a, MotionResult& r) {
   a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.left_out)(
-      r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+      r.wires)(r.phases)(r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
 }
 }  // namespace snare::coupling
 
@@ -98,7 +109,7 @@ void fields(auto& a, MotionProgress& p) {
 
 namespace {
 
-constexpr std::string_view mark = "snare motion checkpoint 3\n";
+constexpr std::string_view mark = "snare motion checkpoint 4\n";
 
 /// Of the input and of the program that is to go on with it.
 std::uint64_t key_of(const std::string& input) {

@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -158,12 +160,51 @@ Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
     columns.add(name + "normal_N", [k](const MotionSample& s) { return s.contacts[k].normal_force; });
     columns.add_vector(name + "f", "_N", [k](const MotionSample& s) { return s.contacts[k].force; });
   }
-  add_energies(columns);
   return columns;
 }
 
+/// Joints of arms and snares, wires on mounts, bushings.
+void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns) {
+  for (std::size_t a = 0; a < motion.arms.size(); ++a) {
+    const multibody::ElasticArm& arm = motion.arms[a].arm;
+    for (int j = 0; j < arm.motors(); ++j) {
+      const multibody::ElasticJoint& joint = arm.joints[at(j)];
+      const bool own = joint.name.find("::") != std::string::npos;
+      const std::string name = own ? joint.name : fmt::format("{}::{}", motion.arms[a].name, joint.name);
+      const bool slides = arm.tree.body(joint.body).joint == multibody::JointKind::prismatic;
+      const double unit = slides ? base::mm : degree;
+      const char* angle = slides ? "mm" : "deg";
+      columns.add(fmt::format("{} motor_{}", name, angle),
+                  [a, j, unit](const MotionSample& s) { return s.arms[a].state.motor[j] / unit; });
+      columns.add(fmt::format("{} deflection_{}", name, angle), [&arm, a, j, unit](const MotionSample& s) {
+        return multibody::deflection(arm, s.arms[a].state, j) / unit;
+      });
+      columns.add(fmt::format("{} torque_{}", name, slides ? "N" : "Nm"),
+                  [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; });
+    }
+  }
+  for (std::size_t w = 0; w < motion.wires.size(); ++w) {
+    columns.add(motion.wires[w].name + " tension_N",
+                [w](const MotionSample& s) { return coupling::end_tension(s, w); });
+  }
+  for (std::size_t b = 0; b < motion.bushings.size(); ++b) {
+    const std::string name = motion.bushings[b].name + " ";
+    columns.add_vector(name + "d", "_mm",
+                       [b](const MotionSample& s) { return Vector3d(mm_per_m * s.bushings[b].shift); });
+    columns.add_vector(name + "turn_", "_deg",
+                       [b](const MotionSample& s) { return Vector3d(s.bushings[b].turn / degree); });
+    columns.add_vector(name + "f", "_N", [b](const MotionSample& s) { return s.bushings[b].on_second.force; });
+    columns.add_vector(name + "m", "_Nm", [b](const MotionSample& s) { return s.bushings[b].on_second.moment; });
+  }
+}
+
 Columns<MotionSample> columns_of(const scenario::WireMotions& motions) {
-  if (!motions.probe) return bodies_among_wires(motions.runs.front().motion);
+  if (!motions.probe) {
+    Columns<MotionSample> columns = bodies_among_wires(motions.runs.front().motion);
+    if (motions.composed) add_composed(motions.runs.front().motion, columns);
+    add_energies(columns);
+    return columns;
+  }
   const bool with_arm = !motions.runs.empty() && !motions.runs.front().motion.arms.empty();
   return with_arm ? body_on_wire_with_arm(motions.runs.front().motion) : body_on_wire();
 }
@@ -222,6 +263,38 @@ void write_history(const std::filesystem::path& file, const scenario::WireMotion
   runs.reserve(finished.size());
   for (const FinishedMotion& run : finished) runs.push_back({run.asked.name, run.samples});
   write(file, columns_of(motions), runs, motions.probe ? Runs::named : Runs::only);
+}
+
+void write_telemetry(const std::filesystem::path& file, const scenario::WireMotions& motions,
+                     const std::vector<coupling::MotionSample>& samples) {
+  // A line for every time at which a sensor reads; cells of those that do not are empty.
+  std::vector<std::string> names{"time_s"};
+  std::vector<scenario::Readings> readings;
+  std::map<double, std::vector<std::pair<std::size_t, std::size_t>>> lines;
+  for (const scenario::Sensor& sensor : motions.sensors) {
+    for (std::string& name : sensor.columns()) names.push_back(std::move(name));
+    readings.push_back(scenario::read_off(sensor, motions.runs.front().motion, samples));
+    for (std::size_t i = 0; i < readings.back().times.size(); ++i) {
+      // Rates that divide the output's give the same time from either, but for round-off.
+      const double time = std::round(readings.back().times[i] * 1e9) * 1e-9;
+      lines[time].emplace_back(readings.size() - 1, i);
+    }
+  }
+  base::CsvWriter csv(file, names);
+  for (const auto& [time, read] : lines) {
+    std::vector<base::CsvCell> row{time};
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      const auto found = std::find_if(read.begin(), read.end(), [k](const auto& one) { return one.first == k; });
+      for (const std::vector<double>& component : readings[k].values) {
+        if (found == read.end())
+          row.emplace_back(std::monostate{});
+        else
+          row.emplace_back(component[found->second]);
+      }
+    }
+    csv.row(row);
+  }
+  csv.commit();
 }
 
 void write_history(const std::filesystem::path& file, const multibody::ElasticArm& arm,

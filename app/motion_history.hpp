@@ -16,4 +16,8 @@ void write_history(const std::filesystem::path& file, const scenario::WireMotion
 void write_history(const std::filesystem::path& file, const multibody::ElasticArm& arm,
                    const multibody::ArmHistory& history);
 
+/// What the sensors of a composed scenario read, at their own rates.
+void write_telemetry(const std::filesystem::path& file, const scenario::WireMotions& motions,
+                     const std::vector<coupling::MotionSample>& samples);
+
 }  // namespace snare::app

@@ -177,6 +177,28 @@ json listed_contacts_json(const FinishedMotion& run) {
   return list;
 }
 
+/// When a wire was touched first by any shape or other wire.
+std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
+  const coupling::Motion& motion = run.asked.motion;
+  std::optional<double> first;
+  const auto consider = [&](std::size_t contact) {
+    const Touches touches = touches_of(run.result, contact);
+    if (touches.first && (!first || *touches.first < *first)) first = touches.first;
+  };
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    if (at(motion.contacts[k].wire) == wire) consider(k);
+  }
+  for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
+    const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
+    if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.springs.size() + k);
+  }
+  return first;
+}
+
+json finite_json(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
 /// Lists of bodies and contacts.
 json lists_json(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
@@ -214,12 +236,43 @@ json head(const scenario::Scenario& asked) {
 
 }  // namespace
 
+json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& run) {
+  const coupling::Motion& motion = run.asked.motion;
+  json outcome{{"caught", nullptr}, {"events", json::array()}};
+  for (const char* key : {"first_touch_s", "tight_s", "peak_tension_N", "strength_N", "peak_force_N", "impulse_Ns"})
+    outcome[key] = json::object();
+  for (std::size_t w = 0; w < motion.wires.size(); ++w) {
+    const coupling::MotionWire& wire = motion.wires[w];
+    outcome["first_touch_s"][wire.name] = time_json(first_touch(run, w));
+    outcome["strength_N"][wire.name] = finite_json(wire.strength.breaking_tension);
+    const bool watched = w < run.result.wires.size();
+    outcome["tight_s"][wire.name] = watched ? finite_json(run.result.wires[w].tight_at) : json();
+    outcome["peak_tension_N"][wire.name] = watched ? json(run.result.wires[w].peak_tension) : json();
+  }
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    outcome["peak_force_N"][contacts[k]] = run.result.peak_force[k];
+    outcome["impulse_Ns"][contacts[k]] = vector_json(run.result.impulse[k]);
+  }
+  for (const coupling::PhaseBeginning& p : run.result.phases)
+    outcome["events"].push_back({{"time_s", p.time}, {"what", "phase"}, {"phase", motion.phases[at(p.phase)].name}});
+  if (!motions.capture) return outcome;
+  const scenario::CaptureOutcome capture = scenario::outcome_of(*motions.capture, motion, run.samples);
+  outcome["caught"] = capture.caught;
+  outcome["enclosed"] = capture.enclosed;
+  outcome["caught_since_s"] = time_json(capture.caught_since);
+  outcome["shaft_speed_m_s"] = capture.speed;
+  outcome["shaft_place_mm"] = vector_json(1e3 * capture.place);
+  return outcome;
+}
+
 json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions& motions,
                     const std::vector<FinishedMotion>& finished) {
   json summary = head(asked);
   summary["duration_s"] = motions.duration;
   if (!motions.probe) {
     summary.update(lists_json(finished.front()));
+    if (motions.composed) summary["outcome"] = outcome_json(motions, finished.front());
     return summary;
   }
   summary["models"] = json::array();

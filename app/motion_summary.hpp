@@ -17,4 +17,7 @@ namespace snare::app {
 [[nodiscard]] nlohmann::json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& motion,
                                          const ArmRecord& record);
 
+/// What a composed scenario has come to: `outcome` of its summary.
+[[nodiscard]] nlohmann::json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& run);
+
 }  // namespace snare::app

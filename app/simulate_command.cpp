@@ -58,6 +58,7 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions
       motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
   write_history(options.out / "history.csv", motions, finished);
+  if (!motions.sensors.empty()) write_telemetry(options.out / "telemetry.csv", motions, finished.front().samples);
   write_results(options, motion_summary(asked, motions, finished), motion_page(asked, motions, finished, version()));
   if (motions.output.paraview) {
     for (const FinishedMotion& run : finished) {

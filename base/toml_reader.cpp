@@ -257,6 +257,14 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t least, 
   return values;
 }
 
+std::vector<double> TomlTable::numbers_or_one(std::string_view key, std::size_t count, Range range, double unit) const {
+  const Found found = find(key);
+  if (found.node == nullptr || found.node->kind != TomlNode::Kind::number)
+    return numbers(key, count, count, range, unit);
+  const std::optional<double> value = checked(found, range, unit);
+  return value ? std::vector<double>(count, *value) : std::vector<double>();
+}
+
 std::vector<std::string> TomlTable::texts_or_none(std::string_view key) const {
   const Found found = find(key);
   if (found.node == nullptr) return {};

@@ -107,6 +107,9 @@ class TomlTable {
   /// An array of numbers, `least` to `most` of them; empty after a problem.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range,
                                             double unit = 1.0) const;
+  /// An array of `count` numbers, or one number for all of them; empty after a problem.
+  [[nodiscard]] std::vector<double> numbers_or_one(std::string_view key, std::size_t count, Range range,
+                                                   double unit = 1.0) const;
   /// An array of texts; empty when the key is absent and after a problem.
   [[nodiscard]] std::vector<std::string> texts_or_none(std::string_view key) const;
 

@@ -133,6 +133,14 @@ double HermiteCurve::slope(double x) const noexcept {
          t * (t - 2.0 * u) * slopes_[i + 1];
 }
 
+double HermiteCurve::curvature(double x) const noexcept {
+  const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
+  const double h = knots_[i + 1] - knots_[i];
+  const double t = (x - knots_[i]) / h;
+  return 6.0 * (1.0 - 2.0 * t) * (values_[i + 1] - values_[i]) / (h * h) +
+         ((6.0 * t - 4.0) * slopes_[i] + (6.0 * t - 2.0) * slopes_[i + 1]) / h;
+}
+
 double HermiteCurve::integral(double x) const noexcept {
   const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
   const double h = knots_[i + 1] - knots_[i];

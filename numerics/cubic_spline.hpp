@@ -37,6 +37,8 @@ class HermiteCurve {
 
   [[nodiscard]] double value(double x) const noexcept;
   [[nodiscard]] double slope(double x) const noexcept;
+  /// Second derivative; it jumps at the knots.
+  [[nodiscard]] double curvature(double x) const noexcept;
   /// Integral from the first knot to x, exact for the piecewise cubic.
   [[nodiscard]] double integral(double x) const noexcept;
   [[nodiscard]] const std::vector<double>& knots() const noexcept { return knots_; }

@@ -4,7 +4,7 @@
 #include "base/toml_reader.hpp"
 #include "scenario/arm_contact_scenario.hpp"
 #include "scenario/arm_reader.hpp"
-#include "scenario/bodies_scenario.hpp"
+#include "scenario/composed_scenario.hpp"
 #include "scenario/contact_scenario.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ using base::TomlNode;
 
 namespace {
 
-enum class Kind { contact, arm_contact, arm_alone };
+enum class Kind { composed, contact, arm_contact, arm_alone };
 
 constexpr base::Choice<Kind> kinds[] = {{"contact", Kind::contact},
                                         {"arm_contact", Kind::arm_contact},
@@ -50,11 +50,19 @@ std::string text_of(const TomlNode& root, std::string_view key) {
   return node != nullptr && node->kind == TomlNode::Kind::text ? node->text : std::string();
 }
 
-/// The kind decides which keys a file may have and for whom overrides are: without it nothing else is worth saying.
+/// Schema and kind decide which keys a file may have and for whom overrides are: without them nothing else is worth saying.
 Kind kind_of(const std::filesystem::path& file, const TomlNode& root) {
   const std::string schema = text_of(root, "schema");
+  if (schema == composed_schema) {
+    if (root.find("kind") != nullptr)
+      throw base::InputError(
+          {file.string(), 0, "kind", text_of(root, "kind"),
+           fmt::format("belongs to older files: take the line out, a file of {} lists what there is", schema)});
+    return Kind::composed;
+  }
   if (schema != scenario_schema)
-    throw base::InputError({file.string(), 0, "schema", schema, fmt::format("must be \"{}\"", scenario_schema)});
+    throw base::InputError({file.string(), 0, "schema", schema,
+                            fmt::format("must be \"{}\" or \"{}\"", composed_schema, scenario_schema)});
   const std::string asked = text_of(root, "kind");
   std::string known;
   for (const base::Choice<Kind>& kind : kinds) {
@@ -64,9 +72,23 @@ Kind kind_of(const std::filesystem::path& file, const TomlNode& root) {
   throw base::InputError({file.string(), 0, "kind", fmt::format("\"{}\"", asked), "must be one of " + known});
 }
 
+/// The keys of a file of kind "contact" that lists its bodies instead of having one [body], one [wire] and one [pusher].
+constexpr std::string_view list_keys[] = {"wires", "bodies", "shapes"};
+
 bool lists_bodies(const TomlNode& root) {
   return std::any_of(std::begin(list_keys), std::end(list_keys),
                      [&root](std::string_view key) { return root.find(key) != nullptr; });
+}
+
+void check_lists(const base::TomlTable& root) {
+  for (const char* key : {"body", "wire", "mount", "pusher", "models"}) {
+    if (root.has(key)) root.fail(key, "not beside lists of bodies, wires and shapes");
+  }
+  // Wires alone may meet each other.
+  const bool wires_alone = root.has("contacts") && !root.has("bodies") && !root.has("shapes");
+  for (const std::string_view key : list_keys) {
+    if (!root.has(key) && !(wires_alone && key != "wires")) root.fail(key, "must be given, one table or more");
+  }
 }
 
 }  // namespace
@@ -82,14 +104,22 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<base
   TomlDocument document(file.string(), written, kind == Kind::arm_contact ? split_overrides.own : overrides);
   const base::TomlTable root = document.root();
   Scenario scenario;
-  base::require_schema(root, scenario_schema);
-  scenario.kind = root.text("kind");
+  base::require_schema(root, kind == Kind::composed ? composed_schema : scenario_schema);
+  scenario.kind = kind == Kind::composed ? "composed" : root.text("kind");
   scenario.title = root.text("title");
   scenario.source = root.text_or("source", "");
   const std::filesystem::path folder = file.parent_path();
   switch (kind) {
+    case Kind::composed:
+      scenario.content = read_composition(document, folder);
+      break;
     case Kind::contact:
-      scenario.content = lists_bodies(looked_at) ? read_bodies(document, folder) : motions_of(read_contact(document));
+      if (!lists_bodies(looked_at)) {
+        scenario.content = motions_of(read_contact(document));
+        break;
+      }
+      check_lists(root);
+      scenario.content = read_composition(document, folder);
       break;
     case Kind::arm_contact:
       scenario.content = read_arm_contact(document, folder, split_overrides.contact);

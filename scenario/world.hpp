@@ -3,6 +3,8 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "multibody/arm/arm_run.hpp"
 #include "scenario/motion_reader.hpp"
+#include "scenario/outcome.hpp"
+#include "scenario/sensors.hpp"
 
 #include <Eigen/Core>
 
@@ -38,6 +40,10 @@ struct WireMotions {
   /// Of one body that meets one wire, run with each of the wire's models. None: the scenario lists its bodies, wires and
   /// shapes and is one run.
   std::optional<Probe> probe;
+  /// Of a scenario that lists what there is.
+  bool composed = false;
+  std::vector<Sensor> sensors;
+  std::optional<CaptureTest> capture;
   std::vector<NamedMotion> runs;
 };
 

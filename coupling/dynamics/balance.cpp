@@ -125,6 +125,7 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   rates.segment<3>(integral::outer) += held.force;
   rates.segment<3>(integral::outer_moment) += held.moment;
   rates[integral::work] += held.power;
+  rates[integral::dissipated] += held.lost;
 }
 
 double MotionRun::longest_step() const {
@@ -171,10 +172,12 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
   }
   for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
   sums_.strength.resize(rods_.size());
+  sums_.wires.resize(rods_.size());
   for (std::size_t w = 0; w < rods_.size(); ++w) {
     const MotionWire& wire = motion_.wires[w];
     if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))
       broken_ = wire.name + *broken;
+    if (wire.tightness.watched) sums_.wires[w].add(wire.tightness, time_, tension(static_cast<int>(w)));
     if (!wire.rod.quasi_static) continue;
     const wire::RodPart::LeftOut left_out = rods_[w].left_out(y_);
     left_out_[w].add(time_, left_out.kinetic, left_out.momentum, sums_.left_out[w]);

@@ -3,6 +3,7 @@
 #include "base/index.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace snare::coupling {
@@ -77,6 +78,13 @@ void ConstraintSet::check(const Motion& motion, Complaints& c) {
                 "must be held, if at all, by an earlier weld");
     }
   }
+  for (const MotionBushing& b : motion.bushings) {
+    check_carrier(motion, b.name, b.first, c);
+    check_carrier(motion, b.name, b.second, c);
+    const double least = std::min({b.translational_stiffness.minCoeff(), b.translational_damping.minCoeff(),
+                                   b.rotational_stiffness.minCoeff(), b.rotational_damping.minCoeff()});
+    c.require(least >= 0.0, b.name, least, "must have stiffnesses and dampings >= 0");
+  }
   // Mounts: rigid ones, each end once.
   std::vector<bool> taken(2 * motion.wires.size(), false);
   for (const MotionMount& m : motion.mounts) {
@@ -123,6 +131,8 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
     mounts_.emplace_back(m.name, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)], m.end,
                          options);
   }
+  for (const MotionBushing& b : motion.bushings)
+    bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF), frame_of(b.second, bodies, b.X_WF));
   for (const WeldPart& w : welds_) constraints_.push_back(&w);
   for (const MountPart& m : mounts_) constraints_.push_back(&m);
 }
@@ -154,6 +164,7 @@ void ConstraintSet::append(std::vector<numerics::DaePart*>& parts) {
   for (Arm& a : arms_) parts.push_back(&*a.part);
   for (WeldPart& w : welds_) parts.push_back(&w);
   for (MountPart& m : mounts_) parts.push_back(&m);
+  for (BushingPart& b : bushings_) parts.push_back(&b);
 }
 
 int ConstraintSet::event_count() const {
@@ -183,8 +194,8 @@ void ConstraintSet::loosen(VectorXd& y) const {
   for (const Constraint* c : constraints_) y.segment(c->multipliers(), 2 * c->constraints()).setZero();
 }
 
-void ConstraintSet::solve_rates(const VectorXd& y, const VectorXd& rows, VectorXd& rate) {
-  for (Arm& a : arms_) a.part->solve_rates(y, rows, rate);
+void ConstraintSet::solve_rates(double time, const VectorXd& y, const VectorXd& rows, VectorXd& rate) {
+  for (Arm& a : arms_) a.part->solve_rates(time, y, rows, rate);
 }
 
 void ConstraintSet::project(const VectorXd& y, VectorXd& dv) const {
@@ -244,16 +255,31 @@ bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, Vecto
   return anew;
 }
 
+void ConstraintSet::change_drive(int arm, int joint, const multibody::Drive& drive, double time, VectorXd& y) {
+  restore_drive(arm, joint, drive);
+  arms_[at_index(arm)].part->stop_ruled_motors(y);
+  enter(time);
+  for (Arm& a : arms_) a.part->settle(time, y);
+}
+
+void ConstraintSet::restore_drive(int arm, int joint, const multibody::Drive& drive) {
+  multibody::ElasticArmPart& part = *arms_[at_index(arm)].part;
+  std::vector<multibody::Drive> drives = part.drives();
+  drives[at_index(joint)] = drive;
+  part.set_drives(std::move(drives));
+}
+
 void ConstraintSet::save_state(std::vector<double>& memory) const {
   for (const Arm& a : arms_) a.stepper->save_state(memory);
 }
 
-void ConstraintSet::restore_state(double time, VectorXd& y, std::span<const double>& memory) {
-  for (Arm& a : arms_) a.stepper->restore_state(y, memory);
+void ConstraintSet::restore_state(double time, std::span<const double>& memory) {
+  for (Arm& a : arms_) a.stepper->restore_state(memory);
   enter(time);
 }
 
 void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, MotionSample* sample) const {
+  for (const BushingPart& b : bushings_) energy.strain += b.state(y).energy;
   for (const Arm& a : arms_) {
     const multibody::ArmState state = a.part->state(y);
     multibody::Kinematics kinematics(a.model.tree);
@@ -287,6 +313,24 @@ bool ConstraintSet::counted(const MovingFrame& frame) const {
   return false;
 }
 
+// A bushing between what is counted and what is not.
+void ConstraintSet::add_bushing(const BushingPart& bushing, const DaePoint& at, Outer& sum) const {
+  const BushingPart::State s = bushing.state(at.y);
+  sum.lost += s.lost_power;
+  const std::array<multibody::Wrench, 2> wrenches{s.on_first, s.on_second};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const MovingFrame& frame = bushing.frame(k);
+    const MovingFrame::State carrier = frame.state(at.y);
+    if (counted(frame)) {
+      sum.force += wrenches[k].force;
+      sum.moment += wrenches[k].moment + carrier.X_WF.p.cross(wrenches[k].force);
+    }
+    // What moves as told works against the wrench on it.
+    if (!frame.moves_freely())
+      sum.power -= wrenches[k].force.dot(carrier.linear) + wrenches[k].moment.dot(carrier.angular);
+  }
+}
+
 // Forces and moments about the origin on everything whose momentum is counted: what carriers give whose own is not, and
 // weight and loads of floating arms. A carrier that nothing moves freely works: P = F.v + M.w.
 ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
@@ -303,6 +347,7 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   };
   for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
   for (const MountPart& m : mounts_) add(m, -m.moment(at));
+  for (const BushingPart& b : bushings_) add_bushing(b, at, sum);
   for (std::size_t k = 0; k < arms_.size(); ++k) {
     if (!arms_[k].floats) continue;
     const multibody::Tree& tree = arms_[k].model.tree;
@@ -321,6 +366,13 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   return sum;
 }
 
+std::optional<Vector3d> ConstraintSet::mount_force(int wire, wire::End end, const VectorView& y) const {
+  for (std::size_t k = 0; k < mounts_.size(); ++k) {
+    if (motion_.mounts[k].wire == wire && mounts_[k].end() == end) return mounts_[k].wrench(y).force;
+  }
+  return std::nullopt;
+}
+
 void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
   for (std::size_t k = 0; k < mounts_.size(); ++k) {
     const auto i = 2 * at_index(motion_.mounts[k].wire) + index_of(mounts_[k].end());
@@ -335,6 +387,10 @@ void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
     sample.arms.push_back(std::move(s));
   }
   for (const WeldPart& w : welds_) sample.welds.push_back(w.wrench(y));
+  for (const BushingPart& b : bushings_) {
+    const BushingPart::State s = b.state(y);
+    sample.bushings.push_back({s.shift, s.turn, s.on_second});
+  }
 }
 
 double ConstraintSet::largest_gap(const VectorView& y) const {

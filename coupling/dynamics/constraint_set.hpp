@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/index.hpp"
+#include "coupling/dynamics/bushing_part.hpp"
 #include "coupling/dynamics/complaints.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/mount_part.hpp"
@@ -15,7 +17,7 @@
 
 namespace snare::coupling {
 
-/// Arms, welds and moving mounts of one run.                                           theory.md (M.15)-(M.17)
+/// Arms, welds, moving mounts and bushings of one run.                         theory.md (M.15)-(M.17), (M.22)
 class ConstraintSet {
  public:
   /// What is wrong with them.
@@ -33,7 +35,7 @@ class ConstraintSet {
   /// Multipliers zero.
   void loosen(Eigen::VectorXd& y) const;
   /// Rates of the arms that annul their rows of a residual with vanishing rates of theirs.
-  void solve_rates(const Eigen::VectorXd& y, const Eigen::VectorXd& rows, Eigen::VectorXd& rate);
+  void solve_rates(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rows, Eigen::VectorXd& rate);
   /// Adds to changes of the velocities what the constraints make of them.                       theory.md (M.16)
   void project(const Eigen::VectorXd& y, Eigen::VectorXd& dv) const;
   /// Adds to free rates the accelerations of the constraints' forces; returns the multipliers.
@@ -45,21 +47,34 @@ class ConstraintSet {
   /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms,
   /// empty when it found none. True: the integration must start anew.
   [[nodiscard]] bool follow(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
+  /// A new drive of a joint from a time on. The integration must start anew.
+  void change_drive(int arm, int joint, const multibody::Drive& drive, double time, Eigen::VectorXd& y);
+  /// The same where the unknowns have taken it in already: behind it `restore_state` must follow.
+  void restore_drive(int arm, int joint, const multibody::Drive& drive);
+  [[nodiscard]] const multibody::ElasticArmPart& arm(int index) const { return *arms_[base::at(index)].part; }
+  /// The frame that a carrier holds where it is wanted at the start.
+  [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
+                                     const multibody::Pose& X_WF) const;
   /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: see ArmStepper.
   void save_state(std::vector<double>& memory) const;
-  void restore_state(double time, Eigen::VectorXd& y, std::span<const double>& memory);
+  void restore_state(double time, std::span<const double>& memory);
   /// Why it cannot go on, if so.
   [[nodiscard]] const std::optional<std::string>& stuck() const { return stuck_; }
 
   /// Adds the arms' energies, works and losses, and their momentum when nothing holds their base.
   void add_energy(const numerics::VectorView& y, EnergyBalance& energy, MotionSample* sample) const;
-  /// Forces that count as outer ones [N], their moments about the origin [N m], and the power of driven carriers [W].
+  /// Forces that count as outer ones [N], their moments about the origin [N m], the power of driven carriers [W], and
+  /// what bushings lose [W].
   struct Outer {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     double power = 0.0;
+    double lost = 0.0;
   };
   [[nodiscard]] Outer outer(const numerics::DaePoint& at) const;
+  /// Force of a moving mount on its wire's end, if the end has one [N].
+  [[nodiscard]] std::optional<Eigen::Vector3d> mount_force(int wire, wire::End end,
+                                                           const numerics::VectorView& y) const;
   /// Forces of moving mounts into a sample, and the arms' coordinates.
   void fill(const numerics::VectorView& y, MotionSample& sample) const;
   [[nodiscard]] double largest_gap(const numerics::VectorView& y) const;
@@ -71,9 +86,8 @@ class ConstraintSet {
     std::optional<multibody::ArmStepper> stepper;
     bool floats = false;  // nothing holds its base: its momentum is counted
   };
-  [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
-                                     const multibody::Pose& X_WF) const;
   [[nodiscard]] bool counted(const MovingFrame& frame) const;
+  void add_bushing(const BushingPart& bushing, const numerics::DaePoint& at, Outer& sum) const;
   void enter(double time);
 
   const Motion& motion_;
@@ -82,6 +96,7 @@ class ConstraintSet {
   std::deque<Arm> arms_;
   std::deque<WeldPart> welds_;
   std::deque<MountPart> mounts_;
+  std::deque<BushingPart> bushings_;
   std::vector<const BodyPart*> held_;  // by each weld
   std::vector<const Constraint*> constraints_;
   std::optional<std::string> stuck_;

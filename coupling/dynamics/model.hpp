@@ -5,7 +5,10 @@
 #include "coupling/contact/friction.hpp"
 #include "coupling/contact/shape.hpp"
 #include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/bushing.hpp"
+#include "coupling/dynamics/phase.hpp"
 #include "coupling/dynamics/strength.hpp"
+#include "coupling/dynamics/tightness.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
 #include "wire/rod_part.hpp"
@@ -27,6 +30,7 @@ struct MotionWire {
   Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
   Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: at rest
   WireStrength strength = {};
+  WireTightness tightness = {};
 };
 
 /// A free rigid body.
@@ -87,8 +91,10 @@ struct Motion {
   std::vector<PointContactLaw> springs;
   std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
-  std::vector<MotionWeld> welds;                      ///< bodies on arms, on other bodies, on the world
-  std::vector<MotionMount> mounts;                    ///< ends of wires on arms or bodies; the others stand still
+  std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
+  std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies; the others stand still
+  std::vector<MotionBushing> bushings;
+  std::vector<MotionPhase> phases;                    ///< in their order
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 
   /// Names of all that presses, in the order in which results count it: contacts, springs, pairs of wires.

@@ -1,5 +1,7 @@
 #include "coupling/dynamics/result.hpp"
 
+#include <algorithm>
+
 namespace snare::coupling {
 
 std::string to_string(MotionEvent::Kind kind) {
@@ -14,6 +16,15 @@ std::string to_string(MotionEvent::Kind kind) {
       return "slip";
   }
   return "";
+}
+
+double end_tension(const Eigen::Matrix3Xd& x, const Eigen::Vector3d& left, const Eigen::Vector3d& right) {
+  const Eigen::Index n = x.cols() - 1;
+  return std::min(-left.dot((x.col(1) - x.col(0)).normalized()), right.dot((x.col(n) - x.col(n - 1)).normalized()));
+}
+
+double end_tension(const MotionSample& sample, std::size_t wire) {
+  return end_tension(sample.wires[wire], sample.mount_forces[2 * wire], sample.mount_forces[2 * wire + 1]);
 }
 
 }  // namespace snare::coupling

@@ -2,6 +2,7 @@
 
 #include "coupling/dynamics/left_out_inertia.hpp"
 #include "coupling/dynamics/strength.hpp"
+#include "coupling/dynamics/tightness.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
@@ -56,11 +57,22 @@ struct MotionSample {
   };
   std::vector<Arm> arms;
   std::vector<multibody::Wrench> welds;  ///< on the held bodies, about their centres of mass, axes of the world
+  struct Bushing {
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();  ///< [m], [rad], axes of the first
+    multibody::Wrench on_second;  ///< about its place on the second carrier, axes of the world
+  };
+  std::vector<Bushing> bushings;
   EnergyBalance energy;
   /// Of wires, free bodies and floating arms [kg m/s].
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
 };
+
+/// Tension of a wire from the forces of its mounts on its ends: the smaller of their parts along the edges there [N]; negative where
+/// they press.
+[[nodiscard]] double end_tension(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& left,
+                                 const Eigen::Vector3d& right);
+[[nodiscard]] double end_tension(const MotionSample& sample, std::size_t wire);
 
 /// What happened at a contact.
 struct MotionEvent {
@@ -76,12 +88,21 @@ struct MotionEvent {
 /// "touch", "lift_off", "stick", "slip".
 [[nodiscard]] std::string to_string(MotionEvent::Kind kind);
 
+/// The beginning of a phase.
+struct PhaseBeginning {
+  int phase = 0;               ///< index
+  double time = 0.0;           ///< [s]
+  std::vector<double> angles;  ///< of the motors whose drives it changed [rad]
+};
+
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
   std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
+  std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
+  std::vector<PhaseBeginning> phases;    ///< begun
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   double start_energy = 0.0;             ///< kinetic + strain + potential [J]
@@ -113,6 +134,8 @@ struct MotionResult {
   std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
+  std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
+  std::vector<PhaseBeginning> phases;    ///< begun
   std::vector<Eigen::Vector3d> impulse;  ///< of contacts on their wires, bodies on springs, pairs on first wires [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]

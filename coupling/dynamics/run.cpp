@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 using numerics::DaePoint;
 
 MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const MotionObserver& observer)
-    : motion_(motion), options_(options), observer_(observer) {
+    : motion_(motion), options_(options), observer_(observer), phases_(motion.phases) {
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
@@ -125,6 +125,7 @@ void MotionRun::begin() {
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
   settle();
+  phases_.start(0.0, [this](const MotionSignal& s) { return signal(s); });
 }
 
 void MotionRun::resume(const MotionState& from) {
@@ -143,7 +144,8 @@ void MotionRun::resume(const MotionState& from) {
   for (ContactGroup& c : contacts_) c.restore_state(memory);
   peak_.restore_state(memory);
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
-  constraints_->restore_state(time_, y_, memory);
+  restore_phases(memory);
+  constraints_->restore_state(time_, memory);
   system_->restore_state(y_, memory);
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
@@ -157,8 +159,9 @@ MotionResult MotionRun::go(double limit) {
   const auto of_contacts = integrals_.size() - integral::contacts;
   forces_.add(time_, rates.tail(of_contacts));
   bool stopped = write_until(time_);
-  while (!stopped && !broken_ && !reached(time_, limit)) {
-    const numerics::IdaAdvance advance = ida_->advance(std::min(limit, constraints_->limit()), longest_step());
+  while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
+    const double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
+    const numerics::IdaAdvance advance = ida_->advance(stop, longest_step());
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
     const double before = std::exchange(time_, ida_->time());
@@ -166,12 +169,18 @@ MotionResult MotionRun::go(double limit) {
     y_ = ida_->y();
     rate_ = ida_->rate();
     integrals_ = ida_->integrals();
+    const bool phase = look_for_phase();
     forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(of_contacts));
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
     const std::vector<int> found = ida_->events_found();
-    const auto arms = static_cast<std::size_t>(constraints_->event_count());  // the last of the events
-    bool changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
+    // Events behind the beginning of a phase are events no more.
+    const bool behind = time_ < ida_->time();
+    bool changed = false;
+    if (!behind) {
+      const auto arms = static_cast<std::size_t>(constraints_->event_count());  // the last of the events
+      changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
+    }
     if (constraints_->stuck()) {
       report.termination = numerics::Termination::step_too_small;
       report.message = *constraints_->stuck();
@@ -179,13 +188,17 @@ MotionResult MotionRun::go(double limit) {
     }
     std::size_t event = 0;
     for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
-      if (found[event] == 0) continue;
+      if (behind || found[event] == 0) continue;
       changed = true;
       const bool touch = found[event] > 0;
       sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
                               touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
-    if (changed) settle();
+    if (phase) {
+      over_ = begin_phases();
+    } else if (changed) {
+      settle();
+    }
   }
   if (broken_) {
     report.termination = numerics::Termination::iteration_limit;
@@ -214,6 +227,8 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   r.events = sums_.events;
   r.peak_force = sums_.peak_force;
   r.strength = sums_.strength;
+  r.wires = sums_.wires;
+  r.phases = sums_.phases;
   r.left_out = sums_.left_out;
   r.largest_penetration = sums_.largest_penetration;
   r.largest_drift = sums_.largest_drift;
@@ -223,6 +238,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   for (const ContactGroup& c : contacts_) c.save_state(memory);
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
+  phases_.save_state(memory);
   constraints_->save_state(memory);
   const std::vector<double> parts = system_->memory();
   memory.insert(memory.end(), parts.begin(), parts.end());

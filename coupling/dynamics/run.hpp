@@ -8,6 +8,7 @@
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/peak_force.hpp"
+#include "coupling/dynamics/phase_watch.hpp"
 #include "coupling/dynamics/result.hpp"
 #include "coupling/dynamics/wire_pair_part.hpp"
 #include "numerics/ida.hpp"
@@ -18,6 +19,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +61,16 @@ class MotionRun {
   void make_rates();
   void settle();
 
+  // Phases (run_phases.cpp).
+  [[nodiscard]] double signal(const MotionSignal& signal);
+  /// See end_tension, now [N].
+  [[nodiscard]] double tension(int wire);
+  /// After a step: goes back to where a phase begins within it. Whether one does.
+  [[nodiscard]] bool look_for_phase();
+  /// The pending phase begins now, and those that begin with it. Whether the run is over.
+  [[nodiscard]] bool begin_phases();
+  void restore_phases(std::span<const double>& memory);
+
   // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
   void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
@@ -84,6 +96,7 @@ class MotionRun {
   std::deque<LawPart> springs_;
   std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
+  PhaseWatch phases_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   Eigen::VectorXd y_, rate_;
@@ -95,6 +108,7 @@ class MotionRun {
   double time_ = 0.0;
   MotionSums sums_;
   std::optional<std::string> broken_;  // a wire at its strength
+  bool over_ = false;                  // a phase has ended the run
 };
 
 }  // namespace snare::coupling

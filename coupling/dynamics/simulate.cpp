@@ -1,5 +1,6 @@
 #include "coupling/dynamics/simulate.hpp"
 
+#include "base/index.hpp"
 #include "coupling/dynamics/check.hpp"
 #include "coupling/dynamics/run.hpp"
 
@@ -38,7 +39,9 @@ MotionResult simulate(const Motion& motion, const MotionOptions& options, const 
     }
     const double stop = next_stop(options, state ? state->time : 0.0);
     MotionResult result = run.go(stop);
-    if (!result.report.usable() || !reached(result.report.time, stop) || stop >= options.duration) return result;
+    const bool over = !result.phases.empty() && motion.phases[base::at(result.phases.back().phase)].ends_run;
+    if (over || !result.report.usable() || !reached(result.report.time, stop) || stop >= options.duration)
+      return result;
     state = std::move(result.last);
     if (keeper) keeper(*state);
   }

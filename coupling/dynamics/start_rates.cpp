@@ -37,7 +37,7 @@ void MotionRun::make_rates() {
     rate_.segment<3>(b.velocity()) = -rows.segment<3>(b.velocity()) / b.body().properties.mass;
     rate_.segment<3>(b.spin()) = -b.inverse_inertia() * rows.segment<3>(b.spin());
   }
-  constraints_->solve_rates(y_, rows, rate_);
+  constraints_->solve_rates(time_, y_, rows, rate_);
   constraints_->set_multipliers(constraints_->hold_rates(y_, rate_), y_);
   for (const ContactGroup& c : contacts_) {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);

@@ -35,10 +35,11 @@ struct ElasticArmPart::Terms {
   double motor_loss,
       motor_loss_slope;  // torque against the motor: dry and viscous friction, damping of the motor's rate
   double drive, drive_by_angle, drive_by_rate;
-  double gear_damping;          // damping on the deflection rate, 0 where it acts on the motor
-  double torque_by_deflection;  // at fixed rates
-  double loss_by_deflection;    // of the torque against the motor
-  double gear_damping_slope;    // by the deflection
+  double drive_by_q, drive_by_v;  // of a course, which gives whatever torque it takes
+  double gear_damping;            // damping on the deflection rate, 0 where it acts on the motor
+  double torque_by_deflection;    // at fixed rates
+  double loss_by_deflection;      // of the torque against the motor
+  double gear_damping_slope;      // by the deflection
 };
 
 ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives, std::vector<TimedLoad> loads,
@@ -143,7 +144,8 @@ JointFriction ElasticArmPart::friction(int joint) const {
 }
 
 bool ElasticArmPart::fixed(int joint) const {
-  return drives_[at(joint)].mode == DriveMode::locked || modes_[at(joint)].turning == 0;
+  const DriveMode mode = drives_[at(joint)].mode;
+  return mode == DriveMode::locked || (mode != DriveMode::course && modes_[at(joint)].turning == 0);
 }
 
 ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y, int joint) const {
@@ -165,8 +167,9 @@ ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y,
   if (!fixed(joint)) {
     const JointFriction law = friction(joint);
     const double motor_damping = t.damping - t.gear_damping;
-    t.motor_loss = law.torque(mode.turning, t.motor_rate) + motor_damping * t.motor_rate;
-    t.motor_loss_slope = law.slope(mode.turning, t.motor_rate) + motor_damping;
+    const int turning = drive.mode == DriveMode::course ? (t.motor_rate < 0.0 ? -1 : 1) : mode.turning;
+    t.motor_loss = law.torque(turning, t.motor_rate) + motor_damping * t.motor_rate;
+    t.motor_loss_slope = law.slope(turning, t.motor_rate) + motor_damping;
     t.loss_by_deflection = in_gear ? 0.0 : slope * t.motor_rate;
   }
   if (drive.mode == DriveMode::servo) {
@@ -178,7 +181,22 @@ ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y,
       t.drive_by_rate = -drive.derivative;
     }
   }
+  if (drive.mode == DriveMode::course) {
+    t.drive = j.motor_inertia * drive.course.acceleration(inside(time)) + t.motor_loss - t.torque;
+    t.drive_by_q = t.loss_by_deflection - t.torque_by_deflection;
+    t.drive_by_v = -t.gear_damping;
+    t.drive_by_angle = -t.drive_by_q;
+    t.drive_by_rate = t.motor_loss_slope + t.gear_damping;
+  }
   return t;
+}
+
+double ElasticArmPart::drive_torque(double time, numerics::VectorView y, int joint) const {
+  const Drive& drive = drives_[at(joint)];
+  if (drive.mode == DriveMode::course) return terms(time, y, joint).drive;
+  if (drive.mode != DriveMode::servo) return 0.0;
+  if (modes_[at(joint)].saturated != 0) return modes_[at(joint)].saturated * drive.limit;
+  return drive.demand(inside(time), y[motor_ + joint], y[rate_ + joint]);
 }
 
 bool ElasticArmPart::place_loads(double time, numerics::VectorView y) {
@@ -226,8 +244,13 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
     const ElasticJoint& joint = arm_.joints[at(k)];
     rows[v_ + tree.body(joint.body).v_index] += t.torque;
     rows[motor_ + k] += point.rate[motor_ + k] - t.motor_rate;
-    rows[rate_ + k] += joint.motor_inertia * point.rate[rate_ + k];
-    if (!fixed(k)) rows[rate_ + k] += t.motor_loss - t.torque - t.drive;
+    const Drive& drive = drives_[at(k)];
+    if (drive.mode == DriveMode::course) {
+      rows[rate_ + k] += joint.motor_inertia * (t.motor_rate - drive.course.rate(inside(point.time)));
+    } else {
+      rows[rate_ + k] += joint.motor_inertia * point.rate[rate_ + k];
+      if (!fixed(k)) rows[rate_ + k] += t.motor_loss - t.torque - t.drive;
+    }
     rows[drive_work()] -= t.drive * t.motor_rate;
     rows[lost()] -= t.gear_damping * t.deflection_rate * t.deflection_rate + t.motor_loss * t.motor_rate;
   }
@@ -291,9 +314,10 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     add(s.link.v, t.gear_damping);
     add(s.link.angle, -t.torque_by_deflection);
     add(s.link.rate, -t.gear_damping);
-    // Balance of the motor: Im qm'' + losses - tau - drive.
-    add(s.motor_rate.rate, c * arm_.joints[at(k)].motor_inertia);
-    if (!fixed(k)) {
+    // Balance of the motor: Im qm'' + losses - tau - drive, or Im (qm' - r').
+    const bool on_course = drives_[at(k)].mode == DriveMode::course;
+    add(s.motor_rate.rate, (on_course ? 1.0 : c) * arm_.joints[at(k)].motor_inertia);
+    if (!fixed(k) && !on_course) {
       add(s.motor_rate.q, t.loss_by_deflection - t.torque_by_deflection);
       add(s.motor_rate.v, -t.gear_damping);
       add(s.motor_rate.angle, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
@@ -302,6 +326,8 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     add(s.motor_angle.angle, c);
     add(s.motor_angle.rate, -1.0);
     // Work of the drives, - drive qm', and what is lost, - gear damping times rate^2 - losses qm'.
+    add(s.drive_work.q, -t.drive_by_q * t.motor_rate);
+    add(s.drive_work.v, -t.drive_by_v * t.motor_rate);
     add(s.drive_work.angle, -t.drive_by_angle * t.motor_rate);
     add(s.drive_work.rate, -t.drive_by_rate * t.motor_rate - t.drive);
     add(s.lost.v, -2.0 * t.gear_damping * t.deflection_rate);

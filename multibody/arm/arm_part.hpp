@@ -67,7 +67,8 @@ struct ArmTolerances {
 /// An elastic arm in a DAE: F(t, y, y') = 0 of q, v, qm, qm' and the works.          theory.md (A.9), (A.14)
 ///
 ///   q' - N(q) v = 0,   ID(q, v, v', loads) + tau = 0 in a joint's row,   qm' - (qm') = 0,
-///   Im qm'' + losses - tau - drive = 0, or qm'' = 0 where the motor stands,   works' - powers = 0
+///   Im qm'' + losses - tau - drive = 0, or qm'' = 0 where the motor stands, or qm' = r' on a course,
+///   works' - powers = 0
 /// tau: torque of a joint's spring with its damper on the motor. Other parts attach to a frame of the arm: `velocities`
 /// is also the first row of the equations of motion, to which -J^T F is added for a wrench F with the frame's Jacobian of
 /// kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
@@ -95,8 +96,10 @@ class ElasticArmPart : public numerics::DaePart {
   void leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, const std::vector<int>& ended_modes);
   [[nodiscard]] const std::vector<JointMode>& modes() const { return modes_; }
 
-  /// New drives from here on. A motor that a brake takes while it turns stops at once: its energy is lost.
-  void set_drives(std::vector<Drive> drives, Eigen::Ref<Eigen::VectorXd> y);
+  /// New drives from here on.
+  void set_drives(std::vector<Drive> drives);
+  /// A motor that a brake or a course takes while it turns stops at once: its energy is lost.
+  void stop_ruled_motors(Eigen::Ref<Eigen::VectorXd> y) const;
   [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
 
   /// y with the given state and no work done.
@@ -106,7 +109,7 @@ class ElasticArmPart : public numerics::DaePart {
   /// y' that belongs to y in the present modes, by forward dynamics.
   void write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate);
   /// The rates that annul the rows of a residual at vanishing y' (of this part and of all that add to its rows).
-  void solve_rates(numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate);
+  void solve_rates(double time, numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate);
   /// Torque of a joint's spring with its damper on the motor [N m].
   [[nodiscard]] double joint_torque(numerics::VectorView y, int joint) const;
   /// Torque of a drive [N m].

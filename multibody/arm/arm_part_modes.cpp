@@ -28,13 +28,6 @@ double ElasticArmPart::joint_torque(numerics::VectorView y, int joint) const {
   return j.spring.torque(branch, d) + damping * rate;
 }
 
-double ElasticArmPart::drive_torque(double time, numerics::VectorView y, int joint) const {
-  const Drive& drive = drives_[at(joint)];
-  if (drive.mode != DriveMode::servo) return 0.0;
-  if (modes_[at(joint)].saturated != 0) return modes_[at(joint)].saturated * drive.limit;
-  return drive.demand(inside(time), y[motor_ + joint], y[rate_ + joint]);
-}
-
 void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> values) {
   values[at(torque_event())] =
       watched_joint_ < 0 ? never : 1.0 - std::abs(joint_torque(point.y, watched_joint_)) / watched_torque_;
@@ -53,7 +46,7 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
     if (std::isfinite(high)) g(JointEvent::spring_upper) = (high - d) / scale;
 
     const JointFriction law = friction(k);
-    if (drive.mode != DriveMode::locked && law.sticks()) {
+    if (!drive.rules() && law.sticks()) {
       if (mode.turning == 0) {
         const double applied = joint_torque(point.y, k) + drive_torque(point.time, point.y, k);
         g(JointEvent::turn_forward_or_rest) = (law.breakaway - applied) / law.breakaway;
@@ -110,7 +103,7 @@ void ElasticArmPart::settle(double time, numerics::VectorView y) {
     const JointFriction law = friction(k);
     const double rate = y[rate_ + k];
     mode.turning = rate < 0.0 ? -1 : 1;
-    if (law.sticks() && rate == 0.0) {
+    if (!drive.rules() && law.sticks() && rate == 0.0) {
       const double applied = joint_torque(y, k) + drive_torque(time, y, k);
       mode.turning = std::abs(applied) <= law.breakaway ? 0 : (applied > 0.0 ? 1 : -1);
     }
@@ -150,10 +143,13 @@ void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, con
   }
 }
 
-void ElasticArmPart::set_drives(std::vector<Drive> drives, Eigen::Ref<Eigen::VectorXd> y) {
+void ElasticArmPart::set_drives(std::vector<Drive> drives) {
   drives_ = std::move(drives);
+}
+
+void ElasticArmPart::stop_ruled_motors(Eigen::Ref<Eigen::VectorXd> y) const {
   for (int k = 0; k < arm_.motors(); ++k) {
-    if (drives_[at(k)].mode != DriveMode::locked) continue;
+    if (!drives_[at(k)].rules()) continue;
     y[lost()] += 0.5 * arm_.joints[at(k)].motor_inertia * y[rate_ + k] * y[rate_ + k];
     y[rate_ + k] = 0.0;
   }
@@ -193,7 +189,11 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
   rate.segment(work_, 3) = -rows.segment(work_, 3);
   if (base_ == BaseEquations::momentum) rate.segment<6>(momentum_) = -rows.segment<6>(momentum_);
   rate.segment(motor_, arm_.motors()) = y.segment(rate_, arm_.motors());
-  for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const Drive& drive = drives_[at(k)];
+    rate[rate_ + k] = drive.mode == DriveMode::course ? drive.course.acceleration(inside(time))
+                                                      : -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  }
 
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(nv);
   for (int k = 0; k < arm_.motors(); ++k) torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
@@ -201,14 +201,19 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
       forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque, wrenches_, workspace_);
 }
 
-void ElasticArmPart::solve_rates(numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate) {
+void ElasticArmPart::solve_rates(double time, numerics::VectorView y, numerics::VectorView rows,
+                                 Eigen::Ref<Eigen::VectorXd> rate) {
   assert(base_ == BaseEquations::newton_euler && "with the momentum as an unknown nothing else acts on the arm");
   const Tree& tree = arm_.tree;
   const auto annul = [&](int first, int count) { rate.segment(first, count) = -rows.segment(first, count); };
   annul(q_, tree.coordinates());
   annul(work_, 3);
   annul(motor_, arm_.motors());
-  for (int k = 0; k < arm_.motors(); ++k) rate[rate_ + k] = -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  for (int k = 0; k < arm_.motors(); ++k) {
+    const Drive& drive = drives_[at(k)];
+    rate[rate_ + k] = drive.mode == DriveMode::course ? drive.course.acceleration(inside(time))
+                                                      : -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
+  }
   const Eigen::MatrixXd& H = mass_matrix(tree, y.segment(q_, tree.coordinates()), workspace_);
   rate.segment(v_, tree.velocities()) = -H.ldlt().solve(rows.segment(v_, tree.velocities()));
 }
@@ -216,7 +221,7 @@ void ElasticArmPart::solve_rates(numerics::VectorView y, numerics::VectorView ro
 std::vector<double> ElasticArmPart::breaks() const {
   std::vector<double> times;
   for (const Drive& drive : drives_) {
-    if (drive.mode != DriveMode::servo) continue;
+    if (drive.mode != DriveMode::servo && drive.mode != DriveMode::course) continue;
     for (const double t : drive.course.breaks()) times.push_back(t);
   }
   for (const TimedLoad& load : loads_) {

@@ -68,7 +68,8 @@ bool ArmStepper::change_drives(double time, Eigen::Ref<Eigen::VectorXd> y) {
   if (change.joint >= 0 ? !torque_reached_ : change.time > time) return false;
   torque_reached_ = false;
   ++next_switch_;
-  part_.set_drives(change.drives, y);
+  part_.set_drives(change.drives);
+  part_.stop_ruled_motors(y);
   return true;
 }
 
@@ -77,11 +78,10 @@ void ArmStepper::save_state(std::vector<double>& memory) const {
   crowding_.save_state(memory);
 }
 
-void ArmStepper::restore_state(Eigen::Ref<Eigen::VectorXd> y, std::span<const double>& memory) {
+void ArmStepper::restore_state(std::span<const double>& memory) {
   next_switch_ = std::min(static_cast<std::size_t>(numerics::take(memory)), switches_.size());
   crowding_.restore_state(memory);
-  // A motor that the drives brake stands still in y already.
-  if (next_switch_ > 0) part_.set_drives(switches_[next_switch_ - 1].drives, y);
+  if (next_switch_ > 0) part_.set_drives(switches_[next_switch_ - 1].drives);
 }
 
 }  // namespace snare::multibody

@@ -33,7 +33,7 @@ class ArmStepper {
 
   /// Appends to a memory what the part does not remember itself, and takes it back: switches and crowding of events.
   void save_state(std::vector<double>& memory) const;
-  void restore_state(Eigen::Ref<Eigen::VectorXd> y, std::span<const double>& memory);
+  void restore_state(std::span<const double>& memory);
 
  private:
   ElasticArmPart& part_;

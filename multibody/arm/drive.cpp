@@ -2,19 +2,6 @@
 
 namespace snare::multibody {
 
-double Course::angle(double time) const {
-  if (time < begin) return from;
-  if (time >= begin + duration) return to;
-  const double s = (time - begin) / duration;
-  return from + (to - from) * s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-}
-
-double Course::rate(double time) const {
-  if (time < begin || time >= begin + duration) return 0.0;
-  const double s = (time - begin) / duration, rest = 1.0 - s;
-  return (to - from) * 30.0 * s * s * rest * rest / duration;
-}
-
 Drive Drive::locked() {
   Drive drive;
   drive.mode = DriveMode::locked;
@@ -23,6 +10,13 @@ Drive Drive::locked() {
 
 Drive Drive::limp() {
   return {};
+}
+
+Drive Drive::on_course(const Course& course) {
+  Drive drive;
+  drive.mode = DriveMode::course;
+  drive.course = course;
+  return drive;
 }
 
 Drive Drive::holding(double angle, double proportional, double derivative, double limit) {

@@ -1,29 +1,19 @@
 #pragma once
 
+#include "multibody/arm/course.hpp"
+
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace snare::multibody {
 
-/// Where a motor is told to be: from one angle to another with a quintic course, at rest at both ends.
-///   r(s) = from + (to - from) (10 s^3 - 15 s^4 + 6 s^5),  s = (t - begin)/duration      theory.md (A.12)
-/// duration 0: a step. Before and after it stands.
-struct Course {
-  double from = 0.0, to = 0.0;         ///< [rad]
-  double begin = 0.0, duration = 0.0;  ///< [s], duration >= 0
-
-  [[nodiscard]] double angle(double time) const;
-  [[nodiscard]] double rate(double time) const;
-  /// `time` is where the course begins or ends and must be integrated up to, not across.
-  [[nodiscard]] std::vector<double> breaks() const { return {begin, begin + duration}; }
-};
-
 /// What holds a motor.
 enum class DriveMode {
   locked,  ///< a brake: the motor does not turn
   servo,   ///< torque = clamp(kp (r - qm) + kd (r' - qm'), +-limit)
-  limp     ///< no torque; the gear is driven back by the load
+  limp,    ///< no torque; the gear is driven back by the load
+  course   ///< the motor runs its course whatever it takes: qm' = r'
 };
 
 struct Drive {
@@ -35,9 +25,12 @@ struct Drive {
 
   [[nodiscard]] static Drive locked();
   [[nodiscard]] static Drive limp();
+  [[nodiscard]] static Drive on_course(const Course& course);
   [[nodiscard]] static Drive holding(double angle, double proportional, double derivative,
                                      double limit = std::numeric_limits<double>::infinity());
 
+  /// Whether the motor moves as told, whatever acts on it.
+  [[nodiscard]] bool rules() const { return mode == DriveMode::locked || mode == DriveMode::course; }
   /// Torque of the servo before its limit [N m].
   [[nodiscard]] double demand(double time, double angle, double rate) const;
 };

@@ -65,7 +65,7 @@ std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd&
     K(i, n + k) -= stiffness;
     K(n + k, i) -= stiffness;
     M(n + k, n + k) = joint.motor_inertia;
-    if (drives[at(k)].mode != DriveMode::locked) taking_part.push_back(n + k);
+    if (!drives[at(k)].rules()) taking_part.push_back(n + k);
   }
   const Eigen::MatrixXd M_part = M(taking_part, taking_part), K_part = K(taking_part, taking_part);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K_part, M_part);

@@ -195,14 +195,14 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
 
 TEST_F(MotionScenarios, SayWhatIsWrong) {
   const std::pair<const char*, const char*> wrong[] = {
-      {"schema=\"snare-scenario/2\"", "must be \"snare-scenario/1\""},
+      {"schema=\"snare-scenario/3\"", "must be \"snare-scenario/2\" or \"snare-scenario/1\""},
       {"kind=\"push\"", "kind"},
       {"duration_s=-1", "duration_s = -1, must be > 0"},
       {"output_interval_s=1e-9", "gives more than 1e+06 lines"},
       {"body.mass_kg=1", "not beside lists of bodies, wires and shapes"},
       {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
-      {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be from_mm"},
+      {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be where the wire begins"},
       {"wires[a].bulge=[0.0, 0.0, 1.0]",
        "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
       {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
@@ -214,7 +214,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"bodies[machine].mass_kg=1", "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
       {"bodies[machine].name=\"target\"", "is taken by another body"},
       {"shapes[ball].body=\"moon\"",
-       "shapes[ball].body = \"moon\", must be the name of a body: \"target\", \"machine\""},
+       "shapes[ball].body = \"moon\", must be the name of a frame: \"machine\", \"target\", \"world\""},
       {"shapes[ball].wires=[\"b\"]", "must be the name of a wire: \"a\""},
       {"shapes[ball].kind=\"cube\"", "shapes[ball].kind = \"cube\", must be \"knife_edge\", \"cylinder\""},
       {"shapes[ball].radius_mm=-1", "shapes[ball].radius_mm = -1, must be > 0"},

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "app/commands.hpp"
+
+namespace snare::app {
+
+/// A composed scenario with every model of its wires, the full one first: compare.json, report.html.
+[[nodiscard]] ExitStatus compare_motions(const std::filesystem::path& file, const CommonOptions& options,
+                                         Console& console);
+
+}  // namespace snare::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "coupling/dynamics/arm.hpp"
+#include "multibody/spatial.hpp"
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace snare::coupling {
+
+/// A spring of six freedoms with damping between two carriers: an attachment that gives.              theory.md (M.22)
+///
+/// Its frame stands on either carrier; both are in one place at the start, where nothing acts. Stiffnesses and dampings act along
+/// and about the axes of that frame on the first carrier.
+struct MotionBushing {
+  std::string name = "bushing";
+  MotionCarrier first, second;
+  multibody::Pose X_WF;                                               ///< at the start
+  Eigen::Vector3d translational_stiffness = Eigen::Vector3d::Zero();  ///< [N/m], >= 0
+  Eigen::Vector3d translational_damping = Eigen::Vector3d::Zero();    ///< [N s/m], >= 0
+  Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();     ///< [N m/rad], >= 0
+  Eigen::Vector3d rotational_damping = Eigen::Vector3d::Zero();       ///< [N m s/rad], >= 0
+};
+
+}  // namespace snare::coupling

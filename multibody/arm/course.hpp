@@ -1,0 +1,46 @@
+#pragma once
+
+#include "numerics/cubic_spline.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace snare::multibody {
+
+/// How a motor gets from one angle to another.                                                    theory.md (A.12)
+enum class CourseKind {
+  quintic,  ///< r = from + (to - from) (10 s^3 - 15 s^4 + 6 s^5), s = (t - begin)/duration: at rest at both ends
+  ramped,   ///< a constant rate, reached and left within `ramp` with a constant acceleration
+  table     ///< r = from + the value of `table` at t - begin, from its first knot to its last
+};
+
+/// Where a motor is told to be: rate continuous, at rest before and after.
+struct Course {
+  /// A quintic course, or with the defaults none.
+  explicit(false) Course(double at = 0.0, double end = 0.0, double start = 0.0, double time = 0.0)
+      : from(at), to(end), begin(start), duration(time) {}
+
+  double from = 0.0, to = 0.0;         ///< [rad], of a slide [m]
+  double begin = 0.0, duration = 0.0;  ///< [s], duration >= 0; 0: a step
+  CourseKind kind = CourseKind::quintic;
+  double ramp = 0.0;  ///< [s], in (0, duration/2]
+  /// Values from 0 on, of level ends; `to` and `duration` follow from it.
+  std::shared_ptr<const numerics::HermiteCurve> table;
+
+  [[nodiscard]] double angle(double time) const;
+  [[nodiscard]] double rate(double time) const;
+  /// Piecewise continuous; at a break the later one.
+  [[nodiscard]] double acceleration(double time) const;
+  /// Times up to which the integration must go, not across: where the course begins, ends or changes its acceleration at once.
+  [[nodiscard]] std::vector<double> breaks() const;
+
+  /// Standing at an angle.
+  [[nodiscard]] static Course standing(double angle) { return Course(angle, angle); }
+  /// From an angle by a distance at a rate > 0, with ramps; the ramps are shorter where the distance needs no more.
+  [[nodiscard]] static Course at_rate(double from, double to, double begin, double rate, double ramp);
+  /// Through values at times from 0 on, at least two, strictly ascending; at rest at both ends, without overshoot between.
+  [[nodiscard]] static Course through(double from, double begin, const std::vector<double>& times,
+                                      const std::vector<double>& values);
+};
+
+}  // namespace snare::multibody

@@ -1,0 +1,236 @@
+#include "scenario/composed_scenario.hpp"
+
+#include "base/index.hpp"
+#include "base/units.hpp"
+#include "scenario/arm_items.hpp"
+#include "scenario/capture_reader.hpp"
+#include "scenario/composition.hpp"
+#include "scenario/drive_reader.hpp"
+#include "scenario/motion_reader.hpp"
+#include "scenario/phase_reader.hpp"
+#include "scenario/sensor_reader.hpp"
+#include "scenario/snare_items.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace snare::scenario {
+
+using base::at;
+using base::Range;
+using base::TomlDocument;
+using base::TomlTable;
+using coupling::MotionCarrier;
+using Eigen::Vector3d;
+using multibody::Pose;
+
+namespace {
+
+constexpr double light = 0.1;  // [kg], of what a shape on an arm weighs where the file does not say
+
+Pose pose_of(const multibody::RigidBodyState& s) {
+  return {s.orientation.toRotationMatrix(), s.position};
+}
+
+void read_bodies(Composition& c) {
+  for (const TomlTable& table : c.document.root().tables("bodies")) {
+    const int index = static_cast<int>(c.motion.bodies.size());
+    const std::string name = c.body_names.take(table);
+    c.motion.bodies.push_back(read_body(table));
+    c.motion.bodies.back().name = name;
+    c.placement.stand(table, "frame", name, [&c, index, name](const PlacedFrame& on, Placement& placement) {
+      multibody::RigidBodyState& start = c.motion.bodies[at(index)].start;
+      const Pose X_WB = on.X_WF * pose_of(start);
+      start.position = X_WB.p;
+      start.orientation = Eigen::Quaterniond(X_WB.R);
+      start.velocity = on.X_WF.R * start.velocity;
+      placement.add(name, {{MotionCarrier::Kind::body, index, 0}, X_WB});
+    });
+  }
+}
+
+void read_frames(Composition& c) {
+  Names names("frame");
+  for (const TomlTable& table : c.document.root().tables("frames")) {
+    const std::string name = names.take(table);
+    if (c.body_names.find(name) || c.arm_names.find(name) || name == "world")
+      table.fail("name", "is taken by a body, an arm or a snare");
+    const Pose X_FF = read_pose_in_frame(table);
+    c.placement.stand(table, "frame", name, [name, X_FF](const PlacedFrame& on, Placement& placement) {
+      placement.add(name, {on.carrier, on.X_WF * X_FF});
+    });
+  }
+}
+
+void read_wires(Composition& c) {
+  for (const TomlTable& table : c.document.root().tables("wires"))
+    c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping));
+}
+
+void read_shapes(Composition& c) {
+  for (const TomlTable& table : c.document.root().tables("shapes")) {
+    const std::string name = c.shape_names.take(table);
+    const coupling::MotionContact shape = read_contact_shape(table, c.folder, c.input);
+    const char* key = table.has("body") ? "body" : "frame";
+    if (table.has("body") && table.has("frame")) table.fail("frame", "cannot stand beside body, which means the same");
+    static_cast<void>(table.text(key));
+    const std::optional<PlacedFrame> frame = c.placement.frame(table, key);
+    const double mass = table.number_or("mass_kg", light, Range::above(0.0, 1e7));
+    const std::vector<int> on = wires_met(table, c.wire_names, c.wires.size());
+    if (frame) c.add_shape(name, shape, *frame, mass, on);
+  }
+}
+
+void read_contacts(Composition& c) {
+  std::set<std::pair<int, int>> met;
+  for (const coupling::WirePair& p : c.motion.wire_pairs) met.insert(std::minmax(p.wires[0], p.wires[1]));
+  for (const TomlTable& table : c.document.root().tables("contacts")) {
+    const std::string name = c.pair_names.take(table);
+    coupling::WirePair pair = read_wire_pair(table, c.wire_names, c.wires);
+    pair.name = name;
+    if (!met.insert(std::minmax(pair.wires[0], pair.wires[1])).second)
+      table.fail("other_wire", "is already in contact with this wire");
+    c.motion.wire_pairs.push_back(pair);
+  }
+}
+
+/// Three numbers, or one for all.
+Vector3d along_axes(const TomlTable& table, std::string_view key, bool required) {
+  const Range range = Range::from(0.0, 1e15);
+  if (!table.has(key) && !required) return Vector3d::Zero();
+  const std::vector<double> v = table.numbers_or_one(key, 3, range);
+  return v.size() == 3 ? Vector3d(v[0], v[1], v[2]) : Vector3d::Zero();
+}
+
+void read_bushings(Composition& c) {
+  Names names("bushing");
+  for (const TomlTable& table : c.document.root().tables("bushings")) {
+    coupling::MotionBushing b;
+    b.name = names.take(table);
+    const PlacedFrame on = c.placement.frame(table, "frame").value_or(PlacedFrame{});
+    const PlacedFrame other = c.placement.frame(table, "other_frame").value_or(PlacedFrame{});
+    b.first = on.carrier;
+    b.second = other.carrier;
+    b.X_WF = on.X_WF;
+    if (table.text_or("frame", "world") == table.text_or("other_frame", "world"))
+      table.fail("other_frame", "must be another frame");
+    b.translational_stiffness = along_axes(table, "translational_stiffness_N_m", true);
+    b.rotational_stiffness = along_axes(table, "rotational_stiffness_Nm_rad", true);
+    b.translational_damping = along_axes(table, "translational_damping_Ns_m", false);
+    b.rotational_damping = along_axes(table, "rotational_damping_Nms_rad", false);
+    c.motion.bushings.push_back(b);
+  }
+}
+
+void read_welds(Composition& c) {
+  Names names("weld");
+  std::set<int> held;
+  for (const TomlTable& table : c.document.root().tables("welds")) {
+    coupling::MotionWeld weld;
+    weld.name = names.take(table);
+    const std::string body = table.text("body");
+    const std::optional<int> index = c.body_names.find(body);
+    if (!index && !body.empty()) table.fail("body", c.body_names.requirement());
+    const std::optional<PlacedFrame> on = c.placement.frame(table, "frame");
+    if (!index || !on) continue;
+    weld.body = *index;
+    weld.carrier = on->carrier;
+    if (c.motion.bodies[at(*index)].driven) table.fail("body", "is driven: it moves as told, whatever holds it");
+    if (!held.insert(*index).second) table.fail("body", "is welded already: two welds would hold six freedoms twice");
+    if (weld.carrier.kind == MotionCarrier::Kind::body && weld.carrier.index == *index)
+      table.fail("frame", "must not be on the body itself");
+    c.motion.welds.push_back(weld);
+  }
+}
+
+/// Carriers before what they hold; what holds itself by way of others is reported.
+void order_welds(Composition& c) {
+  std::vector<coupling::MotionWeld>& welds = c.motion.welds;
+  std::vector<coupling::MotionWeld> ordered;
+  std::set<int> waiting;
+  for (const coupling::MotionWeld& w : welds) waiting.insert(w.body);
+  for (bool progress = true; progress;) {
+    progress = false;
+    for (auto w = welds.begin(); w != welds.end();) {
+      if (w->carrier.kind == MotionCarrier::Kind::body && waiting.contains(w->carrier.index)) {
+        ++w;
+        continue;
+      }
+      waiting.erase(w->body);
+      ordered.push_back(*w);
+      w = welds.erase(w);
+      progress = true;
+    }
+  }
+  if (!welds.empty()) c.document.root().fail("welds", "must not hold each other in a circle");
+  welds = std::move(ordered);
+}
+
+/// Ends of wires on what moves.
+void add_mounts(Composition& c) {
+  for (std::size_t w = 0; w < c.wires.size(); ++w) {
+    const std::pair<wire::End, const MotionCarrier*> ends[] = {{wire::End::left, &c.wires[w].from_carrier},
+                                                               {wire::End::right, &c.wires[w].to_carrier}};
+    for (const auto& [end, carrier] : ends) {
+      if (carrier->kind == MotionCarrier::Kind::world) continue;
+      coupling::MotionMount mount;
+      mount.name = c.wires[w].wire.name + (end == wire::End::left ? " left mount" : " right mount");
+      mount.wire = static_cast<int>(w);
+      mount.end = end;
+      mount.carrier = *carrier;
+      c.motion.mounts.push_back(mount);
+    }
+  }
+  if (!c.motion.mounts.empty() && c.damping.mass_rate > 0.0)
+    c.document.root().table("damping").fail(
+        "mass_rate_1_s", "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
+}
+
+}  // namespace
+
+WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder) {
+  const TomlTable root = document.root();
+  NamedMotion run;
+  run.name = root.text("title");
+  run.model = "wire";
+  Composition c{document, folder};
+  read_motion_options(root, run.options);
+  c.motion.gravity = read_vector_or_zero(root.table("gravity"), "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
+  c.damping = read_damping(root.table("damping"));
+  // What stands somewhere, then what is between.
+  read_arms(c);
+  read_bodies(c);
+  Snares snares(c);
+  read_frames(c);
+  c.placement.resolve();
+  read_wires(c);
+  snares.add_wires();
+  read_shapes(c);
+  snares.add_walls();
+  read_contacts(c);
+  read_bushings(c);
+  read_welds(c);
+  order_welds(c);
+  read_drives(c);
+  read_phases(c);
+  add_mounts(c);
+  if (c.motion.arms.empty() && c.motion.bodies.empty() && c.wires.empty())
+    root.fail("", "must list something that moves: [[arms]], [[bodies]], [[snares]] or [[wires]]");
+  WireMotions motions;
+  motions.output = read_motion_output(root.table("output"), run.options);
+  motions.composed = true;
+  motions.sensors = read_sensors(c, run.options.output_interval);
+  motions.capture = read_capture(c);
+  motions.input = c.input + document.canonical();
+  motions.duration = run.options.duration;
+  document.finish();
+  for (DeclaredWire& w : c.wires) c.motion.wires.push_back(at_rest(std::move(w)));
+  run.motion = std::move(c.motion);
+  motions.runs.push_back(std::move(run));
+  return motions;
+}
+
+}  // namespace snare::scenario

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "base/toml_reader.hpp"
+#include "coupling/dynamics/model.hpp"
+#include "scenario/names.hpp"
+#include "scenario/placement.hpp"
+#include "wire/specification.hpp"
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::scenario {
+
+/// The items of a scenario's lists that stand for themselves: wires, bodies, shapes, contacts of wires. Keys, units and ranges in
+/// docs/scenario_file.md; what is wrong is reported to the tables' document.
+
+/// A wire as it stands in the file; its shape at rest is found when all of the file is known to be right.
+struct DeclaredWire {
+  wire::WireSpecification specification;
+  coupling::MotionWire wire;
+  /// Of the ends and of the slack, in the world at the start.
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(), bulge = Eigen::Vector3d::UnitY();
+  double span = 0.0;  ///< [m]
+  /// What carries the ends; the world: they stand still.
+  coupling::MotionCarrier from_carrier, to_carrier;
+};
+
+/// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires.
+[[nodiscard]] DeclaredWire read_wire_item(const base::TomlTable& table, const wire::RodDamping& damping,
+                                          wire::SpatialEnd::Kind mount);
+/// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys: those of the file
+/// that give the far end and the direction.
+void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key, const std::string& bulge_key);
+/// A wire of the list, with its ends on frames.
+[[nodiscard]] DeclaredWire read_listed_wire(const base::TomlTable& table, Names& names, const Placement& placement,
+                                            const wire::RodDamping& damping);
+/// The wire at rest where its mounts are. Throws InputError when it finds no rest.
+[[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire);
+
+/// A body but for the frame on which its place counts.
+[[nodiscard]] coupling::MotionBody read_body(const base::TomlTable& table);
+
+/// A shape with friction and foundation, in the frame on which it is, on no body and no wire yet.
+[[nodiscard]] coupling::MotionContact read_contact_shape(const base::TomlTable& table,
+                                                         const std::filesystem::path& folder, std::string& meshes);
+/// Indices of the wires that a shape may touch: those that it names, or all.
+[[nodiscard]] std::vector<int> wires_met(const base::TomlTable& table, const Names& wires, std::size_t count);
+
+/// Friction and foundation under the keys of a table.
+[[nodiscard]] coupling::WirePair read_pair_law(const base::TomlTable& table);
+/// Two wires that may touch each other.
+[[nodiscard]] coupling::WirePair read_wire_pair(const base::TomlTable& table, const Names& wires,
+                                                const std::vector<DeclaredWire>& declared);
+
+/// Pose of an item in its frame: `position_mm`, and `rotation_deg` (a rotation vector) or `rpy_deg` (about fixed axes).
+[[nodiscard]] multibody::Pose read_pose_in_frame(const base::TomlTable& table);
+
+}  // namespace snare::scenario
