@@ -30,14 +30,14 @@ struct SnareWires {
 struct Composition {
   base::TomlDocument& document;
   std::filesystem::path folder;
-  coupling::Motion motion;
-  Placement placement;
-  wire::RodDamping damping;
-  std::vector<DeclaredWire> wires;  ///< those of the motion, before they are at rest
-  std::string input;                ///< fingerprints of other files
+  coupling::Motion motion = {};
+  Placement placement = {};
+  wire::RodDamping damping = {};
+  std::vector<DeclaredWire> wires = {};  ///< those of the motion, before they are at rest
+  std::string input = {};                ///< fingerprints of other files
   Names wire_names{"wire"}, body_names{"body"}, arm_names{"arm"}, shape_names{"shape"}, pair_names{"contact"};
-  std::map<std::string, MotorJoint> joints;  ///< "ARM::JOINT", "SNARE::ring", "SNARE::carriage"
-  std::map<std::string, SnareWires> snares;
+  std::map<std::string, MotorJoint> joints = {};  ///< "ARM::JOINT", "SNARE::ring", "SNARE::carriage"
+  std::map<std::string, SnareWires> snares = {};
 
   /// The joint under a key, reported when there is none.
   [[nodiscard]] const MotorJoint* joint(const base::TomlTable& table, std::string_view key) const;

@@ -140,7 +140,9 @@ std::vector<MotorJoint> read_joints(const Composition& c, const TomlTable& table
                                       : "must be a joint, or an arm or a snare for all of theirs: " + known);
   const bool alike =
       std::all_of(found.begin(), found.end(), [&](const MotorJoint& j) { return j.slides == found[0].slides; });
-  if (!alike) table.fail("joint", "must not name joints that turn and joints that slide at once");
+  const std::string mode = table.text_or("mode", "");
+  if (!alike && (mode == "servo" || mode == "course"))
+    table.fail("joint", "must not name joints that turn and joints that slide at once");
   return found;
 }
 

@@ -101,6 +101,7 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   place("from_frame", "from_mm", w.from, w.from_carrier);
   place("to_frame", "to_mm", w.to, w.to_carrier);
   if (table.has("bulge")) w.bulge = read_vector(table, "bulge", Range::from(-1e3, 1e3), 1.0).value_or(w.bulge);
+  w.bulge = placement.find(table.text_or("from_frame", "world")).value_or(PlacedFrame{}).X_WF.R * w.bulge;
   stretch(w, table, "to_mm", table.has("bulge") ? "bulge" : "");
   return w;
 }

@@ -45,10 +45,10 @@ struct Snares::Item {
   double radius = 0.0;
   double first_azimuth = 0.0;
   double sense = 1.0;  ///< of the turning ring about z
-  std::vector<double> heights;
-  SnareJoint ring;
-  std::optional<SnareJoint> carriage;
-  std::optional<DeclaredWire> wire;
+  std::vector<double> heights = {};
+  SnareJoint ring = {};
+  std::optional<SnareJoint> carriage = {};
+  std::optional<DeclaredWire> wire = {};
 };
 
 namespace {
@@ -64,7 +64,7 @@ SnareJoint read_joint(const TomlTable& table, const std::string& name, bool slid
                                   : table.number_or("stiffness_Nm_rad", 1e5, Range::above(0.0, 1e15));
   const double damping = slides ? table.number_or("damping_Ns_m", 1e4, Range::from(0.0, 1e12))
                                 : table.number_or("damping_Nms_rad", 10.0, Range::from(0.0, 1e12));
-  j.joint.spring = multibody::DeflectionLaw::linear(stiffness, damping);
+  if (stiffness > 0.0 && damping >= 0.0) j.joint.spring = multibody::DeflectionLaw::linear(stiffness, damping);
   j.joint.back_drive = table.number_or(slides ? "back_drive_N" : "back_drive_Nm", 0.0, Range::from(0.0, 1e9));
   j.start = slides ? table.number_or("start_mm", 0.0, Range::from(-1e4, 1e4), mm)
                    : table.number_or("start_deg", 115.0, Range::from(0.0, 360.0), degree);

@@ -120,7 +120,7 @@ name = "ballast"
 body = "counterweight"
 frame = "visitor"
 [[drives]]
-joint = "rms::jemrms_joint_1"
+joint = "rms::joint_1"
 mode = "limp"
 [[phases]]
 name = "close"
@@ -251,14 +251,16 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"frames[shaft].name=\"visitor\"", "is taken by a body, an arm or a snare"},
       {"frames[shaft].rpy_deg=[0,0,1]", nullptr},
       {"frames[pad].rpy_deg=[0,0,1]", "cannot stand beside rotation_deg"},
-      {"snares[snare].frame=\"visitor\"", "must be fixed in the world or on an arm"},
+      {"snares[snare].frame=\"counterweight\"", "must be fixed in the world or on an arm"},
+      {"snares[snare].frame=\"visitor\"",
+       "snares[snare].frame = \"visitor\", must not stand on itself by way of others"},
       {"snares[snare].frame=\"rms::thumb\"", "snares[snare].frame = \"rms::thumb\", must be the name of a frame"},
       {"snares[snare].ring_radius_mm=0", "snares[snare].ring_radius_mm = 0, must be > 0"},
       {"snares[snare].wires=4", "snares[snare].heights_mm = [-4.0, 0.0, 4.0], must be an array of 4 numbers"},
       {"snares[snare].wires=0", "snares[snare].wires = 0"},
       {"snares[snare].turns=\"up\"", "snares[snare].turns = \"up\", must be \"left\" or \"right\""},
       {"snares[snare].ring.start_deg=400", "snares[snare].ring.start_deg = 400"},
-      {"snares[snare].ring.start_deg=180", "snares[snare].wire.length_mm = 200.0, must be"},
+      {"snares[snare].wire.length_mm=150", "snares[snare].wire.length_mm = 150, must be >= 1"},
       {"snares[snare].ring.stiffness_Nm_rad=0", "snares[snare].ring.stiffness_Nm_rad = 0, must be > 0"},
       {"snares[snare].ring.stiffness_N_m=1", "snares[snare].ring.stiffness_N_m = 1, unknown key"},
       {"snares[snare].carriage.mass_kg=-1", "snares[snare].carriage.mass_kg = -1, must be > 0"},

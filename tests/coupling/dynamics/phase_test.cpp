@@ -79,9 +79,10 @@ TEST(Phases, BeginAtTheirTimesAndOnWhatHappens) {
   EXPECT_NEAR(result.phases[2].time, result.phases[1].time + 0.3, 1e-12);
   EXPECT_NEAR(result.report.time, result.phases[2].time, 1e-12);
   EXPECT_NEAR(last_angle, 1.0, 1e-3);
-  EXPECT_LT(std::abs(result.energy.integrator), 1e-6);
-  // The course gives the disc and its motor what they move with: (0.5 + 0.1) 2^2/2.
-  EXPECT_NEAR(result.energy.work, 0.5 * 0.6 * 4.0, 1e-3);
+  EXPECT_LT(std::abs(result.energy.integrator), 1e-4 * result.energy.work);
+  // The course gives the disc and its motor what they move with, (0.5 + 0.1) 2^2/2, and what swings in the gear at both ends of
+  // the ramp: the step of 10 N m bends it by 1 mrad, which costs 5 mJ of energy and as much of damping.
+  EXPECT_NEAR(result.energy.work, 0.5 * 0.6 * 4.0 + 0.01, 1e-3);
 }
 
 // A bound that is kept only for a while does not begin a phase that asks for longer.
