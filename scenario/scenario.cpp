@@ -119,7 +119,11 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<base
         break;
       }
       check_lists(root);
-      scenario.content = read_composition(document, folder);
+      {
+        WireMotions lists = read_composition(document, folder);
+        lists.composed = false;  // results as they were
+        scenario.content = std::move(lists);
+      }
       break;
     case Kind::arm_contact:
       scenario.content = read_arm_contact(document, folder, split_overrides.contact);

@@ -31,7 +31,7 @@ std::vector<MotionState> expect_same_bits_from_checkpoints(const coupling::Motio
       },
       nullptr, [&](const MotionState& s) { states.push_back(s); });
   EXPECT_TRUE(through.report.usable()) << through.report.message;
-  if (!motion.contact_names().empty()) EXPECT_FALSE(through.events.empty());
+  EXPECT_EQ(through.events.empty(), motion.contact_names().empty());
   EXPECT_FALSE(states.empty());
   for (const MotionState& from : states) {
     std::vector<std::vector<double>> parts(whole.begin(), whole.begin() + from.sums.samples);
