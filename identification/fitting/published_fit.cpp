@@ -128,7 +128,13 @@ SummaryStatistics summary_statistics(const std::vector<Series>& series, const st
   const auto laws = static_cast<double>(all.size());
   const double scatters = all.size() > 1 ? laws - 1.0 : 0.0;
   result.dof = 3.0 * laws + scatters - static_cast<double>(numbers);
-  result.p = result.dof > 0.0 ? fisher_tail(result.chi2 / result.dof, result.dof, count) : 1.0;
+  // Of a scatter that is a difference of squares, by its variance 2 (n - 3) sigma^4 + 4 sigma^2 |(I - H) F|^2.
+  double known = 0.0;
+  for (const Comparison& c : all) {
+    const double own = c.fit.scatter * c.fit.scatter;
+    known += own > 0.0 ? c.dof * c.dof / (c.dof + 2.0 * c.curved / own) : c.dof;
+  }
+  result.p = result.dof > 0.0 ? fisher_tail(result.chi2 / result.dof, result.dof, known) : 1.0;
   return result;
 }
 

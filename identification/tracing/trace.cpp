@@ -153,7 +153,7 @@ void Tracer::add_effects() {
     added_.push_back(round.added);
     classes_.push_back(round.classes[round.candidates.front().class_index]);
     numbers_.push_back(found.better.free - current_.free);
-    current_ = std::move(found.better);
+    current_ = found.better;
     rounds_.push_back(std::move(found));
     tests_ = test_residuals(model_, data_, current_);
     // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
