@@ -3,6 +3,7 @@
 #include "base/csv.hpp"
 #include "base/units.hpp"
 
+#include <algorithm>
 #include <variant>
 
 namespace snare::app {
@@ -50,7 +51,13 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
   for (const PointColumn& column : up_to_error) names.emplace_back(column.name);
   names.emplace_back("discretisation_error_N");
   for (const PointColumn& column : after_error) names.emplace_back(column.name);
+  // What was read, and what the curve of force_N leaves of it.
+  std::vector<std::vector<double>> measured;
+  for (const identification::Series& s : series) measured.push_back(identification::measured_force(s));
+  const bool any = std::ranges::any_of(measured, [](const std::vector<double>& one) { return !one.empty(); });
+  if (any) names.emplace_back("measured_N");
   for (const CurveColumn& column : more) names.push_back(column.name);
+  if (any) names.emplace_back("residual_N");
   base::CsvWriter csv(file, names);
   for (std::size_t k = 0; k < series.size(); ++k) {
     const identification::Prediction& prediction = predictions[k];
@@ -62,10 +69,14 @@ void write_curves(const std::filesystem::path& file, const std::vector<identific
       for (const PointColumn& column : up_to_error) row.push_back(cell(column));
       row.push_back(error);
       for (const PointColumn& column : after_error) row.push_back(cell(column));
+      const bool read = any && asked && reading < measured[k].size();
+      if (any) row.push_back(read ? CsvCell(measured[k][reading]) : CsvCell());
       for (const CurveColumn& column : more) {
         const bool has = asked && reading < column.values[k].size();
         row.push_back(has ? CsvCell(column.values[k][reading]) : CsvCell());
       }
+      const bool computed = read && reading < prediction.force.size();
+      if (any) row.push_back(computed ? CsvCell(measured[k][reading] - prediction.force[reading]) : CsvCell());
       csv.row(row);
     };
     for (std::size_t i = 0; i < prediction.before_touch; ++i) write(displacement[i], nullptr, {}, i, true);

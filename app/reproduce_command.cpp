@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 
 namespace snare::app {
 
@@ -37,8 +36,10 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
                                 [](const Series& s) { return s.law.has_value(); });
   if (laws) {
     result.push_back(
-        "The readings were not published: the quadratic fits stand for them, at evenly spread displacements. "
-        "Their scatter follows from the printed R2 if the readings were spread evenly too.");
+        "The readings were not published. Their quadratic fits are compared with the same fits to the computed curves, "
+        "at "
+        "evenly spread displacements; the scatter follows from the printed R2 if the readings were spread evenly, "
+        "too.");
     std::string ranges;
     for (const Series& s : experiment.series) {
       if (s.law) ranges += fmt::format("{}{}: {:g} mm", ranges.empty() ? "" : ", ", s.name, 1e3 * s.law->to);
@@ -85,61 +86,105 @@ std::vector<Prediction> curves_of(const Experiment& experiment, const std::vecto
   return result;
 }
 
-/// One wire fitted to the published laws themselves, without noise. Weights are shifted to the position that is worst off
-/// against its published scatter until all are within, or for a few rounds.
-Trace balanced_fit(Experiment experiment, const Progress& progress) {
+/// The experiment with its published fits taken to reach to `to` [m] and to rest on `readings` of them, evenly spread.
+Experiment with_range(Experiment experiment, double to, int readings) {
+  for (Series& s : experiment.series) {
+    if (!s.law) continue;
+    s.law->to = to;
+    s.test.travel.clear();
+    for (int i = 0; i < readings; ++i) s.test.travel.push_back(to * i / (readings - 1));
+  }
+  return experiment;
+}
+
+/// Readings that a published fit is taken to rest on where nothing else is said.
+constexpr int usual_readings = 20;
+
+/// On fewer edges, for fits that are only compared: 1e-4 of the force.
+Experiment coarse(Experiment experiment) {
+  experiment.solver.elements = std::min(experiment.solver.elements, 64);
+  return experiment;
+}
+
+/// One wire with these numbers fitted to the published numbers, no effect beside them.
+Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free, const Progress& progress) {
   identification::TraceOptions options;
+  options.free = free;
   options.most_effects = 0;
   options.attribute = false;
   options.intervals = false;
-  options.draw = false;
   options.progress = progress;
-  constexpr int rounds = 5;
-  Trace best;
-  double lowest = std::numeric_limits<double>::max();
-  for (int k = 0; k < rounds; ++k) {
-    Trace fitted = identification::trace(experiment, options);
-    if (!fitted.report.usable()) return k == 0 ? fitted : best;
-    double worst = 0.0;
-    for (std::size_t i = 0; i < experiment.series.size(); ++i) {
-      Series& s = experiment.series[i];
-      if (!s.law || s.law->scatter() <= 0.0) continue;
-      const double ratio = fitted.final.series_rmse[i] / s.law->scatter();
-      worst = std::max(worst, ratio);
-      s.force_sigma = s.force_sigma.value_or(s.law->scatter()) / std::clamp(ratio, 0.5, 2.0);
+  return identification::trace(experiment, options);
+}
+
+std::vector<std::vector<double>> forces_of(const std::vector<Prediction>& predictions) {
+  std::vector<std::vector<double>> result;
+  for (const Prediction& p : predictions) result.push_back(p.force);
+  return result;
+}
+
+/// Sets of fewer numbers than the file frees: of a number that every series has for itself none, one for all, one for all
+/// but one.
+std::vector<std::vector<std::string>> number_sets(const Experiment& experiment) {
+  std::vector<std::string> shared, own;
+  std::string key;
+  for (const std::string& name : experiment.free) {
+    const std::size_t end = name.find("].");
+    if (!name.starts_with("series[") || end == std::string::npos) {
+      shared.push_back(name);
+      continue;
     }
-    const bool interrupted_now = fitted.interrupted;
-    if (worst < lowest) {
-      lowest = worst;
-      best = std::move(fitted);
-    }
-    if (worst <= 1.0 || interrupted_now) break;
+    own.push_back(name);
+    key = name.substr(end + 2);
   }
-  return best;
+  std::vector<std::vector<std::string>> sets{shared};
+  if (!own.empty()) {
+    std::vector<std::string> common = shared;
+    common.push_back(key);
+    sets.push_back(common);
+    for (const std::string& name : own) {
+      sets.push_back(common);
+      sets.back().push_back(name);
+    }
+  }
+  std::erase_if(sets, [](const std::vector<std::string>& set) { return set.empty(); });
+  return sets;
+}
+
+/// How well a fit with these numbers does, for every number of the lost readings. It was made with 20 of them: how many
+/// there are moves a least chi2 by little but its size.
+void add_adequacy(const Experiment& experiment, double to, const std::vector<std::string>& numbers, const Trace& fitted,
+                  std::vector<Adequacy>& all) {
+  if (!fitted.report.usable() || fitted.interrupted) return;
+  for (const int readings : {10, usual_readings, 40, 100}) {
+    const Experiment counted = with_range(experiment, to, readings);
+    const auto evaluation =
+        identification::Model(counted.series, coarse(experiment).solver, false).evaluate(fitted.final_settings);
+    if (!evaluation.complete) continue;
+    const auto statistics =
+        identification::summary_statistics(counted.series, forces_of(evaluation.predictions), numbers.size());
+    all.push_back({to, readings, numbers, statistics.chi2, statistics.dof, statistics.p});
+  }
+}
+
+/// The same with fewer numbers than the file frees.
+void add_smaller_fits(const Experiment& experiment, double to, const Progress& progress, std::vector<Adequacy>& all) {
+  for (const std::vector<std::string>& numbers : number_sets(experiment)) {
+    if (interrupted()) return;
+    const Trace fitted = fit_of(
+        coarse(with_range(experiment, to, usual_readings)), numbers,
+        [&](const std::string& stage) { return progress(fmt::format("{} numbers: {}", numbers.size(), stage)); });
+    add_adequacy(experiment, to, numbers, fitted, all);
+  }
 }
 
 /// What the tracing says when the unprinted range of the fits is taken to be another one.
-RangeVerdict verdict_at(const Experiment& experiment, double to, const Progress& progress) {
-  Experiment other = experiment;
-  for (Series& s : other.series) {
-    if (!s.law) continue;
-    const std::size_t points = s.test.travel.size();
-    s.law->to = to;
-    for (std::size_t i = 0; i < points; ++i) {
-      s.test.travel[i] = to * static_cast<double>(i) / static_cast<double>(points - 1);
-    }
-  }
+RangeVerdict verdict_at(const Experiment& experiment, double to, const Progress& progress,
+                        std::vector<Adequacy>& adequacy) {
+  const Experiment other = with_range(experiment, to, usual_readings);
   RangeVerdict result;
   result.to = to;
   result.numbers = experiment.free.size();
-  const Trace fitted = balanced_fit(other, progress);
-  result.within_scatter = fitted.report.usable();
-  for (std::size_t k = 0; k < other.series.size() && fitted.report.usable(); ++k) {
-    const Series& s = other.series[k];
-    if (!s.law) continue;
-    const RangeVerdict::Fit& fit = result.fit[s.name] = {fitted.final.series_rmse[k], s.law->scatter()};
-    result.within_scatter = result.within_scatter && fit.rmse <= fit.scatter;
-  }
   identification::TraceOptions tracing;
   tracing.intervals = false;
   tracing.progress = progress;
@@ -148,21 +193,34 @@ RangeVerdict verdict_at(const Experiment& experiment, double to, const Progress&
     result.verdict = "not computed: " + traced.report.message;
     return result;
   }
+  if (traced.selected.empty()) add_adequacy(experiment, to, experiment.free, traced, adequacy);
+  result.within_scatter = true;
+  for (std::size_t k = 0; k < other.series.size(); ++k) {
+    const Series& s = other.series[k];
+    if (!s.law) continue;
+    const RangeVerdict::Fit& fit = result.fit[s.name] = {traced.base.series_rmse[k], s.law->scatter()};
+    result.within_scatter = result.within_scatter && fit.rmse <= fit.scatter;
+  }
   result.verdict = verdict(traced);
   result.tracing = {traced.selected, traced.explained, traced.base.chi2_dof, traced.final.chi2_dof};
   return result;
 }
 
-std::vector<RangeVerdict> verdicts_at_other_ranges(const Experiment& experiment, const Progress& progress) {
-  std::vector<RangeVerdict> verdicts;
-  const bool laws = std::ranges::any_of(experiment.series, [](const Series& s) { return s.law.has_value(); });
-  for (const double to : {3e-3, 4e-3, 5e-3, 18e-3}) {
-    if (!laws || interrupted()) break;
-    verdicts.push_back(verdict_at(experiment, to, [&](const std::string& stage) {
+bool has_laws(const Experiment& experiment) {
+  return std::ranges::any_of(experiment.series, [](const Series& s) { return s.law.has_value(); });
+}
+
+void look_at_ranges(const Progress& progress, Reproduction& result) {
+  const Experiment& experiment = result.experiment;
+  if (!has_laws(experiment)) return;
+  for (const double to : {3e-3, 4e-3, 5e-3, 18e-3}) {  // the last near the geometric limit
+    if (interrupted()) return;
+    const Progress here = [&](const std::string& stage) {
       return progress(fmt::format("range {:g} mm: {}", 1e3 * to, stage));
-    }));
+    };
+    result.verdicts.push_back(verdict_at(experiment, to, here, result.adequacy));
+    add_smaller_fits(experiment, to, here, result.adequacy);
   }
-  return verdicts;
 }
 
 /// The wire, mounts and pusher exactly as the experiment file declares them.
@@ -209,11 +267,10 @@ std::string error_table(const Reproduction& result) {
 void write_all_curves(const std::filesystem::path& file, const Reproduction& result) {
   const std::vector<Series>& series = result.experiment.series;
   const std::vector<Prediction>& declared = result.models.front().predictions;
-  std::vector<CurveColumn> columns{{"measured_N", {}}, {"base_N", {}}, {"final_N", {}}};
+  std::vector<CurveColumn> columns{{"base_N", {}}, {"final_N", {}}};
   for (std::size_t k = 0; k < series.size(); ++k) {
-    columns[0].values.push_back(identification::measured_force(series[k]));
-    columns[1].values.push_back(declared[k].force);
-    columns[2].values.push_back(result.models.back().predictions[k].force);
+    columns[0].values.push_back(declared[k].force);
+    columns[1].values.push_back(result.models.back().predictions[k].force);
   }
   write_curves(file, series, declared, columns);
 }
@@ -241,11 +298,14 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   };
   if (!interrupted()) {
     const ModelWords words{"best_fit", "best fit of the declared kind",
-                           "The same kind of model with the listed numbers fitted to all positions together, "
-                           "no position left behind"};
-    const Trace fitted = balanced_fit(experiment, progress);
+                           "The same kind of model with the listed numbers fitted to all positions together"};
+    const Trace fitted = fit_of(experiment, {}, progress);
     if (fitted.report.usable()) {
       result.models.push_back(model_of(experiment, fitted, words, console));
+      if (has_laws(experiment)) {
+        result.summary = identification::summary_statistics(
+            experiment.series, forces_of(result.models.back().predictions), fitted.final.numbers.size());
+      }
     } else {
       console.complain(fmt::format("{}: {}", words.label, fitted.report.message));
       status = ExitStatus::solver_stopped;
@@ -260,7 +320,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
       if (!trace.selected.empty()) result.models.push_back(model_of(experiment, trace, words, console));
       result.trace = std::move(trace);
     }
-    result.verdicts = verdicts_at_other_ranges(experiment, progress);
+    look_at_ranges(progress, result);
   }
   console.end_progress();
   for (const ReproducedModel& model : result.models) {
@@ -277,6 +337,10 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   base::write_text(options.out / "report.html", reproduce_report_html(result, version()));
   if (options.json) return status;
   console.say(error_table(result));
+  if (result.summary) {
+    console.say(fmt::format("published numbers: chi2 {:.3g} at {:g} degrees of freedom beside {} numbers, p = {:.2g}",
+                            result.summary->chi2, result.summary->dof, result.summary->numbers, result.summary->p));
+  }
   for (const RangeVerdict& v : result.verdicts) {
     console.say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict));
   }

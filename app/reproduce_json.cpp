@@ -99,6 +99,40 @@ json verdict_json(const RangeVerdict& v) {
   return result;
 }
 
+json comparison_json(const identification::FitComparison& c) {
+  json result{
+      {"chi2", c.chi2}, {"R2_published", c.published_r2}, {"R2_computed", c.computed_r2}, {"scatter_N", c.scatter}};
+  constexpr const char* names[] = {"A_N_m2", "B_N_m", "C_N"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    result[names[k]] = {{"published", c.published[k]}, {"computed", c.computed[k]}, {"stderr", c.deviation[k]}};
+  }
+  return result;
+}
+
+json summary_json(const Reproduction& reproduction) {
+  if (!reproduction.summary) return nullptr;
+  const identification::SummaryStatistics& s = *reproduction.summary;
+  json series = json::object();
+  std::size_t at = 0;
+  for (const Series& one : reproduction.experiment.series) {
+    if (one.law && at < s.series.size()) series[one.name] = comparison_json(s.series[at++]);
+  }
+  json adequacy = json::array();
+  for (const Adequacy& a : reproduction.adequacy) {
+    adequacy.push_back({{"to_mm", 1e3 * a.to},
+                        {"readings", a.readings},
+                        {"numbers", a.numbers.size()},
+                        {"keys", a.numbers},
+                        {"chi2", a.chi2},
+                        {"dof", a.dof},
+                        {"p", a.p}});
+  }
+  return {{"chi2", s.chi2},   {"chi2_coefficients", s.coefficients},
+          {"dof", s.dof},     {"numbers", s.numbers},
+          {"p", s.p},         {"scatter_N", s.scatter},
+          {"series", series}, {"adequacy", adequacy}};
+}
+
 }  // namespace
 
 json reproduce_json(const Reproduction& reproduction) {
@@ -115,6 +149,7 @@ json reproduce_json(const Reproduction& reproduction) {
                 {"span_mm", 1e3 * test.mount.span},
                 {"bending_stiffness_Nm2", test.wire.bending_stiffness()},
                 {"axial_stiffness_N", test.wire.axial_stiffness()}}},
+              {"summary_statistics", summary_json(reproduction)},
               {"trace", nullptr},
               {"verdicts", json::array()},
               {"models", json::array()},

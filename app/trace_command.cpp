@@ -18,11 +18,10 @@ using identification::FittedNumber;
 using identification::Trace;
 
 std::vector<CurveColumn> columns_of(const Trace& trace) {
-  std::vector<CurveColumn> columns{{"measured_N", {}}, {"base_N", {}}, {"final_N", {}}};
+  std::vector<CurveColumn> columns{{"base_N", {}}, {"final_N", {}}};
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
-    columns[0].values.push_back(trace.series[k].readings->force);
-    columns[1].values.push_back(trace.base_predictions[k].force);
-    columns[2].values.push_back(trace.final_predictions[k].force);
+    columns[0].values.push_back(trace.base_predictions[k].force);
+    columns[1].values.push_back(trace.final_predictions[k].force);
   }
   return columns;
 }
@@ -80,7 +79,6 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   fitting.most_effects = 0;
   fitting.intervals = true;
   fitting.attribute = false;
-  fitting.draw = false;
   const Trace trace = trace_and_write_curves(experiment, fitting, options, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   const nlohmann::json whole = trace_json(experiment, trace);
@@ -89,7 +87,8 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
     result[key] = whole[key];
   }
   result["fit"] = whole["final"];
-  result["residual"] = {{"acceptable", trace.base_tests.acceptable()}, {"tests", whole["residual"]["tests"]}};
+  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
+                        {"tests", whole["residual"]["tests"]}};
   write_result(options, "fit.json", result);
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",

@@ -65,6 +65,7 @@ json candidate_json(const Candidate& c) {
           {"interval95", intervals},
           {"plausible", c.plausible},
           {"why_implausible", c.why_implausible.empty() ? json() : json(c.why_implausible)},
+          {"why_not_named", c.why_too_small.empty() ? json() : json(c.why_too_small)},
           {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
           {"detectable", {{"key", effect.numbers.front().parameter.key}, {"size", finite(c.score.detectable)}}},
           {"class", c.class_index}};
@@ -125,6 +126,27 @@ json series_json(const Trace& trace, std::size_t k) {
   return result;
 }
 
+json remaining_json(const Trace& trace) {
+  return {{"rmse_N", finite(trace.remaining.rmse)},
+          {"upper95_N", finite(trace.remaining.upper)},
+          {"share_of_peak_force", trace.peak_force > 0.0 ? finite(trace.remaining.upper / trace.peak_force) : json()},
+          {"share_of_excess", finite(trace.remaining.share_of_excess)},
+          {"channel", trace.remaining.channel.empty() ? json() : json(trace.remaining.channel)}};
+}
+
+json findings_json(const Trace& trace) {
+  json result = json::array();
+  for (const identification::Finding& f : trace.findings) {
+    result.push_back({{"key", f.key},
+                      {"value", finite(f.value)},
+                      {"limit", finite(f.limit)},
+                      {"unit", f.unit},
+                      {"sure", f.sure},
+                      {"what", finding_words(f)}});
+  }
+  return result;
+}
+
 }  // namespace
 
 json numbers_json(const std::vector<FittedNumber>& numbers) {
@@ -152,13 +174,22 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
               {"source", experiment.source},
               {"version", version()},
               {"verdict", verdict(trace)},
+              {"verdict_kind", to_string(trace.kind)},
+              {"remaining", remaining_json(trace)},
+              {"tolerance_N", finite(trace.tolerance)},
+              {"published_fits", trace.from_laws},
+              {"independent_numbers", trace.rows},
+              {"few_readings", trace.few_readings},
+              {"one_condition", trace.one_condition},
+              {"findings", findings_json(trace)},
               {"interrupted", trace.interrupted},
               {"noise",
                {{"sigma_N", finite(reading_noise(trace))},
+                {"dof", finite(trace.noise.dof)},
                 {"source", trace.noise.source},
                 {"smooth_share", trace.noise.smooth},
                 {"correlation_length_mm", 1e3 * trace.noise.length},
-                {"drawn_about_published_laws", trace.drawn}}},
+                {"drawn_about_published_laws", false}}},
               {"declared", error_json(trace, trace.declared)},
               {"base", error_json(trace, trace.base)},
               {"residual",
@@ -182,7 +213,7 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
                {{"rmse_base_N", trace.left_out_rmse ? finite(trace.left_out_rmse->first) : json()},
                 {"rmse_final_N", trace.left_out_rmse ? finite(trace.left_out_rmse->second) : json()}}},
               {"explained", trace.explained},
-              {"decided", trace.explained && trace.alternatives.empty()},
+              {"decided", trace.decided},
               {"channel", trace.channel.empty() ? json() : json(trace.channel)},
               {"functions", functions},
               {"alternatives", alternatives},

@@ -3,6 +3,7 @@
 // matrix as JSON.
 //   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--sets FILE]
 //   [--require]
+// --effects a+b puts two in at once; --pairs takes a list of such pairs.
 // --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended.
 // It belongs to one build: another one starts with a new file.
 
@@ -47,6 +48,7 @@ struct Outcome {
   double class_size = 0.0;
   double seconds = 0.0;
   double made_size = 0.0;
+  bool partial = false;  // of several effects some are named and none that is not inside, or none at all as unexplained
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
 };
@@ -60,6 +62,20 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   for (const std::vector<std::string>& members : t.selected_classes) {
     o.class_size += static_cast<double>(members.size()) / static_cast<double>(t.selected_classes.size());
     o.right = o.right || std::find(members.begin(), members.end(), set.effect) != members.end();
+  }
+  const std::vector<std::string> inside = validation::effects_in(set.effect);
+  if (inside.size() > 1) {
+    std::size_t named = 0;
+    for (const std::string& one : inside) {
+      named += std::ranges::any_of(t.selected_classes, [&](const std::vector<std::string>& members) {
+        return std::ranges::find(members, one) != members.end();
+      });
+    }
+    const bool nothing_else = named >= t.selected.size();
+    o.right = named == inside.size() && nothing_else;
+    o.partial = !o.right && nothing_else && (!t.explained || !t.selected.empty());
+    o.answer = t.selected.empty() ? to_string(t.kind) : fmt::format("{}", fmt::join(t.selected, "+"));
+    return o;
   }
   // One effect was inside: a second one is an error.
   if (t.selected.size() > 1) o.right = false;
@@ -96,7 +112,8 @@ nlohmann::json line_of(const Case& c, const Outcome& o) {
   return {{"effect", c.effect},    {"size", c.size},         {"seed", c.seed},          {"right", o.right},
           {"alarm", o.alarm},      {"channel", o.channel},   {"beside", o.alternative}, {"deviates", o.deviates},
           {"covered", o.covered},  {"chi2_dof", o.chi2_dof}, {"left_out", o.left_out},  {"answer", o.answer},
-          {"class", o.class_size}, {"seconds", o.seconds},   {"made", o.made_size},     {"reached", o.reached}};
+          {"class", o.class_size}, {"seconds", o.seconds},   {"made", o.made_size},     {"reached", o.reached},
+          {"partial", o.partial}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {
@@ -114,6 +131,7 @@ Outcome outcome_of(const nlohmann::json& line) {
   o.seconds = line["seconds"];
   o.made_size = line["made"];
   o.reached = line["reached"];
+  o.partial = line.value("partial", false);
   o.finished = true;
   return o;
 }
@@ -137,6 +155,7 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
 struct Totals {
   double inside = 0, right = 0, class_size = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0, left_out = 0;
   double outside = 0, silent = 0, channel = 0, named = 0;
+  double pairs = 0, both = 0, part = 0;
 };
 
 /// Counts over the sets that are finished.
@@ -166,6 +185,12 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       continue;
     }
     Totals& t = totals[c.size];
+    if (c.effect.find('+') != std::string::npos) {
+      ++t.pairs;
+      t.both += o.right ? 1 : 0;
+      t.part += o.partial ? 1 : 0;
+      continue;
+    }
     if (c.effect == "damage" || c.effect == "drift") {
       ++t.outside;
       t.silent += o.alarm ? 0 : 1;
@@ -199,6 +224,12 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       s["mean_error_of_left_out_series_over_noise"] = t.left_out / t.inside;
       if (t.numbers > 0) s["base_numbers_covered"] = t.covered / t.numbers;
     }
+    if (t.pairs > 0) {
+      s["pairs"] = t.pairs;
+      s["pairs_both_named"] = t.both / t.pairs;
+      s["pairs_in_part"] = t.part / t.pairs;
+      s["pairs_wrong"] = 1.0 - (t.both + t.part) / t.pairs;
+    }
     if (t.outside > 0) {
       s["outside_nothing_selected"] = t.silent / t.outside;
       s["outside_right_channel_alone"] = t.channel / t.outside;
@@ -225,12 +256,20 @@ int main(int argc, char** argv) {
   app.add_option("--effects", effects)->delimiter(',');
   app.add_option("--out", out);
   bool required = false;
+  bool pairs = false;
+  app.add_flag("--pairs", pairs, "two effects at once");
   app.add_flag("--require", required, "exit with 1 when too few answers are right");
   CLI11_PARSE(app, argc, argv);
 
+  if (pairs) {
+    effects = {"contact_friction+displacement_offset",    "force_offset+mount_slip",
+               "strand_hysteresis+force_offset",          "wire_length+contact_friction",
+               "mount_axial_compliance+contact_friction", "plasticity+displacement_offset",
+               "contact_position+rate_viscosity",         "natural_curvature+contact_friction"};
+  }
   std::vector<Case> cases;
   for (unsigned s = first; s < first + seeds; ++s) {
-    cases.push_back({"none", 0.0, s});
+    if (!pairs) cases.push_back({"none", 0.0, s});
     for (const std::string& effect : effects) {
       for (const double size : sizes) cases.push_back({effect, size, s});
     }

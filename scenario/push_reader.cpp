@@ -38,20 +38,39 @@ std::string in_mm(double metres) {
 
 }  // namespace
 
-wire::WireSpecification read_wire(const TomlTable& table) {
+namespace {
+
+/// The modulus, or where it is left out the one with which a solid round section has the declared stiffness, by which
+/// strains become stresses. It may be left out where every stiffness that is needed is declared.
+void read_modulus(const TomlTable& table, Held held, wire::WireSpecification& wire) {
+  const bool known = wire.bending_stiffness_override && (wire.axial_stiffness_override || held == Held::on_supports);
+  const auto ratio = Range::above(-1.0, 0.5);
+  if (table.has("poisson_ratio") || !known) wire.poisson_ratio = table.number("poisson_ratio", ratio);
+  if (table.has("youngs_modulus_GPa") || !known) {
+    wire.youngs_modulus = table.number("youngs_modulus_GPa", Range::above(0.0, 1e4), GPa);
+    return;
+  }
+  const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+  wire.youngs_modulus = wire.axial_stiffness_override
+                            ? *wire.axial_stiffness_override / area
+                            : *wire.bending_stiffness_override / (area * wire.diameter * wire.diameter / 16.0);
+}
+
+}  // namespace
+
+wire::WireSpecification read_wire(const TomlTable& table, Held held) {
   static constexpr Choice<wire::Construction> constructions[] = {{"solid", wire::Construction::solid},
                                                                  {"strand", wire::Construction::strand}};
   wire::WireSpecification wire;
   wire.construction = table.choice("construction", constructions).value_or(wire.construction);
   wire.diameter = table.number("diameter_mm", Range::above(0.0, 100.0), mm);
   wire.length = table.number("length_mm", Range::above(0.0, largest_length), mm);
-  wire.youngs_modulus = table.number("youngs_modulus_GPa", Range::above(0.0, 1e4), GPa);
-  wire.poisson_ratio = table.number("poisson_ratio", Range::above(-1.0, 0.5));
   wire.density = table.number("density_kg_m3", Range::above(0.0, 1e5));
   const Range bending = Range::from(smallest_bending_stiffness, 1e9);
   wire.bending_stiffness_override = table.optional_number("bending_stiffness_Nm2", bending);
   wire.axial_stiffness_override = table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
   wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
+  read_modulus(table, held, wire);
   wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
   if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
     wire::Yielding yielding;
@@ -158,8 +177,9 @@ void check_wire_between_mounts(const wire::WireSpecification& wire, double span,
 
 coupling::PushProblem read_wire_and_mounts(const PushTables& tables) {
   coupling::PushProblem test;
-  test.wire = read_wire(tables.wire);
   test.mount = read_mount(tables.mount);
+  test.wire =
+      read_wire(tables.wire, test.mount.kind == wire::MountKind::supports ? Held::on_supports : Held::at_its_ends);
   check_length_and_diameter(test.wire, test.mount.span, test.mount.kind == wire::MountKind::supports, tables.wire);
   return test;
 }

@@ -24,7 +24,9 @@ struct PushTables {
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test);
 
 /// Reads and checks a wire alone, of a table with the keys of [wire].
-[[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table);
+/// Whether a wire's ends are held, so that its axial stiffness counts.
+enum class Held { at_its_ends, on_supports };
+[[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table, Held held = Held::at_its_ends);
 /// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
 void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const base::TomlTable& table);
 /// The same of wire and mounts alone.

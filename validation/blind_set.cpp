@@ -74,14 +74,26 @@ BlindWire wire_of(const Push& p, const Hidden& h) {
   return w;
 }
 
-// Readings of one push with `a` of the effect, without noise.
-std::vector<double> read(const std::string& effect, const Push& p, const Hidden& h, double a, double highest_tension) {
-  BlindWire w = wire_of(p, h);
-  std::vector<double> travel = travel_of(p);
-  const std::vector<double> time = time_of(p);
+/// So much of an effect.
+struct Dose {
+  std::string effect;
+  double amount = 0.0;
+};
+
+/// A bench with what is wrong with it.
+struct Bench {
+  BlindWire wire;
+  std::vector<double> travel;
   double gain = 1.0;
   double offset = 0.0;
+  double drift = 0.0;
+};
+
+void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench) {
+  const std::string& effect = dose.effect;
+  const double a = dose.amount;
   const double s = h.sign * a;
+  BlindWire& w = bench.wire;
   const double area = 0.25 * std::numbers::pi * diameter * diameter;
   if (effect == "wire_length")
     w.length += 0.3 * mm * s;
@@ -102,11 +114,11 @@ std::vector<double> read(const std::string& effect, const Push& p, const Hidden&
   else if (effect == "pusher_compliance")
     w.pusher_compliance = 1e-6 * a;
   else if (effect == "displacement_offset")
-    for (double& d : travel) d -= 0.1 * mm * s;
+    for (double& d : bench.travel) d -= 0.1 * mm * s;
   else if (effect == "force_offset")
-    offset = 5.0 * s;
+    bench.offset = 5.0 * s;
   else if (effect == "force_gain")
-    gain += 0.2 * s;
+    bench.gain += 0.2 * s;
   else if (effect == "natural_curvature")
     w.natural_curvature = 5.0 * s;
   else if (effect == "strand_hysteresis") {
@@ -122,20 +134,27 @@ std::vector<double> read(const std::string& effect, const Push& p, const Hidden&
     w.damage_from = (h.place - 0.08) * length;
     w.damage_to = (h.place + 0.08) * length;
     w.damage_factor = 1.0 - 0.9 * std::min(a, 1.0);
-  }
+  } else if (effect == "drift")
+    bench.drift = 3.0 * s;
+}
+
+// Readings of one push with these effects, without noise.
+std::vector<double> read(const std::vector<Dose>& doses, const Push& p, const Hidden& h, double highest_tension) {
+  Bench bench{.wire = wire_of(p, h), .travel = travel_of(p)};
+  for (const Dose& dose : doses) add(dose, h, highest_tension, bench);
+  const std::vector<double> time = time_of(p);
   std::vector<double> force;
-  for (const BlindReading& r : blind_push(w, travel, time)) force.push_back(gain * r.force + offset);
-  if (effect == "drift") {
-    // Warming up: towards a limit within some tens of seconds.
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] += 3.0 * s * (1.0 - std::exp(-time[i] / h.drift_shape));
-  }
+  for (const BlindReading& r : blind_push(bench.wire, bench.travel, time))
+    force.push_back(bench.gain * r.force + bench.offset);
+  // Warming up: towards a limit within some tens of seconds.
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += bench.drift * (1.0 - std::exp(-time[i] / h.drift_shape));
   return force;
 }
 
-Eigen::VectorXd read_all(const std::string& effect, const Hidden& h, double a, double highest_tension) {
+Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double highest_tension) {
   std::vector<double> all;
   for (const Push& p : pushes) {
-    const std::vector<double> one = read(effect, p, h, a, highest_tension);
+    const std::vector<double> one = read(doses, p, h, highest_tension);
     all.insert(all.end(), one.begin(), one.end());
   }
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
@@ -166,14 +185,30 @@ const std::vector<std::string>& blind_effects() {
   return all;
 }
 
+std::vector<std::string> effects_in(const std::string& name) {
+  std::vector<std::string> effects;
+  for (std::size_t at = 0; at <= name.size();) {
+    const std::size_t end = std::min(name.find('+', at), name.size());
+    effects.push_back(name.substr(at, end - at));
+    at = end + 1;
+  }
+  return effects;
+}
+
 BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   const auto& known = blind_effects();
-  if (effect != "none" && std::find(known.begin(), known.end(), effect) == known.end()) {
-    throw std::invalid_argument("no blind effect " + effect);
+  const std::vector<std::string> inside = effect == "none" ? std::vector<std::string>() : effects_in(effect);
+  for (const std::string& one : inside) {
+    if (std::find(known.begin(), known.end(), one) == known.end())
+      throw std::invalid_argument("no blind effect " + one);
   }
   std::mt19937 random(7919u * seed + 17u);
   // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
-  const auto which = static_cast<unsigned>(std::find(known.begin(), known.end(), effect) - known.begin());
+  const auto place = [&](const std::string& one) {
+    return static_cast<unsigned>(std::find(known.begin(), known.end(), one) - known.begin());
+  };
+  unsigned which = inside.empty() ? place(effect) : 0;
+  for (const std::string& one : inside) which = 100 * which + place(one);
   std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
   std::mt19937 noise(own);
   std::normal_distribution<double> normal;
@@ -188,7 +223,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   h.slip_curvature = 0.1 + 0.4 * uniform(random);
   h.drift_shape = 5.0 + 20.0 * uniform(random);
   // A uniform natural curvature does nothing between rigid clamps.
-  h.clamp_compliance = effect == "natural_curvature" ? 0.5 : 0.0;
+  const bool curved = std::find(inside.begin(), inside.end(), "natural_curvature") != inside.end();
+  h.clamp_compliance = curved ? 0.5 : 0.0;
 
   double highest_tension = 0.0;
   for (const Push& p : pushes) {
@@ -201,18 +237,19 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   h.highest_stress =
       std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
                0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
-  const Eigen::VectorXd plain = read_all("none", h, 0.0, highest_tension);
+  const Eigen::VectorXd plain = read_all({}, h, highest_tension);
   Eigen::VectorXd force = plain;
   BlindSet set;
   set.effect = effect;
   set.bending_stiffness = h.bending;
   set.axial_stiffness = h.axial;
-  if (effect != "none") {
+  std::vector<Dose> doses;
+  for (const std::string& one : inside) {
     Eigen::MatrixXd base(plain.size(), 2);
     for (const int k : {0, 1}) {
       Hidden other = h;
       (k == 0 ? other.bending : other.axial) *= 1.001;
-      base.col(k) = read_all("none", other, 0.0, highest_tension) - plain;
+      base.col(k) = read_all({}, other, highest_tension) - plain;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
     // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly.
@@ -223,7 +260,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
         const Eigen::VectorXd step = 1e-3 * qr.solve(left);
         fitted.bending *= std::exp(std::clamp(step[0], -0.5, 0.5));
         fitted.axial *= std::exp(std::clamp(step[1], -0.5, 0.5));
-        left = changed - read_all("none", fitted, 0.0, highest_tension);
+        left = changed - read_all({}, fitted, highest_tension);
       }
       return (left - base * qr.solve(left)).norm() / sigma;
     };
@@ -231,17 +268,23 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     // and too large.
     double low = 0.0;
     double high = 1.0;
-    double a = effect == "plasticity" ? 0.5 : 0.05;
+    double a = one == "plasticity" ? 0.5 : 0.05;
+    double reached = 0.0;
+    Dose dose{one, a};
     for (int k = 0; k < 20; ++k) {
-      force = read_all(effect, h, a, highest_tension);
-      set.amount = a;
-      set.size = size_of(force);
-      if (std::abs(set.size / size - 1.0) < 0.05 || (a >= 1.0 && set.size < size)) break;
-      (set.size < size ? low : high) = a;
-      a *= std::clamp(size / std::max(set.size, 1e-9), 0.1, 10.0);
-      if (a <= low || a >= high) a = high < 1.0 || set.size > size ? 0.5 * (low + high) : 1.0;
+      dose.amount = a;
+      force = read_all({dose}, h, highest_tension);
+      reached = size_of(force);
+      if (std::abs(reached / size - 1.0) < 0.05 || (a >= 1.0 && reached < size)) break;
+      (reached < size ? low : high) = a;
+      a *= std::clamp(size / std::max(reached, 1e-9), 0.1, 10.0);
+      if (a <= low || a >= high) a = high < 1.0 || reached > size ? 0.5 * (low + high) : 1.0;
     }
+    set.amount = doses.empty() ? dose.amount : set.amount;
+    set.size = doses.empty() ? reached : std::min(set.size, reached);
+    doses.push_back(dose);
   }
+  if (doses.size() > 1) force = read_all(doses, h, highest_tension);
 
   identification::Experiment& experiment = set.experiment;
   experiment.file = "blind.toml";

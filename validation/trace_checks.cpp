@@ -69,19 +69,25 @@ direction = "inward"
 }
 
 std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group,
-                               double diameter, double span, double support_radius) {
+                               double diameter, double span, double support_radius, double most_over_scatter) {
   const identification::Experiment e = strand_experiment(files, diameter, span, support_radius);
   const identification::Trace t = identification::trace(e);
   const double sigma = t.noise.sigma.empty() ? 0.0 : t.noise.sigma.front();
   const std::string source = "measured: pulsevad-optimal, three-point bending of strands (replicates)";
   std::string answer =
       t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
-  return {{"tracing of measured strands", fmt::format("{}: explained ({})", group, answer), "", source, 1.0,
-           t.explained ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
+  // An engineer's reading of the curves: group 4 softens as strands do that let go, group 5 is as straight as its
+  // replicates are alike.
+  const bool told = t.kind != identification::VerdictKind::not_explained;
+  const bool one_of_the_strands = t.selected.empty() || t.selected == std::vector<std::string>{"strand_hysteresis"};
+  return {{"tracing of measured strands", fmt::format("{}: {} ({})", group, to_string(t.kind), answer), "", source, 1.0,
+           told ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
+          {"tracing of measured strands", fmt::format("{}: no culprit but the strands", group), "", source, 1.0,
+           one_of_the_strands ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
           {"tracing of measured strands",
-           fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most 1", group,
-                       t.base.rmse / sigma),
-           "", source, 0.0, t.final.rmse / sigma, ErrorKind::absolute, 1.0}};
+           fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most {}", group,
+                       t.base.rmse / sigma, most_over_scatter),
+           "", source, 0.0, t.final.rmse / sigma, ErrorKind::absolute, most_over_scatter}};
 }
 
 }  // namespace
@@ -91,8 +97,10 @@ std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
   struct Group {
     const char* name;
     double diameter, span, radius;  // [mm]
+    double most_over_scatter;       // of the final error: three replicates give the scatter to a fifth; of five nothing
+                                    // is added while what is left is like their scatter
   };
-  for (const Group& g : {Group{"group4", 2.5, 40.0, 2.0}, Group{"group5", 3.6, 57.6, 5.0}}) {
+  for (const Group& g : {Group{"group4", 2.5, 40.0, 2.0, 1.2}, Group{"group5", 3.6, 57.6, 5.0, 1.5}}) {
     std::vector<std::filesystem::path> files;
     for (int k = 1; k <= 9; ++k) {
       const std::filesystem::path file = measured / "three_point_bending" / fmt::format("{}_{}.csv", g.name, k);
@@ -105,7 +113,9 @@ std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
                                     (measured / "three_point_bending").string())});
       continue;
     }
-    checks.push_back({name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius); }, ""});
+    checks.push_back(
+        {name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius, g.most_over_scatter); },
+         ""});
   }
   return checks;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/fitting/published_fit.hpp"
 #include "identification/tracing/trace.hpp"
 
 #include <map>
@@ -53,6 +54,16 @@ struct RangeVerdict {
   std::optional<Tracing> tracing;  ///< none where it could not be computed
 };
 
+/// How well the published numbers agree with one wire of which these numbers are fitted.
+struct Adequacy {
+  double to = 0.0;                   ///< range that the fits are taken to have [m]
+  int readings = 0;                  ///< that they are taken to rest on, at every position
+  std::vector<std::string> numbers;  ///< keys
+  double chi2 = 0.0;                 ///< of coefficients and scatters
+  double dof = 0.0;
+  double p = 1.0;
+};
+
 /// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, fewer verdicts.
 struct Reproduction {
   identification::Experiment experiment;
@@ -60,6 +71,8 @@ struct Reproduction {
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
   std::vector<RangeVerdict> verdicts;
+  std::optional<identification::SummaryStatistics> summary;  ///< of the best fit; none without published fits
+  std::vector<Adequacy> adequacy;
 
   /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
   /// no model has one.

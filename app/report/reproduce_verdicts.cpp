@@ -5,7 +5,47 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
 namespace snare::app {
+
+namespace {
+
+/// For every range and number of fitted numbers the best set of them, with the readings assumed across.
+void add_adequacy(ReportPage& page, const Reproduction& result) {
+  if (result.adequacy.empty()) return;
+  page.paragraph(
+      "How many numbers does one wire for all positions need? p: how often the lost readings would give published fits "
+      "as far from the computed ones; below about 0.01 the numbers do not do. Neither the range nor the number of "
+      "readings is printed, so both are varied; of as many numbers the best set is shown.");
+  std::map<std::pair<double, std::size_t>, std::map<int, const Adequacy*>> rows;
+  std::map<int, bool> counts;
+  for (const Adequacy& a : result.adequacy) {
+    const Adequacy*& best = rows[{a.to, a.numbers.size()}][a.readings];
+    if (best == nullptr || a.chi2 < best->chi2) best = &a;
+    counts[a.readings] = true;
+  }
+  Table table;
+  table.columns = {"range [mm]"_number, "numbers"_number};
+  for (const auto& [readings, known] : counts) {
+    table.columns.push_back({fmt::format("\u03c7\u00b2, {} readings", readings), ColumnKind::number});
+    table.columns.push_back({"p", ColumnKind::number});
+  }
+  for (const auto& [key, by_readings] : rows) {
+    std::vector<Cell> row{format_number(1e3 * key.first), fmt::format("{}", key.second)};
+    for (const auto& [readings, known] : counts) {
+      const auto at = by_readings.find(readings);
+      const bool has = at != by_readings.end();
+      row.emplace_back(has ? shown(at->second->chi2, 3) : absent);
+      row.emplace_back(has ? shown(at->second->p, 2) : absent, has && at->second->p > 0.01 ? Tone::good : Tone::plain);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  page.table(table);
+}
+
+}  // namespace
 
 void add_verdicts(ReportPage& page, const Reproduction& result) {
   if (!result.trace && result.verdicts.empty()) return;
@@ -13,8 +53,9 @@ void add_verdicts(ReportPage& page, const Reproduction& result) {
   if (result.trace) {
     page.callout(verdict(*result.trace), result.trace->explained ? Tone::good : Tone::bad);
     page.paragraph(
-        "Readings were drawn about the published fits with the scatter that the printed R2 implies, since the readings "
-        "themselves are lost. Run `snare trace` on the experiment file for the whole evidence.");
+        "The readings are lost: the published numbers of every fit are compared with those of the same fit to the "
+        "computed "
+        "curve. Run `snare trace` on the experiment file for the whole evidence.");
     const auto& next = result.trace->next;
     if (next && !next->what.empty()) page.paragraph("To measure next: " + next->what + ".");
   }
@@ -30,6 +71,7 @@ void add_verdicts(ReportPage& page, const Reproduction& result) {
                           joined(ratios, ", "), v.verdict});
   }
   page.table(table);
+  add_adequacy(page, result);
 }
 
 }  // namespace snare::app

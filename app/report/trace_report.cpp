@@ -56,7 +56,7 @@ std::string noise_source(const Trace& trace) {
     return fmt::format("from the spread of repeated series; {} of its variance is smooth, over {} mm of travel",
                        percent(noise.smooth), shown(1e3 * noise.length, 2));
   }
-  if (trace.drawn) return "the scatter that the published R\u00b2 implies";
+  if (trace.from_laws) return "the scatter that the published R\u00b2 implies";
   if (noise.source == "declared") return "as declared in the experiment file";
   if (noise.source == "replicates") return "from the spread of repeated series";
   if (noise.source == "residual") {
@@ -96,13 +96,17 @@ std::string effects_found(const Trace& trace) {
 
 KeyFigure effect_figure(const Trace& trace) {
   const char* label = "Effect found";
+  if (trace.kind == identification::VerdictKind::partly_explained) {
+    return {label, effects_found(trace), "in part; at most " + measured(trace.remaining.upper, " N rms") + " is left",
+            Tone::plain};
+  }
   if (!trace.explained) {
     const std::string partial = spaced(joined(trace.partial));
     const std::string why = partial.empty() ? "no effect of the catalogue fits" : "not settled by " + partial;
     return {label, "not explained", why, Tone::bad};
   }
   if (unchanged(trace)) return {label, "none missing", "what the base model leaves looks like noise", Tone::good};
-  if (!trace.alternatives.empty()) {
+  if (!trace.decided) {
     return {label, effects_found(trace), "these readings cannot tell which", Tone::plain};
   }
   return {label, effects_found(trace), trace.channel.empty() ? "" : "sits in: " + trace.channel, Tone::good};
@@ -119,14 +123,20 @@ std::optional<KeyFigure> prediction_figure(const Trace& trace) {
                    fmt::format("{} \u2192 {} N", measured(before), measured(after)),
                    fmt::format("{}{}",
                                heldout ? "of the series that no fit has seen"
-                                       : "of every series when predicted from the others alone",
+                                       : "of every condition when predicted from the others alone",
                                tone == Tone::bad ? "; the effect makes it worse" : ""),
                    tone};
 }
 
+/// Good: an engineer may rely on it; bad: not; plain: within what is said.
+Tone tone_of(const Trace& trace) {
+  if (trace.kind == identification::VerdictKind::partly_explained) return Tone::plain;
+  return trace.explained ? Tone::good : Tone::bad;
+}
+
 void add_summary(ReportPage& page, const Trace& trace) {
   page.heading("Summary");
-  page.callout(verdict(trace), trace.explained ? Tone::good : Tone::bad);
+  page.callout(verdict(trace), tone_of(trace));
   if (trace.interrupted) {
     page.callout("Interrupted: the page shows what was known by then; a complete run may find more.", Tone::bad);
   }
@@ -195,8 +205,8 @@ void add_laws(ReportPage& page, const Trace& trace) {
   }
   if (drawn.empty()) return;
   page.paragraph(
-      fmt::format("The points of {} are no readings. Only a fit F = A d\u00b2 + B d + C to readings was published; "
-                  "the points were drawn at random about it, with the scatter that its R\u00b2 implies.",
+      fmt::format("The points of {} are no readings. Only a fit F = A d\u00b2 + B d + C to readings was published, and "
+                  "only its three numbers count: a curve may leave the parabola as the lost readings did.",
                   joined(drawn)));
   page.table(table);
 }

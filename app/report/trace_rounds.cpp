@@ -79,17 +79,19 @@ void add_list(ReportPage& page, const char* introduction, const Words& items) {
 
 /// What was ruled out and what could not be judged; `told` of earlier rounds is not said again.
 void add_reasons(ReportPage& page, const Round& round, Words& told) {
-  Words implausible, unseen;
+  Words implausible, small, unseen;
   for (const Candidate& candidate : round.candidates) {
     const Effect& effect = *candidate.score.effect;
     if (!candidate.why_implausible.empty()) {
       implausible.push_back(fmt::format("{}: {}", effect.name, candidate.why_implausible));
     }
+    if (!candidate.why_too_small.empty()) small.push_back(fmt::format("{}: {}", effect.name, candidate.why_too_small));
     if (observable(candidate)) continue;
     const std::string line = fmt::format("{} ({}): {}", effect.name, effect.meaning, candidate.score.unobservable);
     if (std::ranges::find(told, line) == told.end()) unseen.push_back(line);
   }
   add_list(page, "Not plausible, a value like this makes no physical sense:", implausible);
+  add_list(page, "Too small to be named, or more than the readings bear:", small);
   add_list(
       page,
       told.empty() ? "These data cannot show, whether present or not:" : "Beside those above these data cannot show:",

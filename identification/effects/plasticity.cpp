@@ -9,6 +9,11 @@ namespace snare::identification {
 
 namespace {
 
+/// Yield stresses of metals that wires are drawn from [MPa]: annealed copper 33, aluminium 1100-O 34 (ASM Handbook,
+/// vol. 2, 1990), lower than all steels; the tensile strength of the thinnest music wire is below 4000 (ASTM A228).
+constexpr double softest = 30.0;
+constexpr double hardest = 4000.0;
+
 /// At which the outer fibres begin to yield.
 Parameter yield_stress() {
   return {.key = "plasticity.yield_stress_MPa",
@@ -58,7 +63,7 @@ Effect plasticity_effect() {
   return {.name = "plasticity",
           .channel = Channel::wire,
           .meaning = "the metal of the wire yields",
-          .numbers = {{yield_stress(), 1.0, 4000.0}, {hardening_ratio(), 0.0, 0.5, true}},
+          .numbers = {{yield_stress(), softest, hardest}, {hardening_ratio(), 0.0, 0.5, true}},
           .one_sided = true,
           .trials = trial_stresses,
           .independent_check = "look for a lasting kink or elongation of the wire after the test"};

@@ -34,7 +34,8 @@ constexpr double largest_travel = 1000.0;  // [mm]
 constexpr double largest_force = 1e9;      // [N]
 constexpr int most_points = 1'000'000;
 constexpr std::size_t most_travels = 10'000'000;  // points of a path
-constexpr int default_law_points = 41;
+constexpr int default_law_points = 20;
+constexpr int fewest_law_points = 4;  // one more than the fit has numbers
 constexpr std::size_t fewest_rows = 3;
 
 /// The tables of one series above those of the file.
@@ -177,6 +178,7 @@ Series read_series(TomlDocument& document, const TomlTable& table, const scenari
   series.name = read_name(table);
   series.test = scenario::read_push_problem(tables);
   series.test.contact_position = read_contact_position(table, series.test.mount.span);
+  series.modulus_declared = tables.wire.has("youngs_modulus_GPa");
   series.force_sigma = table.optional_number("force_sigma_N", Range::above(0.0, largest_force));
   static_cast<void>(table.has("points"));
   switch (read_source(table)) {
@@ -190,7 +192,7 @@ Series read_series(TomlDocument& document, const TomlTable& table, const scenari
       break;
     case Source::law: {
       series.law = read_law(table.table("law"));
-      const int points = table.integer_or("points", default_law_points, 2, most_points);
+      const int points = table.integer_or("points", default_law_points, fewest_law_points, most_points);
       append_leg(series.test.travel, 0.0, series.law->to, points, 0);
       break;
     }
@@ -240,6 +242,21 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
   return names;
 }
 
+/// A number of its own for every series: series[NAME].KEY in the place of KEY.
+void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys, const std::vector<std::string>& names,
+                    std::vector<std::string>& free) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (std::find(free.begin(), free.end(), keys[i]) != free.end()) {
+      fit.fail_element("per_series", i, "is in free, too: it cannot be one number for all series and one for each");
+      continue;
+    }
+    for (const std::string& name : names) {
+      std::string own = fmt::format("series[{}].{}", name, keys[i]);
+      if (std::find(free.begin(), free.end(), own) == free.end()) free.push_back(std::move(own));
+    }
+  }
+}
+
 Experiment read_document(TomlDocument& document, const std::filesystem::path& file, const ParameterSet& parameters) {
   const TomlTable root = document.root();
   base::require_schema(root, schema);
@@ -267,6 +284,9 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
     for (const std::string& key : parameters.keys()) keys.push_back(fmt::format("series[{}].{}", name, key));
   }
   experiment.free = read_names(fit, "free", keys, "a number that can be fitted");
+  add_per_series(fit, read_names(fit, "per_series", parameters.keys(), "a number that can be fitted"), names,
+                 experiment.free);
+  experiment.model_tolerance = fit.optional_number("model_tolerance", Range::from(0.0, 0.5));
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
   if (!names.empty() && distinct.size() >= names.size()) fit.fail("heldout", "must leave at least one series to fit");

@@ -40,6 +40,7 @@ struct Series {
   std::optional<Readings> readings;
   std::optional<QuadraticLaw> law;
   std::optional<double> force_sigma;  ///< of one reading [N], > 0
+  bool modulus_declared = true;       ///< else the modulus is the one that gives the declared stiffness
 };
 
 struct SolverSettings {
@@ -55,6 +56,8 @@ struct Experiment {
   std::vector<Series> series;
   std::vector<std::string> free;     ///< dotted keys that a calibration may change
   std::vector<std::string> heldout;  ///< names of series never used for fitting or selection
+  /// Share of the largest measured force below which nothing is called missing, in [0, 0.5]; absent: see tracing.
+  std::optional<double> model_tolerance;
   SolverSettings solver;
 };
 

@@ -106,7 +106,7 @@ class Observer final : public ceres::IterationCallback {
 
 Eigen::Index Data::rows() const {
   Eigen::Index n = 0;
-  for (const std::size_t k : series) n += measured[k].size();
+  for (const std::size_t k : series) n += rows_of(k);
   return n;
 }
 
@@ -114,7 +114,7 @@ Eigen::VectorXd Data::residual(const Evaluation& evaluation) const {
   Eigen::VectorXd result(rows());
   Eigen::Index row = 0;
   for (const std::size_t k : series) {
-    const Eigen::Index n = measured[k].size();
+    const Eigen::Index n = rows_of(k);
     result.segment(row, n) = noise.whiten(k, measured[k] - evaluation.force[k]);
     row += n;
   }
@@ -126,7 +126,7 @@ Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
   Eigen::MatrixXd result(rows(), evaluation.by.front().cols());
   Eigen::Index row = 0;
   for (const std::size_t k : series) {
-    const Eigen::Index n = measured[k].size();
+    const Eigen::Index n = rows_of(k);
     result.middleRows(row, n) = noise.whiten(k, evaluation.by[k]);
     row += n;
   }
@@ -294,7 +294,8 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
 
 /// One end of a profile's interval, in the direction `sense` (-1 or 1).
 std::optional<double> profile_end(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
-                                  double rise, double sense) {
+                                  double rise, double sense,
+                                  const std::function<bool(int iteration, double chi2)>& progress) {
   const Setting& centre = optimum.settings[which];
   const auto j = static_cast<Eigen::Index>(which);
   const double spread = std::sqrt(std::max(optimum.covariance(j, j), 0.0));
@@ -302,6 +303,7 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
   const std::vector<Setting> fixed = optimum.fixed();
   FitOptions options;
   options.max_iterations = 15;
+  options.progress = progress;
   double step = std::sqrt(rise) * spread;  // where the profile is a parabola
   std::optional<double> end;
   for (int k = 0; k < 4; ++k) {
@@ -310,6 +312,7 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
     std::vector<Setting> held{{centre.parameter, at}};
     held.insert(held.end(), fixed.begin(), fixed.end());
     const Fit other = fit(model, data, others_beside(model, optimum, which, sense * step), held, options);
+    if (other.report.termination == numerics::Termination::interrupted) return std::nullopt;
     if (!other.report.usable()) {
       step *= 0.5;
       continue;
@@ -326,10 +329,11 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
 }  // namespace
 
 ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
-                                 double rise) {
+                                 double rise, const std::function<bool(int iteration, double chi2)>& progress) {
   const auto j = static_cast<Eigen::Index>(which);
   if (!(optimum.covariance(j, j) > 0.0)) return {};
-  return {profile_end(model, data, optimum, which, rise, -1.0), profile_end(model, data, optimum, which, rise, 1.0)};
+  return {profile_end(model, data, optimum, which, rise, -1.0, progress),
+          profile_end(model, data, optimum, which, rise, 1.0, progress)};
 }
 
 }  // namespace snare::identification

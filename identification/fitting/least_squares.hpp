@@ -16,6 +16,10 @@ struct Data {
   std::vector<Eigen::VectorXd> measured;  ///< of every series of the model [N]
   Noise noise;                            ///< of every series of the model
 
+  /// Whitened numbers of one series: its readings, or three where only a fit was published.
+  [[nodiscard]] Eigen::Index rows_of(std::size_t of_series) const {
+    return noise.rows(of_series, measured[of_series].size());
+  }
   [[nodiscard]] Eigen::Index rows() const;
   /// (measured - computed), whitened, the data's series one below the other.
   [[nodiscard]] Eigen::VectorXd residual(const Evaluation& evaluation) const;
@@ -58,8 +62,10 @@ struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
 };
+/// progress: as in FitOptions; after false both ends may be absent.
 [[nodiscard]] ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum,
-                                               std::size_t which, double rise);
+                                               std::size_t which, double rise,
+                                               const std::function<bool(int iteration, double chi2)>& progress = {});
 
 /// (J^T J)^-1 by singular values, directions below 1e-10 of the largest (columns scaled to one) left out.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,34 +12,57 @@ namespace snare::identification {
 
 /// Noise of the readings, and the whitening that makes it independent of unit variance.  theory.md (I.3)
 ///
-/// The covariance of two readings of a series is
-///   sigma^2 ((1 - smooth) [i = j] + smooth exp(-|path_i - path_j| / length)),
-/// the path being what the pusher has travelled: independent noise, and specimens that differ smoothly.
+/// Two readings of a series, i and j, have the covariance
+///   w^2 [i = j] + h_i h_j exp(-|s_i - s_j| / length),   h_i^2 = a^2 + (b F_i)^2,
+/// s the path that the pusher has travelled and F the computed force: independent noise, and specimens that differ
+/// smoothly, by a force or by a share of it.
 struct Noise {
-  std::vector<double> sigma;            ///< of one reading, one a series [N], > 0
-  double smooth = 0.0;                  ///< share of the variance that is correlated along the path, in [0, 1)
-  double length = 0.0;                  ///< of the correlation [m], > 0 where smooth > 0
-  std::string source;                   ///< "declared", "replicates" or "residual"
-  std::vector<Eigen::MatrixXd> factor;  ///< Cholesky factor of the covariance, one a series; empty without correlation
+  std::vector<double> sigma;  ///< of one reading, its root mean square over the series, one a series [N], > 0
+  double smooth = 0.0;        ///< share of the variance that is correlated along the path, in [0, 1)
+  double length = 0.0;        ///< of the correlation [m], > 0 where smooth > 0
+  double dof = std::numeric_limits<double>::infinity();  ///< degrees of freedom of the estimate; infinite: declared
+  std::string source;                                    ///< "declared", "replicates" or "residual"
 
-  /// L^-1 values, L L^T the covariance. By columns.
+  /// One reading of a series in the recursion that whitens: see noise_filter.cpp.
+  struct Step {
+    double decay = 0.0;    ///< exp(-ds / length) since the reading before
+    double height = 0.0;   ///< h_i [N]
+    double gain = 0.0;     ///< of the smooth part's state, by a reading [1/N]
+    double inverse = 0.0;  ///< 1 / standard deviation of the reading given those before [1/N]
+  };
+  std::vector<std::vector<Step>> filter;  ///< one a series; empty without correlation
+  /// Q^T of (I.11) of series of which a fit was published, one a series; empty for others, or for all.
+  std::vector<Eigen::MatrixXd> summary;
+
+  /// Of a series of which only a fit was published, so that it has three numbers and no readings.
+  [[nodiscard]] bool summarised(std::size_t series) const { return !summary.empty() && summary[series].size() > 0; }
+  /// Whitened numbers of a series of `readings`.
+  [[nodiscard]] Eigen::Index rows(std::size_t series, Eigen::Index readings) const {
+    return summarised(series) ? summary[series].rows() : readings;
+  }
+
+  /// L^-1 values, L L^T the covariance. By columns; as many operations as values.
   [[nodiscard]] Eigen::MatrixXd whiten(std::size_t series, const Eigen::MatrixXd& values) const;
   /// Mean standard deviation over all readings [N].
   [[nodiscard]] double mean_sigma(const std::vector<Series>& series) const;
 };
 
-/// Series that repeat each other: the same test and overlapping travel. Groups of two or more, as indices.
-[[nodiscard]] std::vector<std::vector<std::size_t>> replicates(const std::vector<Series>& series);
+/// The filter of a series whose smooth part has the heights `height` [N] and the correlation `length` [m], beside
+/// independent noise of `white` [N], > 0.                                                 theory.md (I.3)
+[[nodiscard]] std::vector<Noise::Step> noise_filter(const Series& series, double white, double length,
+                                                    const std::vector<double>& height);
 
-/// The noise that the file declares (every series has force_sigma_N or a law), else that of replicates about their mean
-/// (independent part from second differences, the rest smooth, its length where the correlation has fallen to 1/e;
-/// records of more than 2000 readings count as independent), else (sigma empty) none is known before a fit.
-[[nodiscard]] Noise known_noise(const std::vector<Series>& series);
+/// The noise that the file declares (every series has force_sigma_N or a law); else sigma is empty and none is known
+/// before a fit.
+[[nodiscard]] Noise declared_noise(const std::vector<Series>& series);
 
-/// Noise of records from the residuals of a fit, whatever smooth misfit they have: from second differences,
-/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 (Gasser, Sroka and Jennen-Steinmetz 1986), all series together.
-/// Never 0: at least 1e-9 of the range of the forces.
+/// The noise from what a fit leaves: of replicates about each other, by restricted maximum likelihood (an independent and
+/// a smooth part); without replicates from second differences,
+///   sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 (Gasser, Sroka and Jennen-Steinmetz 1986),
+/// all series together, whatever smooth misfit the fit has. Never 0: at least 1e-9 of the range of the forces.
+/// residuals, computed: measured less computed force and computed force, one vector a series [N].  theory.md (I.3)
 [[nodiscard]] Noise noise_from_residuals(const std::vector<Series>& series,
-                                         const std::vector<Eigen::VectorXd>& residuals);
+                                         const std::vector<Eigen::VectorXd>& residuals,
+                                         const std::vector<Eigen::VectorXd>& computed);
 
 }  // namespace snare::identification

@@ -90,6 +90,23 @@ Sampling sample(const std::vector<double>& d, bool thin) {
 
 }  // namespace
 
+std::vector<Leg> legs_of(const std::vector<double>& displacement) {
+  const std::vector<std::size_t> turns = turning_points(displacement);
+  std::vector<Leg> result;
+  for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
+    Leg leg;
+    leg.begin = k == 0 ? 0 : turns[k] + 1;
+    leg.end = turns[k + 1] + 1;
+    const auto [low, high] = std::minmax_element(displacement.begin() + static_cast<std::ptrdiff_t>(turns[k]),
+                                                 displacement.begin() + static_cast<std::ptrdiff_t>(leg.end));
+    leg.low = *low;
+    leg.high = *high;
+    leg.up = displacement[leg.end - 1] >= displacement[turns[k]];
+    if (leg.end > leg.begin) result.push_back(leg);
+  }
+  return result;
+}
+
 std::vector<double> speeds(const Series& series) {
   const std::vector<double>& d = measured_displacement(series);
   std::vector<double> result(d.size(), 0.0);

@@ -37,6 +37,16 @@ struct PredictionOptions {
 /// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without times.
 [[nodiscard]] std::vector<double> speeds(const Series& series);
 
+/// A stretch of a record in which the pusher goes one way.
+struct Leg {
+  std::size_t begin = 0, end = 0;  ///< readings [begin, end)
+  double low = 0.0, high = 0.0;    ///< displacements [m]
+  bool up = true;                  ///< the displacement grows
+};
+
+/// The legs of a record, one after the other. It turns where it goes back by more than 2 % of its range.
+[[nodiscard]] std::vector<Leg> legs_of(const std::vector<double>& displacement);
+
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
 /// where the displacement first exceeds the offset.
 [[nodiscard]] Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading = {},

@@ -1,8 +1,11 @@
 #include "identification/fitting/statistics.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <boost/math/distributions/non_central_f.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +49,53 @@ double normal_tail(double z) {
 
 double normal_quantile(double p) {
   return bm::quantile(bm::complement(bm::normal(), p));
+}
+
+namespace {
+
+/// Beyond it a variance counts as known.
+constexpr double many = 1e5;
+
+/// P(noncentral F <= x).
+double noncentral_share(double x, double above, double below, double noncentrality) {
+  if (below > many) return bm::cdf(bm::non_central_chi_squared(above, noncentrality), above * x);
+  return bm::cdf(bm::non_central_f(above, below, noncentrality), x);
+}
+
+}  // namespace
+
+double student_tail(double z, double dof) {
+  if (!(dof < many)) return normal_tail(z);
+  return bm::cdf(bm::complement(bm::students_t(dof), z));
+}
+
+double fisher_tail(double x, double above, double below) {
+  if (!(x > 0.0)) return 1.0;
+  if (!(below < many)) return chi_square_tail(above * x, above);
+  return bm::cdf(bm::complement(bm::fisher_f(above, below), x));
+}
+
+double noncentrality_upper(double x, double above, double below, double level) {
+  if (!(x > 0.0)) return 0.0;
+  const double share = 1.0 - level;
+  // Large ones by their normal limit: Boost's series are slow there. Noncentral F about 1 + l / above, its variance
+  // 2 (above + 2 l) / above^2 + 2 (1 + l / above)^2 / below.
+  constexpr double large = 3000.0;
+  double low = 0.0;
+  double high = above * x + 10.0;
+  const auto too_likely = [&](double l) {
+    if (l < large) return noncentral_share(x, above, below, l) > share;
+    const double mean = 1.0 + l / above;
+    const double variance = 2.0 * (above + 2.0 * l) / (above * above) + 2.0 * mean * mean / below;
+    return normal_tail((mean - x) / std::sqrt(variance)) > share;
+  };
+  if (!too_likely(0.0)) return 0.0;
+  while (too_likely(high) && high < 1e12) high *= 2.0;
+  for (int k = 0; k < 60 && high - low > 1e-6 * high; ++k) {
+    const double middle = 0.5 * (low + high);
+    (too_likely(middle) ? low : high) = middle;
+  }
+  return high;
 }
 
 double runs_p(const std::vector<Eigen::VectorXd>& residuals) {

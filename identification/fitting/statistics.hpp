@@ -19,6 +19,16 @@ namespace snare::identification {
 /// z with P(standard normal > z) = p, p in (0, 1).
 [[nodiscard]] double normal_quantile(double p);
 
+/// P(Student's t with `dof` degrees of freedom > z), dof > 0; infinite: normal.
+[[nodiscard]] double student_tail(double z, double dof);
+
+/// P(Fisher's F with `above` and `below` degrees of freedom > x), both > 0; infinite below: chi-square over `above`.
+[[nodiscard]] double fisher_tail(double x, double above, double below);
+
+/// Upper end of the one-sided confidence interval, at `level`, of the noncentrality of F, of which x was seen: the
+/// noncentrality with which as little as x comes about with probability 1 - level. 0 where even none makes x too small.
+[[nodiscard]] double noncentrality_upper(double x, double above, double below, double level);
+
 /// Two-sided p of the number of runs of one sign, series by series, added up as normal deviates (Wald and
 /// Wolfowitz 1940). 1 where every series has one sign only and fewer than 4 entries.
 [[nodiscard]] double runs_p(const std::vector<Eigen::VectorXd>& residuals);

@@ -1,15 +1,14 @@
 #include "identification/tracing/attribution.hpp"
 
+#include "identification/tracing/model_error.hpp"
+
 #include <Eigen/Cholesky>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
-#include <numeric>
 #include <utility>
 
 namespace snare::identification {
@@ -51,36 +50,6 @@ Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const 
   return {x.tail(m), inverse.bottomRightCorner(m, m) / (size * size), x.head(p)};
 }
 
-/// Groups of series of one position, or of one slack: a function must hold in each when it was found without it.
-std::vector<std::vector<Eigen::Index>> left_out_rows(const Model& model, const Data& data) {
-  const auto group_by = [&](const std::function<double(const Series&)>& key) {
-    std::map<double, std::vector<Eigen::Index>> groups;
-    Eigen::Index row = 0;
-    for (const std::size_t k : data.series) {
-      std::vector<Eigen::Index>& rows = groups[key(model.series()[k])];
-      for (Eigen::Index i = 0; i < data.measured[k].size(); ++i) rows.push_back(row++);
-    }
-    return groups;
-  };
-  std::vector<std::vector<Eigen::Index>> result;
-  const auto position = [](const Series& s) { return s.test.contact_position / s.test.mount.span; };
-  const auto slack = [](const Series& s) { return s.test.wire.length - s.test.mount.span; };
-  for (const auto& groups : {group_by(position), group_by(slack)}) {
-    if (groups.size() < 2) continue;
-    for (const auto& [value, rows] : groups) result.push_back(rows);
-  }
-  if (!result.empty()) return result;
-  // One kind of test only: leave out series by series.
-  Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
-    std::vector<Eigen::Index> rows(static_cast<std::size_t>(data.measured[k].size()));
-    std::iota(rows.begin(), rows.end(), row);
-    row += data.measured[k].size();
-    result.push_back(std::move(rows));
-  }
-  return result;
-}
-
 std::string describe(const ChannelFunction& f) {
   // Stretches in which the function stands out by more than three deviations and a quarter of its largest value.
   double largest = 0.0;
@@ -104,7 +73,7 @@ std::string describe(const ChannelFunction& f) {
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
 
-/// A series' group left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
+/// A position or a slack left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
 struct Fold {
   std::vector<Eigen::Index> in, out;
   Eigen::MatrixXd free_in, free_out;
@@ -115,7 +84,9 @@ struct Fold {
 std::vector<Fold> folds_of(const Model& model, const Data& data, const Fit& current) {
   const Eigen::VectorXd& r = current.residual;
   std::vector<Fold> result;
-  for (std::vector<Eigen::Index>& out : left_out_rows(model, data)) {
+  LeftOut conditions = left_out_conditions(model, data);
+  if (!conditions.several) return result;
+  for (std::vector<Eigen::Index>& out : conditions.rows) {
     Fold fold;
     fold.out = std::move(out);
     std::vector<bool> goes(static_cast<std::size_t>(r.size()), false);
@@ -150,6 +121,7 @@ double carried_over(const std::vector<Fold>& folds, const Eigen::MatrixXd& colum
 /// The largest share that is carried over, and the weight of smoothness that does it.
 std::pair<double, double> best_of_weights(const std::vector<Fold>& folds, const Eigen::MatrixXd& columns) {
   std::pair<double, double> best{std::numeric_limits<double>::lowest(), 1.0};
+  if (folds.empty()) return {0.0, 1.0};  // of one condition nothing carries over
   for (const double weight : {1e-4, 1e-2, 1.0, 1e2}) {
     const double share = carried_over(folds, columns, weight);
     if (share > best.first) best = {share, weight};
@@ -186,8 +158,10 @@ std::vector<ChannelFunction> attribute(const Model& model, const Data& data, con
     f.accepted = f.carried_over > 0.7;
     result.push_back(std::move(f));
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const ChannelFunction& a, const ChannelFunction& b) { return a.carried_over > b.carried_over; });
+  std::stable_sort(result.begin(), result.end(), [](const ChannelFunction& a, const ChannelFunction& b) {
+    if (a.carried_over != b.carried_over) return a.carried_over > b.carried_over;
+    return a.explained > b.explained;
+  });
   return result;
 }
 

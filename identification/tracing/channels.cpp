@@ -45,8 +45,8 @@ ChannelColumns function_of(const Data& data, const std::function<double(std::siz
     for (Eigen::Index i = 0; i < n; ++i) {
       add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), own, i);
     }
-    result.columns.middleRows(row, n) = data.noise.whiten(k, own);
-    row += n;
+    result.columns.middleRows(row, data.rows_of(k)) = data.noise.whiten(k, own);
+    row += data.rows_of(k);
   }
   for (int s = 0; s < stations; ++s) result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
   return result;

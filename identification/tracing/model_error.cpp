@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 
 namespace snare::identification {
 
@@ -60,32 +62,125 @@ ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& 
 
 double fitted_rmse(const Data& data, const Evaluation& evaluation) {
   double squares = 0.0;
-  for (const std::size_t k : data.series) squares += (data.measured[k] - evaluation.force[k]).squaredNorm();
-  return std::sqrt(squares / static_cast<double>(data.rows()));
+  double count = 0.0;
+  for (const std::size_t k : data.series) {
+    squares += (data.measured[k] - evaluation.force[k]).squaredNorm();
+    count += static_cast<double>(data.measured[k].size());
+  }
+  return std::sqrt(squares / std::max(1.0, count));
+}
+
+namespace {
+
+/// Rows of the data by a key of their series.
+std::map<double, std::vector<Eigen::Index>> rows_by(const Model& model, const Data& data,
+                                                    const std::function<double(const Series&)>& key) {
+  std::map<double, std::vector<Eigen::Index>> groups;
+  Eigen::Index row = 0;
+  for (const std::size_t k : data.series) {
+    std::vector<Eigen::Index>& rows = groups[key(model.series()[k])];
+    for (Eigen::Index i = 0; i < data.rows_of(k); ++i) rows.push_back(row++);
+  }
+  return groups;
+}
+
+/// Rows by the leg of the path, as far as all series have it; with one leg those of the last third of the travel.
+std::vector<std::vector<Eigen::Index>> rows_of_legs(const Model& model, const Data& data) {
+  std::vector<std::vector<Eigen::Index>> legs;
+  std::vector<Eigen::Index> last;
+  Eigen::Index row = 0;
+  for (const std::size_t k : data.series) {
+    const std::vector<double>& d = measured_displacement(model.series()[k]);
+    if (data.noise.summarised(k)) {
+      if (legs.empty()) legs.emplace_back();
+      for (Eigen::Index i = 0; i < data.rows_of(k); ++i) legs.front().push_back(row + i);
+      row += data.rows_of(k);
+      continue;
+    }
+    const std::vector<Leg> own = legs_of(d);
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      if (j == legs.size()) legs.emplace_back();
+      for (std::size_t i = own[j].begin; i < own[j].end; ++i) {
+        legs[j].push_back(row + static_cast<Eigen::Index>(i));
+        if (d[i] > own[j].low + 2.0 / 3.0 * (own[j].high - own[j].low))
+          last.push_back(row + static_cast<Eigen::Index>(i));
+      }
+    }
+    row += data.measured[k].size();
+  }
+  if (legs.size() > 1) return legs;
+  return {last};
+}
+
+/// What a fit leaves, and its derivatives, as forces.
+struct Plain {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+};
+
+Plain plain_of(const Data& data, const Fit& fit) {
+  Plain plain{Eigen::VectorXd(data.rows()), Eigen::MatrixXd(data.rows(), fit.jacobian.cols())};
+  Eigen::Index row = 0;
+  for (const std::size_t k : data.series) {
+    const Eigen::Index n = data.rows_of(k);
+    // Of a published fit its three numbers, times the scatter.
+    const bool summarised = data.noise.summarised(k);
+    const double unit = data.noise.sigma[k];
+    const Eigen::VectorXd left = data.measured[k] - fit.evaluation.force[k];
+    plain.residual.segment(row, n) = summarised ? Eigen::VectorXd(unit * data.noise.whiten(k, left)) : left;
+    if (fit.jacobian.cols() > 0) {
+      const Eigen::MatrixXd& by = fit.evaluation.by[k];
+      plain.jacobian.middleRows(row, n) = summarised ? Eigen::MatrixXd(unit * data.noise.whiten(k, by)) : by;
+    }
+    row += n;
+  }
+  return plain;
+}
+
+}  // namespace
+
+LeftOut left_out_conditions(const Model& model, const Data& data) {
+  LeftOut result;
+  const auto position = [](const Series& s) { return s.test.contact_position / s.test.mount.span; };
+  const auto slack = [](const Series& s) { return s.test.wire.length - s.test.mount.span; };
+  for (const auto& groups : {rows_by(model, data, position), rows_by(model, data, slack)}) {
+    if (groups.size() < 2) continue;
+    for (const auto& [value, rows] : groups) result.rows.push_back(rows);
+  }
+  result.several = !result.rows.empty();
+  if (!result.several) result.rows = rows_of_legs(model, data);
+  return result;
 }
 
 double left_out_rmse(const Model& model, const Data& data, const Fit& fit) {
+  const Plain plain = plain_of(data, fit);
   double squares = 0.0;
-  Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
-    const Eigen::Index n = data.measured[k].size();
-    Eigen::MatrixXd rest(fit.jacobian.rows() - n, fit.jacobian.cols());
-    rest << fit.jacobian.topRows(row), fit.jacobian.bottomRows(fit.jacobian.rows() - row - n);
-    Eigen::VectorXd r(rest.rows());
-    r << fit.residual.head(row), fit.residual.tail(fit.residual.size() - row - n);
-    // Without series k the numbers move by (J^T J)^-1 J^T r of the rows that stay.
-    const Eigen::VectorXd step = covariance_of(rest) * (rest.transpose() * r);
-    Eigen::VectorXd left = fit.residual.segment(row, n) - fit.jacobian.middleRows(row, n) * step;
-    // Numbers of this series alone (its zero) only it can tell.
-    std::vector<Eigen::Index> own;
-    for (std::size_t j = 0; j < fit.free; ++j) {
-      if (fit.settings[j].parameter->only == model.series()[k].name) own.push_back(static_cast<Eigen::Index>(j));
+  double count = 0.0;
+  for (const std::vector<Eigen::Index>& out : left_out_conditions(model, data).rows) {
+    std::vector<bool> goes(static_cast<std::size_t>(data.rows()), false);
+    for (const Eigen::Index i : out) goes[static_cast<std::size_t>(i)] = true;
+    std::vector<Eigen::Index> in;
+    for (Eigen::Index i = 0; i < data.rows(); ++i) {
+      if (!goes[static_cast<std::size_t>(i)]) in.push_back(i);
     }
-    if (!own.empty()) left = Projection(fit.jacobian(Eigen::all, own).middleRows(row, n)).without(left);
-    squares += left.squaredNorm() * data.noise.sigma[k] * data.noise.sigma[k];
-    row += n;
+    if (in.empty() || out.empty()) continue;
+    // Without these readings the numbers move by (J^T J)^-1 J^T r of the rows that stay.
+    const Eigen::MatrixXd rest = fit.jacobian(in, Eigen::all);
+    Eigen::VectorXd left = plain.residual(out);
+    const Eigen::MatrixXd columns = plain.jacobian(out, Eigen::all);
+    if (fit.free > 0) {
+      left -= columns * (covariance_of(rest) * (rest.transpose() * Eigen::VectorXd(fit.residual(in))));
+      // Numbers that only the readings left out can tell (the zero of a series).
+      std::vector<Eigen::Index> own;
+      for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+        if (columns.col(j).norm() > 0.0 && rest.col(j).norm() == 0.0) own.push_back(j);
+      }
+      if (!own.empty()) left = Projection(columns(Eigen::all, own)).without(left);
+    }
+    squares += left.squaredNorm();
+    count += static_cast<double>(left.size());
   }
-  return std::sqrt(squares / static_cast<double>(data.rows()));
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
 Eigen::VectorXd forces_of(const Series& series) {

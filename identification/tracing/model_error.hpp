@@ -40,7 +40,15 @@ struct ModelError {
 /// Root mean square of measured less computed forces over the fitted readings [N].
 [[nodiscard]] double fitted_rmse(const Data& data, const Evaluation& evaluation);
 
-/// The same of every series predicted by a fit to the others, to first order.           theory.md (I.5)
+/// Readings of the conditions that are left out one by one, as rows of the data: the positions, the slacks; with one of
+/// each the legs of the path; with one leg the last third of the travel.
+struct LeftOut {
+  std::vector<std::vector<Eigen::Index>> rows;
+  bool several = false;  ///< positions or slacks
+};
+[[nodiscard]] LeftOut left_out_conditions(const Model& model, const Data& data);
+
+/// Root mean square error [N] of every condition predicted by a fit to the others, to first order. theory.md (I.5)
 [[nodiscard]] double left_out_rmse(const Model& model, const Data& data, const Fit& fit);
 
 /// Series that are never fitted, with their readings.

@@ -1,6 +1,7 @@
 #include "identification/tracing/round.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "identification/tracing/remainder.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double collinear = 0.95;         // |cos| above which effects are one class
 constexpr double indistinct_bic = 6.0;     // difference of BIC below which the likelihood does not decide (Kass and
-                                           // Raftery 1995)
+                                           // Raftery 1995); 98.6 % of a chi-square of one degree of freedom
+constexpr double separable_chi2 = 10.0;    // z^2 (1 - cos^2) above which a rival of the leader need not be refitted
+constexpr double least_fall = 0.9;         // of the root mean square error, which must fall below this share
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
 constexpr std::size_t most_refits = 6;
@@ -25,7 +28,8 @@ constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
 
 /// The model with an effect added, from each of its starts; not usable where none of them gives a fit.
-Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival) {
+Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival,
+          Progress& progress) {
   Fit best;
   best.chi2 = std::numeric_limits<double>::max();
   best.free = current.free;
@@ -41,6 +45,9 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
     fitting.rival = rival;
+    fitting.progress = [&](int iteration, double) {
+      return progress.go_on(fmt::format("refit with {}: iteration {}", score.effect->name, iteration));
+    };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
   }
@@ -70,8 +77,27 @@ void judge_plausibility(const Model& model, const Fit& current, const Fit& refit
   }
 }
 
-/// What a refit says of an effect: BIC, plausibility, and whether held-out series gain by it.
-void judge(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+/// Why what an effect changes is not to be named; empty when it may be.
+std::string too_small(const Data& data, const Fit& current, const Fit& refitted, double tolerance) {
+  const double before = fitted_rmse(data, current.evaluation);
+  const double after = fitted_rmse(data, refitted.evaluation);
+  if (refitted.dof() < fewest_dof(refitted.free)) {
+    return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
+                       refitted.dof(), refitted.free, fewest_dof(refitted.free));
+  }
+  if (tolerance > 0.0 && (before - after <= tolerance || after > least_fall * before)) {
+    return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
+                       before - after, tolerance);
+  }
+  // What is beside the noise must fall by a tenth, as a root mean square.
+  const double excess = current.chi2 - current.dof();
+  if (current.chi2 - refitted.chi2 < (1.0 - least_fall * least_fall) * excess)
+    return "it takes away less than a tenth of what is beside the noise";
+  return "";
+}
+
+/// What a refit says of an effect: BIC, plausibility, size, and whether held-out series gain by it.
+void judge(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current, const Demands& demands,
            std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) {
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
@@ -80,6 +106,7 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const F
   const std::vector<FittedNumber> all = numbers_of(model, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   judge_plausibility(model, current, refitted, candidate);
+  candidate.why_too_small = too_small(data, current, refitted, demands.tolerance);
   if (heldout.empty()) return;
   const std::optional<double> after = heldout.rmse(refitted.settings);
   // At the noise already it need not improve any more.
@@ -87,9 +114,10 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const F
   candidate.heldout_improves = heldout_before && after && (*after < *heldout_before || *after < 1.1 * sigma);
 }
 
-/// Classes: the leading effect with all that the data cannot tell from it (those within 6 of its BIC), then
-/// the others by their directions, |cos| > 0.95, or as what the base model's numbers do already.
-void classify(const Fit& current, Round& round, const std::vector<Fit>& fits) {
+/// Classes: the leading effect with all whose refits are within 6 of its BIC, in units of the variance that it leaves
+/// where that is more than the noise's; then the others by their directions, |cos| > 0.95, or as what the base model's
+/// numbers do already.
+void classify(const Fit& current, double inflation, Round& round, const std::vector<Fit>& fits) {
   std::vector<Candidate>& all = round.candidates;
   std::vector<bool> placed(all.size(), false);
   const auto alike = [&](const Candidate& a, const Candidate& b) {
@@ -110,10 +138,11 @@ void classify(const Fit& current, Round& round, const std::vector<Fit>& fits) {
     }
     for (std::size_t j = i; j < all.size(); ++j) {
       if (placed[j]) continue;
-      const bool leads = i == 0 && all[i].refitted && all[j].refitted && all[j].plausible && j < fits.size() &&
-                         all[j].delta_bic - all[i].delta_bic < indistinct_bic && all[i].delta_bic < -worthwhile_bic;
+      const bool leader = i == 0 && all[i].refitted && all[i].delta_bic < -worthwhile_bic;
+      const bool rival = all[j].refitted && all[j].plausible && j < fits.size() &&
+                         all[j].delta_bic - all[i].delta_bic < indistinct_bic * inflation;
       const bool same =
-          j == i || (with_base ? absorbed(all[j]) : !absorbed(all[j]) && (leads || alike(all[i], all[j])));
+          j == i || (with_base ? absorbed(all[j]) : !absorbed(all[j]) && (leader ? rival : alike(all[i], all[j])));
       if (!same) continue;
       placed[j] = true;
       all[j].class_index = round.classes.size();
@@ -140,7 +169,8 @@ std::vector<Candidate> by_score(std::vector<Score> scores) {
 
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
-                            std::vector<Candidate>& candidates, const std::string& round, Progress& progress) {
+                            const Demands& demands, std::vector<Candidate>& candidates, const std::string& round,
+                            Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.settings);
   std::size_t refits = 0;
@@ -152,18 +182,37 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     // What cannot come near the best so far is not followed to its own bottom.
     const double rival = best_gain > 0.0 ? current.chi2 - best_gain + out_of_class_bic : 0.0;
-    fits[i] = refit(model, data, current, c.score, rival);
-    judge(model, data, heldout, current, before, c, fits[i]);
+    fits[i] = refit(model, data, current, c.score, rival, progress);
+    judge(model, data, heldout, current, demands, before, c, fits[i]);
     if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.chi2 - fits[i].chi2);
     ++refits;
   }
   return fits;
 }
 
+/// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it from it.
+void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+                  const Demands& demands, std::vector<Candidate>& candidates, std::vector<Fit>& fits,
+                  const std::string& round, Progress& progress) {
+  const Candidate& leader = candidates.front();
+  if (!leader.refitted || leader.score.direction.size() == 0) return;
+  const double gain = current.chi2 - fits.front().chi2;
+  const std::optional<double> before = heldout.rmse(current.settings);
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    Candidate& c = candidates[i];
+    if (c.refitted || fits[i].free > 0 || !c.score.unobservable.empty() || c.score.direction.size() == 0) continue;
+    const double cosine = c.score.direction.dot(leader.score.direction);
+    if (gain * (1.0 - cosine * cosine) > separable_chi2) continue;
+    if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
+    fits[i] = refit(model, data, current, c.score, current.chi2 - gain + out_of_class_bic, progress);
+    judge(model, data, heldout, current, demands, before, c, fits[i]);
+  }
+}
+
 /// May be added to the model.
 bool eligible(const Candidate& c, double significance) {
-  return c.refitted && c.plausible && c.score.adjusted_p < significance && c.delta_bic < -worthwhile_bic &&
-         c.heldout_improves.value_or(true);
+  return c.refitted && c.plausible && c.why_too_small.empty() && c.score.adjusted_p < significance &&
+         c.delta_bic < -worthwhile_bic && c.heldout_improves.value_or(true);
 }
 
 /// Eligible first, by BIC; then the other refitted ones; then by score as they stand. Fits along with them.
@@ -206,22 +255,35 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
     if (c.class_index == first.class_index && c.refitted && c.plausible) add_rival(i);
   }
   // Alone in its class: the runner-up is what a next experiment should shut out.
-  if (result.rivals.size() == 1 && round.candidates.size() > 1 && round.candidates[1].refitted) add_rival(1);
+  if (result.rivals.size() == 1 && round.candidates.size() > 1 && round.candidates[1].refitted &&
+      round.candidates[1].plausible)
+    add_rival(1);
 }
 
 }  // namespace
 
+double fewest_dof(std::size_t numbers) {
+  return std::max(5.0, 2.0 * static_cast<double>(numbers));
+}
+
 RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
-                          std::size_t number, double significance, Progress& progress) {
+                          std::size_t number, const Demands& demands, Progress& progress) {
+  const double significance = demands.significance;
   const std::string name = fmt::format("round {}", number);
   RoundFits result;
   Round& round = result.round;
   round.candidates = by_score(score_effects(model, data, current, significance));
   progress.clock(name + ": scores");
-  std::vector<Fit> fits = refit_best(model, data, heldout, current, round.candidates, name, progress);
-  progress.clock(name + ": refits");
+  std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
   rank(round.candidates, fits, significance);
-  classify(current, round, fits);
+  double inflation = 1.0;
+  if (!round.candidates.empty() && round.candidates.front().refitted) {
+    refit_rivals(model, data, heldout, current, demands, round.candidates, fits, name, progress);
+    rank(round.candidates, fits, significance);
+    inflation = remainder(model, data, fits.front()).inflation();
+  }
+  progress.clock(name + ": refits");
+  classify(current, inflation, round, fits);
   if (!round.candidates.empty() && eligible(round.candidates.front(), significance)) {
     add_first(model, data, fits, result);
     return result;
@@ -229,7 +291,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   const bool any = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
     return c.score.unobservable.empty() && c.score.adjusted_p < significance;
   });
-  round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, held-out series)"
+  round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, size, held-out series)"
                      : "no effect of the catalogue is significant";
   return result;
 }

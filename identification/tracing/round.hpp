@@ -19,6 +19,7 @@ struct Candidate {
   std::vector<FittedNumber> numbers;  ///< of the effect after the refit
   bool plausible = true;
   std::string why_implausible;
+  std::string why_too_small;  ///< what it changes is not worth a name, or the readings cannot bear it; empty: it may be
   std::optional<bool> heldout_improves;
   std::size_t class_index = 0;
 };
@@ -40,10 +41,19 @@ struct RoundFits {
   std::vector<std::string> rival_names;  ///< of their effects
 };
 
+/// What an effect must bring to be named.
+struct Demands {
+  double significance = 0.0;  ///< of its score after Holm
+  double tolerance = 0.0;     ///< by which the root mean square error must fall [N]; 0: by what is significant
+};
+
+/// Degrees of freedom that must be left beside `numbers` fitted numbers.
+[[nodiscard]] double fewest_dof(std::size_t numbers);
+
 /// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
-                                        const Fit& current, std::size_t number, double significance,
+                                        const Fit& current, std::size_t number, const Demands& demands,
                                         Progress& progress);
 
 }  // namespace snare::identification

@@ -156,7 +156,8 @@ void Scoring::by_derivative(Score& score) const {
   score.direction = g / norm;
   score.z = g.dot(r_) / norm;
   if (effect.one_sided) score.z = std::max(score.z, 0.0);
-  score.p = effect.one_sided ? normal_tail(score.z) : 2.0 * normal_tail(std::abs(score.z));
+  const double dof = data_.noise.dof;
+  score.p = effect.one_sided ? student_tail(score.z, dof) : 2.0 * student_tail(std::abs(score.z), dof);
   score.starts = {{bounded(model_, first, score.z / norm)}};
   const double declared = model_.declared(first);
   score.detectable = first.parametrisation == Parametrisation::shift
@@ -201,7 +202,7 @@ void Scoring::by_trials(Score& score) const {
   std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.z > b.z; });
   score.z = std::max(trials.front().z, 0.0);
   score.direction = trials.front().direction;
-  score.p = std::min(1.0, static_cast<double>(trials.size()) * normal_tail(score.z));
+  score.p = std::min(1.0, static_cast<double>(trials.size()) * student_tail(score.z, data_.noise.dof));
   choose_starts(score, trials);
   const auto smallest = std::min_element(trials.begin(), trials.end(), [this](const Trial& a, const Trial& b) {
     const bool a_shows = a.size >= needed_;

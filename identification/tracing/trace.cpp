@@ -1,6 +1,7 @@
 #include "identification/tracing/trace.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "identification/fitting/statistics.hpp"
 #include "identification/tracing/base_fit.hpp"
 #include "identification/tracing/outside_causes.hpp"
 #include "identification/tracing/progress.hpp"
@@ -24,16 +25,16 @@ SolverSettings for_search(const SolverSettings& asked) {
 
 /// What is traced: the experiment with laws replaced by readings, divided into fitted and held-out series.
 struct Division {
-  explicit Division(const Experiment& experiment, const TraceOptions& options);
+  explicit Division(const Experiment& experiment);
 
-  bool drawn = false;
+  bool from_laws = false;
   std::vector<Series> all;
   std::vector<bool> is_heldout;  // one a series of `all`
   std::vector<Series> fitted, heldout;
 };
 
-Division::Division(const Experiment& experiment, const TraceOptions& options) : all(experiment.series) {
-  drawn = replace_laws(all, options.draw, options.seed);
+Division::Division(const Experiment& experiment) : all(experiment.series) {
+  from_laws = replace_laws(all);
   const std::vector<std::string>& names = experiment.heldout;
   for (const Series& s : all) is_heldout.push_back(std::find(names.begin(), names.end(), s.name) != names.end());
   check_readings(experiment.file, all, is_heldout);
@@ -46,7 +47,7 @@ Data data_of(const std::vector<Series>& fitted) {
     data.series.push_back(k);
     data.measured.push_back(forces_of(fitted[k]));
   }
-  data.noise = known_noise(fitted);
+  data.noise = declared_noise(fitted);
   return data;
 }
 
@@ -60,8 +61,12 @@ class Tracer {
   void look_at_base();
   void add_effects();
   [[nodiscard]] bool accept();
+  void drop_unneeded();
+  [[nodiscard]] bool needed(std::size_t which, double inflation, Fit& without);
+  void conclude();
   void select();
   void reject();
+  [[nodiscard]] bool decided() const;
   void compare_models();
   void find_intervals();
   void propose();
@@ -78,10 +83,11 @@ class Tracer {
   Model all_;        // of every series, on the mesh asked for
   Data data_;
   Fit base_;
-  Fit current_;                     // with the effects added so far
-  Fit final_;                       // what is selected
-  ResidualTests tests_;             // of current_
-  std::vector<std::string> added_;  // effects, and the class of each
+  Fit current_;                       // with the effects added so far
+  Fit final_;                         // what is selected
+  ResidualTests tests_;               // of current_
+  std::vector<std::string> added_;    // effects, and the class of each
+  std::vector<std::size_t> numbers_;  // of each
   std::vector<std::vector<std::string>> classes_;
   std::vector<ChannelFunction> functions_;  // of the base model's residual, once asked for
   std::vector<RoundFits> rounds_;           // in which an effect was added
@@ -96,7 +102,7 @@ Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, const 
       all_(series.all, experiment.solver, false),
       data_(data_of(series.fitted)) {
   result_.series = series.all;
-  result_.drawn = series.drawn;
+  result_.from_laws = series.from_laws;
   result_.heldout = series.is_heldout;
 }
 
@@ -123,7 +129,7 @@ void Tracer::look_at_base() {
     declared.chi2 = declared.residual.squaredNorm();
     result_.declared = error_of(declared, result_.declared_predictions);
   }
-  result_.base_tests = test_residuals(data_, base_);
+  result_.base_tests = test_residuals(model_, data_, base_);
   result_.base = error_of(base_, result_.base_predictions);
 }
 
@@ -131,29 +137,73 @@ void Tracer::look_at_base() {
 void Tracer::add_effects() {
   current_ = base_;
   tests_ = result_.base_tests;
+  const auto readings = static_cast<double>(data_.rows());
+  result_.few_readings = readings - static_cast<double>(base_.free + 1) < fewest_dof(base_.free + 1);
+  const double tolerance = result_.tolerance;
   while (static_cast<int>(added_.size()) < options_.most_effects) {
+    // Where a size is asked for, what is smaller is not looked for.
+    if (result_.few_readings || (tolerance > 0.0 && tests_.within(tolerance))) break;
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found = look_for_effect(model_, data_, heldout_, current_, number, significance, progress_);
+    RoundFits found = look_for_effect(model_, data_, heldout_, current_, number, {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
     if (round.added.empty()) break;
     added_.push_back(round.added);
     classes_.push_back(round.classes[round.candidates.front().class_index]);
-    current_ = std::move(found.better);
+    numbers_.push_back(found.better.free - current_.free);
+    current_ = found.better;
     rounds_.push_back(std::move(found));
-    tests_ = test_residuals(data_, current_);
+    tests_ = test_residuals(model_, data_, current_);
     // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
-    if (!tests_.acceptable() && options_.attribute && !rivals().empty()) break;
+    if (!tests_.acceptable(tolerance) && options_.attribute && !rivals().empty()) break;
   }
-  result_.significant = !result_.base_tests.acceptable() || !added_.empty();
+}
+
+// Whether the model needs the effect: what chi2 rises by without it, all others refitted, against the variance that the
+// model leaves, by F, all effects that could be seen counted.                              theory.md (I.9)
+bool Tracer::needed(std::size_t which, double inflation, Fit& without) {
+  std::vector<Setting> start;
+  std::size_t first = base_.free;
+  for (std::size_t k = 0; k < which; ++k) first += numbers_[k];
+  for (std::size_t k = 0; k < current_.free; ++k) {
+    if (k < first || k >= first + numbers_[which]) start.push_back(current_.settings[k]);
+  }
+  without = added_.size() == 1 ? base_ : fit(model_, data_, start);
+  if (!without.report.usable()) return true;
+  double seen = 0.0;
+  for (const Candidate& c : result_.rounds.front().candidates) seen += c.score.unobservable.empty() ? 1.0 : 0.0;
+  const auto numbers = static_cast<double>(numbers_[which]);
+  const double gain = (without.chi2 - current_.chi2) / numbers;
+  const double below = inflation > 1.0 ? std::min(data_.noise.dof, tests_.left.directions) : data_.noise.dof;
+  return std::max(1.0, seen) * fisher_tail(gain / inflation, numbers, below) < options_.significance;
+}
+
+// Effects without which the model does as well, seen from what it leaves, go again.
+void Tracer::drop_unneeded() {
+  for (bool dropped = true; dropped && !added_.empty() && !progress_.interrupted();) {
+    dropped = false;
+    const double inflation = tests_.left.inflation();
+    for (std::size_t k = added_.size(); k-- > 0 && !dropped;) {
+      Fit without;
+      if (needed(k, inflation, without)) continue;
+      const auto at = static_cast<std::ptrdiff_t>(k);
+      result_.partial.push_back(added_[k]);
+      added_.erase(added_.begin() + at);
+      classes_.erase(classes_.begin() + at);
+      numbers_.erase(numbers_.begin() + at);
+      rounds_.erase(rounds_.begin() + at);
+      current_ = std::move(without);
+      tests_ = test_residuals(model_, data_, current_);
+      dropped = true;
+    }
+  }
 }
 
 // Whether the effects explain the residual: they leave no more than noise, and no cause that the catalogue
 // does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md (I.8).
 bool Tracer::accept() {
-  if (!tests_.acceptable()) return false;
   if (added_.empty() || !options_.attribute || !progress_.go_on("causes outside the catalogue")) return true;
   std::vector<ChannelFunction> outside = rivals();
   if (!outside.empty()) {
@@ -162,6 +212,52 @@ bool Tracer::accept() {
   }
   progress_.clock("causes outside the catalogue");
   return !result_.rival_explanation;
+}
+
+// The degree of the answer.                                                               theory.md (I.9)
+void Tracer::conclude() {
+  drop_unneeded();
+  const double tolerance = result_.tolerance;
+  const bool base_does = result_.base_tests.acceptable(tolerance);
+  result_.significant = !base_does || !added_.empty();
+  Remaining& remaining = result_.remaining;
+  const auto leave = [&](const Remainder& left, double share) { remaining = {left.rmse, left.upper, share, ""}; };
+  const Remainder& before = result_.base_tests.left;
+  if (tests_.acceptable(tolerance) && accept()) {
+    leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));
+    result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
+    select();
+  } else if (!added_.empty() && !result_.rival_explanation &&
+             tests_.left.upper <= most_force_left * result_.peak_force &&
+             share_left(before, tests_.left) <= most_share_left && rivals().empty()) {
+    leave(tests_.left, share_left(before, tests_.left));
+    result_.kind = VerdictKind::partly_explained;
+    if (options_.attribute && progress_.go_on("where the rest comes from")) {
+      const std::vector<ChannelFunction> rest = attribute(model_, data_, current_);
+      if (!rest.empty()) remaining.channel = to_string(rest.front().channel);
+    }
+    select();
+  } else {
+    leave(before, 1.0);
+    result_.kind = VerdictKind::not_explained;
+    reject();
+    remaining.channel = result_.channel;
+  }
+  // A model whose stiffness no such wire has describes the readings and not the wire.
+  result_.findings = beyond_construction(model_, numbers_of(model_, final_));
+  const bool impossible =
+      std::any_of(result_.findings.begin(), result_.findings.end(), [](const Finding& f) { return f.sure; });
+  if (impossible && result_.kind != VerdictKind::not_explained) {
+    result_.partial = added_;
+    result_.selected.clear();
+    result_.selected_classes.clear();
+    result_.alternatives.clear();
+    if (!added_.empty()) result_.partial_rmse = fitted_rmse(data_, current_.evaluation);
+    final_ = base_;
+    leave(before, 1.0);
+    result_.kind = VerdictKind::not_explained;
+  }
+  result_.explained = result_.kind == VerdictKind::nothing_missing || result_.kind == VerdictKind::explained;
 }
 
 void Tracer::select() {
@@ -179,11 +275,35 @@ void Tracer::select() {
 // The effects do not do: the base model stays, and the channels are asked.
 void Tracer::reject() {
   final_ = base_;
-  result_.partial = added_;
-  if (!added_.empty()) result_.partial_rmse = fitted_rmse(data_, current_.evaluation);
-  if (options_.attribute && progress_.go_on("where the residual comes from")) result_.functions = functions();
-  if (!result_.functions.empty()) result_.channel = to_string(result_.functions.front().channel);
+  if (!added_.empty()) {
+    result_.partial = added_;
+    result_.partial_rmse = fitted_rmse(data_, current_.evaluation);
+  }
+  const bool any = base_.dof() >= 1.0 && !result_.few_readings;
+  if (any && options_.attribute && progress_.go_on("where the residual comes from")) result_.functions = functions();
+  if (!result_.functions.empty() && !result_.one_condition)
+    result_.channel = to_string(result_.functions.front().channel);
   progress_.clock("channels");
+}
+
+// One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
+bool Tracer::decided() const {
+  if (!result_.explained || !result_.alternatives.empty()) return false;
+  if (result_.selected.empty()) {
+    return !result_.few_readings &&
+           result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
+  }
+  for (const std::vector<std::string>& members : result_.selected_classes) {
+    if (members.size() != 1) return false;
+  }
+  if (result_.one_condition) return false;
+  double before = left_out_rmse(model_, data_, base_);
+  for (const RoundFits& round : rounds_) {
+    const double after = left_out_rmse(model_, data_, round.better);
+    if (!(after < before)) return false;
+    before = after;
+  }
+  return true;
 }
 
 // Errors of the final model, on fitted series, held-out ones, and each of them left out.
@@ -194,7 +314,7 @@ void Tracer::compare_models() {
     result_.final = result_.base;
     result_.final_predictions = result_.base_predictions;
   } else {
-    result_.final_tests = test_residuals(data_, final_);
+    result_.final_tests = test_residuals(model_, data_, final_);
     result_.final = error_of(final_, result_.final_predictions);
   }
   for (const Prediction& p : result_.final_predictions) {
@@ -203,7 +323,7 @@ void Tracer::compare_models() {
   const std::optional<double> before = heldout_.rmse(base_.settings);
   const std::optional<double> after = heldout_.rmse(final_.settings);
   if (before && after) result_.heldout_rmse = {*before, *after};
-  if (data_.series.size() > 1) {
+  if (data_.series.size() > 1 && !result_.one_condition) {
     result_.left_out_rmse = {left_out_rmse(model_, data_, base_), left_out_rmse(model_, data_, final_)};
   }
   progress_.clock("errors of the final model");
@@ -215,7 +335,9 @@ void Tracer::find_intervals() {
   for (std::size_t k = base_.free; k < final_.free; ++k) {
     const Parameter& p = *final_.settings[k].parameter;
     if (!progress_.go_on("interval of " + p.key)) break;
-    const ProfileInterval interval = profile_interval(model_, data_, final_, k, rise);
+    const ProfileInterval interval = profile_interval(
+        model_, data_, final_, k, rise, [&](int, double) { return progress_.go_on("interval of " + p.key); });
+    if (progress_.interrupted()) break;
     FittedNumber& n = result_.final.numbers[k];
     n.profiled = true;
     n.lower = interval.lower ? std::optional(model_.shown({&p, *interval.lower})) : std::nullopt;
@@ -250,17 +372,17 @@ Trace Tracer::run() {
   }
   settle_noise(model_, data_, base_);
   result_.noise = data_.noise;
+  result_.rows = static_cast<std::size_t>(data_.rows());
+  result_.peak_force = peak_force(data_);
+  result_.tolerance = model_tolerance(experiment_, data_);
+  result_.one_condition = !left_out_conditions(model_, data_).several;
   progress_.clock("base fit");
   look_at_base();
   progress_.clock("errors of declared and base model");
   add_effects();
-  result_.explained = accept();
-  if (result_.explained) {
-    select();
-  } else {
-    reject();
-  }
+  conclude();
   compare_models();
+  result_.decided = decided();
   if (options_.intervals && !result_.selected.empty()) find_intervals();
   if (progress_.go_on("next experiment")) propose();
   progress_.clock("next experiment");
@@ -270,7 +392,7 @@ Trace Tracer::run() {
 }  // namespace
 
 Trace trace(const Experiment& experiment, const TraceOptions& options) {
-  return Tracer(experiment, options, Division(experiment, options)).run();
+  return Tracer(experiment, options, Division(experiment)).run();
 }
 
 }  // namespace snare::identification

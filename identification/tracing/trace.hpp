@@ -4,6 +4,7 @@
 #include "identification/tracing/next_experiment.hpp"
 #include "identification/tracing/residual_tests.hpp"
 #include "identification/tracing/round.hpp"
+#include "identification/tracing/verdict.hpp"
 
 #include <functional>
 #include <optional>
@@ -14,10 +15,11 @@
 namespace snare::identification {
 
 struct Trace {
-  std::vector<Series> series;  ///< as used: a published law replaced by readings drawn about it
+  std::vector<Series> series;  ///< as used: a published law at its travels in the place of readings
   std::vector<bool> heldout;   ///< one a series
   Noise noise;
-  bool drawn = false;       ///< readings were drawn about published laws
+  bool from_laws = false;   ///< published fits stand for readings: only their three numbers count
+  std::size_t rows = 0;     ///< readings, and numbers of published fits, that are fitted
   double mesh_error = 0.0;  ///< largest discretisation error of the final model [N]
   ModelError declared, base, final;
   std::vector<Setting> final_settings;  ///< of the final model: see Model::apply
@@ -29,17 +31,25 @@ struct Trace {
   /// Of each selected effect: itself and what these data cannot tell from it. Of the first also
   /// "outside:CHANNEL" for every channel of `alternatives`, a cause that the catalogue does not have.
   std::vector<std::vector<std::string>> selected_classes;
-  std::vector<std::string> partial;  ///< effects that were added but leave a residual: not selected
+  std::vector<std::string> partial;  ///< effects that were added but leave too much: not selected
   double partial_rmse = 0.0;
   bool rival_explanation = false;  ///< those effects would do, but one function of one channel is the simpler cause
-  bool explained = false;
-  std::string channel;  ///< of the first effect selected, or where the residual comes from; empty: unknown
+  VerdictKind kind = VerdictKind::not_explained;
+  bool explained = false;      ///< nothing is missing, or the selected effects explain what is
+  bool decided = false;        ///< explained, every class of one member, and a condition left out is predicted better
+  bool few_readings = false;   ///< one more number would leave too few degrees of freedom: effects were not asked
+  bool one_condition = false;  ///< one position and one slack: channels cannot be told from each other
+  double tolerance = 0.0;      ///< error below which nothing is called missing [N]
+  double peak_force = 0.0;     ///< largest measured one [N]
+  Remaining remaining;
+  std::vector<Finding> findings;  ///< of the final model
+  std::string channel;            ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
   std::vector<ChannelFunction>
       alternatives;  ///< when it does: causes outside it, in other channels, that would as well
   std::optional<std::pair<double, double>> heldout_rmse;  ///< base, final [N]
   std::optional<std::pair<double, double>>
-      left_out_rmse;  ///< likewise of every series predicted from the others, to first order
+      left_out_rmse;  ///< likewise of every condition predicted from the others, to first order
   std::optional<NextExperiment> next;
   std::vector<std::pair<std::string, double>> seconds;  ///< where the time went
   bool interrupted = false;
@@ -51,10 +61,8 @@ struct TraceOptions {
   int most_effects = 3;
   double significance = 0.02;           ///< of the first effect's score after Holm: one false alarm in fifty
   double further_significance = 0.002;  ///< of a further effect's: one by chance beside a true one is an error too
-  unsigned seed = 1;                    ///< of the noise drawn about published laws
-  bool draw = true;       ///< draw it; false: the law itself stands for the readings (for fits, not for tests)
-  bool attribute = true;  ///< ask the channels when the catalogue does not explain the residual
-  bool intervals = true;  ///< profile likelihood of the selected effects' numbers
+  bool attribute = true;                ///< ask the channels when the catalogue does not explain the residual
+  bool intervals = true;                ///< profile likelihood of the selected effects' numbers
   std::function<bool(const std::string& stage)> progress;  ///< false stops
 };
 

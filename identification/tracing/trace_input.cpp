@@ -6,33 +6,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <utility>
 
 namespace snare::identification {
 
-namespace {
+namespace {}  // namespace
 
-/// Readings drawn about a published law with the scatter that its R^2 implies.
-Readings drawn_about(const Series& series, std::mt19937& random, bool draw) {
-  std::normal_distribution<double> normal(0.0, series.law->scatter());
-  Readings r;
-  r.displacement = series.test.travel;
-  for (const double d : r.displacement) r.force.push_back(series.law->force(d) + (draw ? normal(random) : 0.0));
-  return r;
-}
-
-}  // namespace
-
-bool replace_laws(std::vector<Series>& series, bool draw, unsigned seed) {
-  std::mt19937 random(seed);
-  bool drawn = false;
+bool replace_laws(std::vector<Series>& series) {
+  bool any = false;
   for (Series& s : series) {
     if (s.readings || !s.law) continue;
-    s.readings = drawn_about(s, random, draw);
-    if (!s.force_sigma) s.force_sigma = s.law->scatter();
-    drawn = drawn || draw;
+    Readings r;
+    r.displacement = s.test.travel;
+    for (const double d : r.displacement) r.force.push_back(s.law->force(d));
+    s.readings = std::move(r);
+    any = true;
   }
-  return drawn;
+  return any;
 }
 
 void check_readings(const std::filesystem::path& file, const std::vector<Series>& series,

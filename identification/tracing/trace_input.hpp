@@ -8,10 +8,9 @@
 
 namespace snare::identification {
 
-/// Puts readings in the place of published laws: the law at its travels, with noise of the scatter that its
-/// R^2 implies (`draw`, from a seed) or without. A series without a declared sigma gets that scatter. Whether
-/// noise was drawn.
-[[nodiscard]] bool replace_laws(std::vector<Series>& series, bool draw, unsigned seed);
+/// Puts the law itself at its travels in the place of readings that were never published. Only its three numbers count
+/// (Noise::summary), so that a curve may leave the parabola as the readings did. Whether there was any.
+[[nodiscard]] bool replace_laws(std::vector<Series>& series);
 
 /// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that do not
 /// follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only readings.

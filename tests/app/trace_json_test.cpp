@@ -25,6 +25,8 @@ TEST(TraceJson, HasTheNumbersOfTheTrace) {
   EXPECT_NEAR(t["series"][0]["law"]["final_rmse_N"].get<double>(), 0.0765, 5e-5) << "last digit of the number above";
   EXPECT_FALSE(t["series"][1].contains("law"));
   EXPECT_EQ(t["decided"], true);
+  EXPECT_EQ(t["verdict_kind"], "explained");
+  EXPECT_TRUE(t["remaining"].contains("rmse_N"));
   EXPECT_EQ(t["next_experiment"]["difference_sigma"], 8.4);
 }
 

@@ -40,7 +40,7 @@ inline identification::Candidate candidate(const char* effect, double z, double 
   return c;
 }
 
-/// Two series, the second held out, the readings of the first drawn about a published law; one effect added.
+/// Two series, the second held out, of the first a published law; one effect added.
 inline identification::Trace explained_trace() {
   using identification::FittedNumber;
   identification::Trace t;
@@ -49,7 +49,7 @@ inline identification::Trace explained_trace() {
   t.heldout = {false, true};
   t.noise.sigma = {0.148, 0.148};
   t.noise.source = "declared";
-  t.drawn = true;
+  t.from_laws = true;
   t.mesh_error = 0.00627;
   t.declared = {348.4, 29.6, 6107038.0, {}, {}};
   const FittedNumber base{"wire.axial_stiffness_N", "N", 341059.0, 17216.4, 617.0, 16047.2, 18470.9, false};
@@ -91,7 +91,8 @@ inline identification::Trace explained_trace() {
   t.selected_classes = {{"plasticity"}};
   t.heldout_rmse = {0.301, 0.205};
   t.left_out_rmse = {0.5, 0.7};
-  t.explained = true;
+  t.explained = t.decided = true;
+  t.kind = identification::VerdictKind::explained;
   t.channel = "wire";
   t.seconds = {{"reading", 1e-05}, {"base fit", 3.65}, {"intervals", 4.81}};
   t.next = identification::NextExperiment{"push at s = 30 mm", {"plasticity", "span"}, 1.25, 8.4};
@@ -101,7 +102,8 @@ inline identification::Trace explained_trace() {
 inline identification::Trace unexplained_trace() {
   using identification::Channel;
   identification::Trace t = explained_trace();
-  t.explained = false;
+  t.explained = t.decided = false;
+  t.kind = identification::VerdictKind::not_explained;
   t.selected.clear();
   t.selected_classes.clear();
   t.final = t.base;

@@ -50,7 +50,7 @@ TEST(TraceReport, SaysWhereTheNoiseIsFrom) {
              {"from the spread of repeated series; 25 % of its variance is smooth, over 12 mm of travel",
               "only the lack of fit counts"});
   trace.noise.smooth = 0.0;
-  trace.drawn = false;
+  trace.from_laws = false;
   EXPECT_TRUE(contains(page_of(trace), "<div class=\"remark\">from the spread of repeated series</div>"));
   trace.noise.source = "declared";
   EXPECT_TRUE(contains(page_of(trace), "as declared in the experiment file"));
@@ -187,6 +187,7 @@ TEST(TraceReport, DrawsTheFunctionWithItsBand) {
 TEST(TraceReport, ListsEffectsThatCannotBeToldApart) {
   Trace trace = explained_trace();
   trace.selected_classes = {{"plasticity", "mount_slip"}};
+  trace.decided = false;
   EXPECT_TRUE(contains(page_of(trace), "<div class=\"value\">plasticity or mount slip</div>"));
   trace.alternatives = {unexplained_trace().functions.front()};
   trace.selected_classes = {{"plasticity", "outside:pusher"}};
@@ -202,8 +203,31 @@ TEST(TraceReport, SaysWhenNothingIsMissing) {
   Trace trace = explained_trace();
   trace.selected.clear();
   trace.significant = false;
+  trace.kind = identification::VerdictKind::nothing_missing;
   expect_all(page_of(trace),
              {"none missing", "no effect is missing.", "What the base model leaves cannot be told from noise."});
+}
+
+TEST(TraceReport, SaysWhatIsLeftOfAPartialAnswer) {
+  Trace trace = explained_trace();
+  trace.kind = identification::VerdictKind::partly_explained;
+  trace.explained = trace.decided = false;
+  trace.peak_force = 10.0;
+  trace.remaining = {0.05, 0.1, 0.011, "sensor"};
+  expect_all(page_of(trace),
+             {"Partly explained. plasticity: the metal of the wire yields.",
+              "Left is 0.05 N rms that is not noise, at most 0.1 N (1 % of the largest force), 1.1 % of",
+              "it comes nearest to the sensor", "in part; at most 0.100 N rms is left"});
+}
+
+TEST(TraceReport, SaysWhatNoSuchWireHas) {
+  Trace trace = explained_trace();
+  trace.kind = identification::VerdictKind::not_explained;
+  trace.explained = trace.decided = false;
+  trace.selected.clear();
+  trace.findings = {{"wire.axial_stiffness_N", 1.5e6, 3.4e5, "N", true}};
+  expect_all(page_of(trace), {"with numbers that no such wire has",
+                              "wire.axial_stiffness_N = 1.5e+06 N is 4.41 times that of a solid section"});
 }
 
 // What a run has before its first round: no rounds, no predictions of the final model, no noise yet.
@@ -211,6 +235,7 @@ TEST(TraceReport, ShowsWhatAnInterruptedRunKnows) {
   Trace trace = explained_trace();
   trace.interrupted = true;
   trace.explained = false;
+  trace.kind = identification::VerdictKind::not_explained;
   trace.selected.clear();
   trace.rounds.clear();
   trace.noise.sigma.clear();

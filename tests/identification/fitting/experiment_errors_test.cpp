@@ -99,6 +99,11 @@ const WrongFile wrong_files[] = {
      "x.toml:25: series[s40].path_mm = [0], must be an array of 2 to 10000 numbers"},
     {"travel_mm = 2.0\npoints = 21", "path_mm = [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]\npoints = 1_000_000",
      "x.toml:26: series[s40].points = 1_000_000, gives 11999989 points on the path, must give at most 10000000"},
+    {"heldout = [\"s65\"]", "per_series = [\"wire.length_mm\"]",
+     "x.toml:35: fit.per_series[1] = \"wire.length_mm\", is in free, too: it cannot be one number for all series and "
+     "one "
+     "for each"},
+    {"heldout = [\"s65\"]", "model_tolerance = 2", "x.toml:35: fit.model_tolerance = 2, must be >= 0 and <= 0.5"},
     {"R2 = 0.998", "R2 = 0.0", "x.toml:31: series[s65].law.R2 = 0.0, must be > 0 and <= 1"},
     {"title = \"a loose wire\"", "solver = { elements = 65 }",
      "x.toml:2: solver.elements = 65, must be a multiple of 4"},

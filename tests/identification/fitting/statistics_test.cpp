@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace snare::identification {
@@ -29,6 +30,32 @@ TEST(Statistics, TailOfAMixtureOfChiSquares) {
     EXPECT_NEAR(chi_square_mixture_tail(x, Eigen::Vector4d(a, a, b, b)), exact, 0.1 * exact) << x;
   }
   EXPECT_EQ(chi_square_mixture_tail(1.0, Eigen::VectorXd::Zero(3)), 1.0);
+}
+
+TEST(Statistics, TailsOfStudentAndFisherOfTables) {
+  EXPECT_NEAR(student_tail(2.570582, 5.0), 0.025, 1e-7);
+  EXPECT_NEAR(student_tail(1.959964, std::numeric_limits<double>::infinity()), 0.025, 1e-7);
+  EXPECT_NEAR(fisher_tail(5.409451, 3.0, 5.0), 0.05, 1e-6);
+  EXPECT_NEAR(fisher_tail(18.307038 / 10.0, 10.0, std::numeric_limits<double>::infinity()), 0.05, 1e-7);
+}
+
+// By simulation: of F seen with the noncentrality l the bound lies above l in 95 % of cases.
+TEST(Statistics, TheBoundOfANoncentralityHolds) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  for (const double below : {6.0, std::numeric_limits<double>::infinity()}) {
+    std::chi_squared_distribution<double> variance(std::isfinite(below) ? below : 1.0);
+    int held = 0;
+    constexpr int trials = 1000;
+    for (int k = 0; k < trials; ++k) {
+      double q = std::pow(normal(random) + 4.0, 2);
+      for (int i = 1; i < 8; ++i) q += std::pow(normal(random), 2);
+      const double scale = std::isfinite(below) ? variance(random) / below : 1.0;
+      held += noncentrality_upper(q / 8.0 / scale, 8.0, below, 0.95) >= 16.0 ? 1 : 0;
+    }
+    EXPECT_NEAR(held, 950, 28);  // four deviations of 6.9
+  }
+  EXPECT_EQ(noncentrality_upper(0.01, 8.0, 100.0, 0.95), 0.0);
 }
 
 TEST(Statistics, HolmByHand) {
@@ -90,43 +117,107 @@ TEST(Noise, SecondDifferencesSeeThroughASmoothMisfit) {
     d.push_back(1e-6 * i);
     f.push_back(r[i]);
   }
-  const Noise noise = noise_from_residuals({record(d, f)}, {r});
+  const Noise noise = noise_from_residuals({record(d, f)}, {r}, {Eigen::VectorXd::Zero(2000)});
   EXPECT_EQ(noise.source, "residual");
   EXPECT_NEAR(noise.sigma[0], 0.2, 0.02);  // 1.5 % standard deviation
+  EXPECT_NEAR(noise.dof, 18.0 / 35.0 * 1998.0, 1.0);
 }
 
-TEST(Noise, OfReplicatesHasItsIndependentAndItsSmoothPart) {
-  std::mt19937 random(6);
-  std::normal_distribution<double> normal;
+/// Six replicates of a curve to peak travels up to 5 % apart: smooth deviations of `smooth` [N], sums of four waves with
+/// random phases, and independent ones of `white` [N].
+struct Replicates {
   std::vector<Series> series;
-  for (int k = 0; k < 8; ++k) {
+  std::vector<Eigen::VectorXd> residuals, computed;
+};
+Replicates replicates_of(unsigned seed, double smooth, double white, int readings) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  Replicates result;
+  for (int k = 0; k < 6; ++k) {
+    const double peak = 3e-3 * (1.0 - 0.05 * uniform(random));
     std::vector<double> d, f;
-    const double a = normal(random);
-    const double b = normal(random);
-    for (int i = 0; i < 300; ++i) {
-      const double u = i / 299.0;
-      d.push_back(3e-3 * u);
-      f.push_back(5.0 * u * u + 0.3 * (a * std::sin(6.0 * u) + b * std::cos(6.0 * u)) + 0.05 * normal(random));
+    Eigen::VectorXd r(readings);
+    Eigen::VectorXd computed(readings);
+    double waves[4][2];
+    for (auto& wave : waves) wave[0] = normal(random), wave[1] = normal(random);
+    for (int i = 0; i < readings; ++i) {
+      const double u = peak * i / (readings - 1);
+      double state = 0.0;
+      for (int j = 0; j < 4; ++j) {
+        const double phase = (1.0 + 1.5 * j) * u / 3e-3;
+        state += 0.5 * (waves[j][0] * std::cos(phase) + waves[j][1] * std::sin(phase));
+      }
+      computed[i] = 5e6 * u * u;
+      r[i] = smooth * state + white * normal(random);
+      d.push_back(u);
+      f.push_back(computed[i] + r[i]);
     }
-    series.push_back(record(d, f));
+    result.series.push_back(record(d, f));
+    result.residuals.push_back(r);
+    result.computed.push_back(computed);
   }
-  EXPECT_EQ(replicates(series).size(), 1u);
-  const Noise noise = known_noise(series);
+  return result;
+}
+
+// Six draws of a smooth process have some 5 x 3 degrees of freedom: 20 % of sigma is 1.1 deviations of one set's
+// estimate, so that the mean of many sets is looked at beside most of them.
+TEST(Noise, OfReplicatesWithPeakTravelsApart) {
+  double mean = 0.0;
+  double independent = 0.0;
+  int near = 0;
+  constexpr int sets = 40;
+  for (unsigned seed = 1; seed <= sets; ++seed) {
+    const Replicates r = replicates_of(seed, 0.3, 0.05, 150);
+    const Noise noise = noise_from_residuals(r.series, r.residuals, r.computed);
+    ASSERT_EQ(noise.source, "replicates");
+    const double ratio = noise.sigma[0] / std::hypot(0.3, 0.05);
+    mean += ratio / sets;
+    independent += noise.sigma[0] * std::sqrt(1.0 - noise.smooth) / 0.05 / sets;
+    near += std::abs(ratio - 1.0) < 0.2 ? 1 : 0;
+    EXPECT_LT(noise.dof, 60.0);
+  }
+  EXPECT_NEAR(mean, 1.0, 0.08);         // its own standard deviation 0.03; the shape of the process is known
+  EXPECT_NEAR(independent, 1.0, 0.05);  // from 900 readings a set
+  EXPECT_GE(near, 26);                  // two of three: 1.1 deviations and their scatter over 40 sets
+}
+
+TEST(Noise, OfReplicatesWithoutASmoothPartIsWhite) {
+  const Replicates r = replicates_of(3, 0.0, 0.05, 60);
+  const Noise noise = noise_from_residuals(r.series, r.residuals, r.computed);
   EXPECT_EQ(noise.source, "replicates");
-  // Eight specimens: 0.3 and 0.05 to a quarter.
-  EXPECT_NEAR(noise.sigma[0], std::hypot(0.3, 0.05), 0.1);
-  EXPECT_NEAR(noise.smooth, 0.97, 0.03);
-  EXPECT_GT(noise.length, 1e-4);
-  // Whitened deviations of a fresh specimen of the same kind are about of unit variance.
-  const Eigen::MatrixXd white = noise.whiten(0, Eigen::VectorXd::Constant(300, 0.3));
-  EXPECT_LT(white.squaredNorm(), 300.0);  // a shift of all readings is one number, not 300
+  EXPECT_TRUE(noise.filter.empty());
+  EXPECT_NEAR(noise.sigma[0], 0.05, 0.005);  // 300 degrees of freedom: 4 %
+}
+
+// L^-1 V L^-T = I, V from the definition and the inverse factor by whitening the unit vectors.
+TEST(Noise, TheFilterWhitensItsCovariance) {
+  constexpr int n = 12;
+  std::vector<double> d, height;
+  for (int i = 0; i < n; ++i) {
+    d.push_back(i < 8 ? 1e-3 * i * i : 1e-3 * (100.0 - 6.0 * i));  // forth and back
+    height.push_back(0.1 + 0.05 * i);
+  }
+  const Series s = record(d, std::vector<double>(n, 0.0));
+  Noise noise;
+  noise.filter = {noise_filter(s, 0.2, 0.03, height)};
+  const Eigen::MatrixXd inverse = noise.whiten(0, Eigen::MatrixXd::Identity(n, n));
+  Eigen::MatrixXd covariance(n, n);
+  std::vector<double> path(n, 0.0);
+  for (int i = 1; i < n; ++i) path[i] = path[i - 1] + std::abs(d[i] - d[i - 1]);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      covariance(i, j) = height[i] * height[j] * std::exp(-std::abs(path[i] - path[j]) / 0.03) + (i == j ? 0.04 : 0.0);
+    }
+  }
+  EXPECT_LT((inverse * covariance * inverse.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-12);  // roundings
 }
 
 TEST(Noise, DeclaredCountsFirst) {
   Series s = record({0.0, 1e-3, 2e-3}, {0.0, 1.0, 2.0});
-  EXPECT_TRUE(known_noise({s}).sigma.empty());
+  EXPECT_TRUE(declared_noise({s}).sigma.empty());
   s.force_sigma = 0.1;
-  EXPECT_EQ(known_noise({s, s}).source, "declared");
+  EXPECT_EQ(declared_noise({s, s}).source, "declared");
 }
 
 }  // namespace

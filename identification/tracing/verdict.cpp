@@ -1,0 +1,49 @@
+#include "identification/tracing/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace snare::identification {
+
+std::string to_string(VerdictKind kind) {
+  static constexpr const char* names[] = {"nothing_missing", "explained", "partly_explained", "not_explained"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+double peak_force(const Data& data) {
+  double peak = 0.0;
+  for (const std::size_t k : data.series) peak = std::max(peak, data.measured[k].cwiseAbs().maxCoeff());
+  return peak;
+}
+
+double model_tolerance(const Experiment& experiment, const Data& data) {
+  if (experiment.model_tolerance) return *experiment.model_tolerance * peak_force(data);
+  return data.noise.source == "declared" ? 0.0 : usual_tolerance * peak_force(data);
+}
+
+std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers) {
+  constexpr double sure_beyond = 1.5;
+  const wire::WireSpecification& wire = model.series().front().test.wire;
+  std::vector<Finding> findings;
+  if (!model.series().front().modulus_declared || !(wire.youngs_modulus > 0.0) || !(wire.diameter > 0.0))
+    return findings;
+  const double square = wire.diameter * wire.diameter;
+  const double area = 0.25 * std::numbers::pi * square;
+  for (const FittedNumber& n : numbers) {
+    double limit = 0.0;
+    if (n.key.ends_with("wire.axial_stiffness_N")) limit = wire.youngs_modulus * area;
+    if (n.key.ends_with("wire.bending_stiffness_Nm2")) limit = wire.youngs_modulus * area * square / 16.0;
+    if (limit == 0.0 || !(n.value > limit)) continue;
+    findings.push_back({n.key, n.value, limit, n.unit, n.lower && *n.lower > sure_beyond * limit});
+  }
+  return findings;
+}
+
+double share_left(const Remainder& base, const Remainder& final) {
+  if (!(base.rmse > 0.0)) return 0.0;
+  return std::min(1.0, std::pow(final.rmse / base.rmse, 2));
+}
+
+}  // namespace snare::identification

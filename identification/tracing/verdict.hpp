@@ -1,0 +1,57 @@
+#pragma once
+
+#include "identification/tracing/model_error.hpp"
+#include "identification/tracing/remainder.hpp"
+
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// How far a trace explains the readings.                                            theory.md (I.9)
+enum class VerdictKind {
+  nothing_missing,   ///< the base model does: what it leaves is noise, or within the tolerance
+  explained,         ///< the base model with the selected effects does
+  partly_explained,  ///< the selected effects carry nearly all; what is left is small and said
+  not_explained
+};
+[[nodiscard]] std::string to_string(VerdictKind kind);
+
+/// A fitted number that no wire of the declared construction has.
+struct Finding {
+  std::string key;
+  double value = 0.0;  ///< in its unit
+  double limit = 0.0;  ///< of the solid section
+  std::string unit;
+  bool sure = false;  ///< the whole interval lies beyond what a thicker or stiffer wire could have
+};
+
+/// What is left after the final model, when it is more than noise.
+struct Remaining {
+  double rmse = 0.0;             ///< [N]
+  double upper = 0.0;            ///< 95 % [N]
+  double share_of_excess = 0.0;  ///< of what the base model leaves beside the noise, as mean squares
+  std::string channel;           ///< where it comes nearest to; empty: nothing is left, or not asked
+};
+
+/// Limits of a partial answer: 2 % of the excess, and 3 % of the largest force with 95 % confidence.
+inline constexpr double most_share_left = 0.02;
+inline constexpr double most_force_left = 0.03;
+/// Share of the largest force below which nothing is called missing, unless the file says otherwise.
+inline constexpr double usual_tolerance = 0.01;
+
+/// Largest measured force of the fitted readings, either sign [N].
+[[nodiscard]] double peak_force(const Data& data);
+
+/// The tolerance [N]: the file's share of the peak force, else the usual one; none where every series declares how good
+/// its readings are, since what they show then is what the file asks for.
+[[nodiscard]] double model_tolerance(const Experiment& experiment, const Data& data);
+
+/// EA and EI beyond those of a solid round section of the declared diameter and modulus. `sure` beyond 1.5 times: a
+/// diameter 6 % larger and a modulus 10 % higher give EI 1.4 times as large. Nothing where the modulus is not declared.
+[[nodiscard]] std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers);
+
+/// Share of what `base` leaves beside the noise that `final` still leaves, as mean squares; in [0, 1].
+[[nodiscard]] double share_left(const Remainder& base, const Remainder& final);
+
+}  // namespace snare::identification
