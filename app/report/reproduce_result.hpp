@@ -60,6 +60,8 @@ struct Reproduction {
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
   std::vector<RangeVerdict> verdicts;
+  std::vector<std::string> warnings;  ///< what is doubtful about the models
+  bool interrupted = false;           ///< this is a part of what was asked for
 
   /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
   /// no model has one.
