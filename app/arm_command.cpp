@@ -1,6 +1,7 @@
 #include "app/arm_command.hpp"
 
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "multibody/arm/arm_file.hpp"
@@ -10,7 +11,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <iostream>
+#include <string>
 
 namespace snare::app {
 
@@ -115,36 +116,41 @@ std::string listed(const nlohmann::json& values) {
 }  // namespace
 
 ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options,
-                        Console&) {
+                        Console& console) {
   const std::vector<base::Override> overrides = overrides_of(options);
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
-  const nlohmann::json result = describe(arm, angles_of(pose, arm));
+  const Eigen::VectorXd angles = angles_of(pose, arm);
+  const KeepWhenInterrupted word({}, options.json ? "snare-arm-show/1" : "");
+  console.progress(fmt::format("natural frequencies of {} joints", arm.arm.motors()));
+  const nlohmann::json result = describe(arm, angles);
+  console.end_progress();
+  begin_writing();
   if (options.json) {
-    std::cout << result.dump(1) << '\n';
+    print(result.dump(1) + "\n");
     return ExitStatus::done;
   }
-  std::cout << fmt::format(
+  std::string text = fmt::format(
       "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n", arm.title,
       result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(), result["reach_m"].get<double>(),
       result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(), result["tip_m"][2].get<double>());
-  std::cout << fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
-                           "motor [kg m2]", "stiffness [N m/rad]", "drive");
+  text += fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
+                      "motor [kg m2]", "stiffness [N m/rad]", "drive");
   for (const nlohmann::json& joint : result["joints"]) {
     const double first = joint["stiffness_first_Nm_rad"], outer = joint["stiffness_outer_Nm_rad"];
-    std::cout << fmt::format(
-        "{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
-        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(), joint["link_mass_kg"].get<double>(),
-        joint["motor_inertia_kg_m2"].get<double>(),
-        first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
-        joint["drive"].get<std::string>());
+    text += fmt::format("{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
+                        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
+                        joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
+                        first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
+                        joint["drive"].get<std::string>());
   }
-  std::cout << fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
+  text += fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {
-    std::cout << fmt::format("  the same, large deflections  {}\n",
-                             listed(result["frequencies_locked_large_deflection_Hz"]));
+    text +=
+        fmt::format("  the same, large deflections  {}\n", listed(result["frequencies_locked_large_deflection_Hz"]));
   }
-  std::cout << fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
-                           listed(result["frequencies_limp_Hz"]));
+  text += fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
+                      listed(result["frequencies_limp_Hz"]));
+  print(text);
   return ExitStatus::done;
 }
 

@@ -1,8 +1,10 @@
 #include "app/commands.hpp"
 #include "app/compare_motions.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/report/compare_report.hpp"
 #include "app/report/plot.hpp"
+#include "app/result_folder.hpp"
 #include "base/files.hpp"
 #include "base/toml_tree.hpp"
 #include "identification/effects/catalogue.hpp"
@@ -15,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
 
 namespace snare::app {
 
@@ -123,6 +126,20 @@ nlohmann::json case_json(const CaseComparison& one) {
           {"stopped", one.report.usable() ? nlohmann::json() : nlohmann::json(one.report.message)}};
 }
 
+void write_files(const CommonOptions& options, const Comparison& comparison,
+                 const std::vector<CaseComparison>& results) {
+  const bool partial = results.size() < comparison.cases.size();
+  nlohmann::json json{{"schema", "snare-comparison/1"}, {"version", version()}, {"interrupted", partial},
+                      {"title", comparison.title},      {"kind", "static"},     {"cases", nlohmann::json::array()}};
+  for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
+  base::write_text(options.out / "report.html", compare_report_html(comparison.title, results, partial));
+  write_result(options, "compare.json", json);
+}
+
+std::string part_words(const Comparison& comparison, const std::vector<CaseComparison>& results) {
+  return fmt::format("a part is kept, {} of {} cases", results.size(), comparison.cases.size());
+}
+
 }  // namespace
 
 ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
@@ -132,30 +149,35 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
   if (schema != nullptr && schema->text.starts_with("snare-scenario/")) return compare_motions(file, options, console);
   const Comparison comparison = read(file, overrides);
 
+  const ResultFolder folder(options, {"compare.json", "report.html"});
   // One after the other: their cost is measured.
   std::vector<CaseComparison> results;
+  std::mutex mutex;  // of results: what is finished may be asked for while a case runs
+  const KeepWhenInterrupted keeping(
+      [&] {
+        const std::scoped_lock lock(mutex);
+        write_files(options, comparison, results);
+        return part_words(comparison, results);
+      },
+      "");
   ExitStatus status = ExitStatus::done;
   for (const StaticCase& one : comparison.cases) {
-    if (interrupted()) {
-      console.complain("interrupted");
-      status = ExitStatus::solver_stopped;
-      break;
-    }
+    if (interrupted()) break;
     console.progress(fmt::format("case {}", one.name));
-    results.push_back(reduction::compare_static(one, comparison.settings));
+    CaseComparison compared = reduction::compare_static(one, comparison.settings);
+    const std::scoped_lock lock(mutex);
+    results.push_back(std::move(compared));
     if (results.back().report.usable()) continue;
     console.complain(fmt::format("case {}: {}", one.name, results.back().report.message));
     status = ExitStatus::solver_stopped;
   }
   console.end_progress();
-  nlohmann::json json{{"schema", "snare-comparison/1"},
-                      {"version", version()},
-                      {"title", comparison.title},
-                      {"kind", "static"},
-                      {"cases", nlohmann::json::array()}};
-  for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
-  write_result(options, "compare.json", json);
-  base::write_text(options.out / "report.html", compare_report_html(comparison.title, results));
+  begin_writing();
+  write_files(options, comparison, results);
+  if (results.size() < comparison.cases.size()) {
+    console.complain("interrupted: " + part_words(comparison, results));
+    status = ExitStatus::solver_stopped;
+  }
   if (options.json) return status;
   for (const CaseComparison& one : results) {
     for (const reduction::ModelResult& m : one.models) {

@@ -1,16 +1,19 @@
 #include "app/compare_motions.hpp"
 
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/motion_runs.hpp"
 #include "app/motion_summary.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/report_words.hpp"
+#include "app/result_folder.hpp"
 #include "base/files.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -100,11 +103,17 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
   if (motions == nullptr || !motions->composed)
     throw base::InputError(
         {file.string(), 0, "schema", asked.kind, "must be \"snare-scenario/2\": a scenario that lists what there is"});
+  const ResultFolder folder(options, {"compare.json", "report.html", "checkpoint.bin"});
+  const KeepWhenInterrupted word({}, options.json ? "snare-comparison/1" : "");
   scenario::WireMotions with = *motions;
   with.runs = with_models(motions->runs.front());
   const std::vector<MotionRecord> records = run_motions(
       with.runs, {options.out / "checkpoint.bin", "compare\n" + motions->input, motions->output.checkpoint_wall_time},
       console);
+  begin_writing();
+  const bool partial = records.size() < with.runs.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
+                         return r.result.report.termination == numerics::Termination::interrupted;
+                       });
   json models = json::array();
   std::optional<json> reference;
   for (const FinishedMotion& run : finished_motions(with, records)) {
@@ -124,6 +133,7 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
                 {"version", version()},
                 {"title", asked.title},
                 {"kind", "motion"},
+                {"interrupted", partial},
                 {"models", models}});
   base::write_text(options.out / "report.html", page_of(asked.title, asked.source, models));
   if (!options.json) {

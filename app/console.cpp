@@ -1,5 +1,6 @@
 #include "app/console.hpp"
 
+#include "app/interruption.hpp"
 #include "base/files.hpp"
 
 #include <fmt/core.h>
@@ -7,37 +8,21 @@
 
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
+#include <cerrno>
 #include <cstdio>
-#include <iostream>
+#include <system_error>
 
 namespace snare::app {
-
-namespace {
-
-std::atomic<bool> interrupt_flag{false};
-
-extern "C" void on_signal(int number) {
-  interrupt_flag.store(true);
-  std::signal(number, SIG_DFL);  // a second one ends the process
-}
-
-}  // namespace
-
-bool interrupted() noexcept {
-  return interrupt_flag.load();
-}
-
-void catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-}
 
 void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result) {
   const std::string text = result.dump(1) + "\n";
   base::write_text(options.out / file, text);
-  if (options.json) std::cout << text;
+  if (options.json) print(text);
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw std::system_error(errno, std::generic_category(), "standard output: cannot be written");
 }
 
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -56,6 +41,7 @@ void Console::complain(const std::string& text) {
 }
 
 void Console::progress(const std::string& text) {
+  set_stage(text);
   if (quiet_ || !terminal_) return;
   const std::scoped_lock lock(mutex_);
   fmt::print(stderr, "\r\033[K{}", text);

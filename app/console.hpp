@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/exit_status.hpp"
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
@@ -9,16 +11,14 @@
 
 namespace snare::app {
 
-/// Exit statuses of the command.
-enum class ExitStatus : int { done = 0, failure = 1, wrong_input = 2, solver_stopped = 3, row_out_of_limit = 4 };
-
 /// Options that every verb has.
 struct CommonOptions {
   std::filesystem::path out;           ///< folder of the results
   int threads = 0;                     ///< 0: one a processor
   std::vector<std::string> overrides;  ///< "key=value"
   bool quiet = false;
-  bool json = false;  ///< the result on standard output
+  bool json = false;    ///< the result on standard output
+  std::string command;  ///< the verb and its file, as a message names them: "snare push x.toml"
 };
 
 /// What the command says to a person, on standard error: messages, and progress on a terminal.
@@ -28,7 +28,9 @@ class Console {
 
   void say(const std::string& text);
   void complain(const std::string& text);
-  /// Progress in one line that is overwritten; nothing where standard error is no terminal.
+  /// What is doubtful about a result; it stands in the result, too.
+  void warn(const std::string& text) { say("warning: " + text); }
+  /// Progress in one line that is overwritten; nothing where standard error is no terminal. Also the stage of an interruption.
   void progress(const std::string& text);
   void end_progress();
 
@@ -39,11 +41,11 @@ class Console {
   bool pending_ = false;
 };
 
-/// Writes a result into its file in the folder of the results, and to standard output where that is asked for.
+/// Writes a result into its file in the folder of the results, and to standard output where that is asked for: the last thing that a
+/// verb writes.
 void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result);
 
-/// Set by SIGINT and SIGTERM: long work stops at its next point and keeps what it has.
-[[nodiscard]] bool interrupted() noexcept;
-void catch_interrupts();
+/// Text on standard output, down to where the system takes it. Throws std::system_error.
+void print(const std::string& text);
 
 }  // namespace snare::app

@@ -1,13 +1,18 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/law_json.hpp"
 #include "app/report/distil_report.hpp"
+#include "app/result_folder.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "reduction/law_export.hpp"
+#include "wire/physical_range.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace snare::app {
 
@@ -51,30 +56,58 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
   base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
 }
 
+std::vector<std::string> doubts_of(const reduction::WireFile& file) {
+  std::vector<std::string> all;
+  for (const reduction::WireCase& wire : file.cases) {
+    for (std::string& doubt : wire::doubts(wire.test.wire)) {
+      if (std::find(all.begin(), all.end(), doubt) == all.end()) all.push_back(std::move(doubt));
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
 
+  const ResultFolder folder(options, {"law.json", "table.csv", "report.html", "distil.journal"});
   const std::filesystem::path journal = options.out / "distil.journal";
+  const KeepWhenInterrupted keeping(
+      [&journal] {
+        return fmt::format("the curves that were finished are kept in {}; the same command goes on", journal.string());
+      },
+      options.json ? "snare-law/1" : "");
   const reduction::Distillation result =
       reduction::distil(wire, journal, [&](std::size_t finished, std::size_t wanted) {
         console.progress(fmt::format("curve {} of {}", finished, wanted));
         return !interrupted();
       });
   console.end_progress();
+  begin_writing();
   if (!result.report.usable()) {
     console.complain(
         fmt::format("{}; the curves that were reached are kept in {}", result.report.message, journal.string()));
+    if (options.json) {
+      const nlohmann::json word{{"schema", "snare-law/1"},
+                                {"interrupted", result.report.termination == numerics::Termination::interrupted},
+                                {"stopped", result.report.message},
+                                {"kept", journal.string()}};
+      print(word.dump(1) + "\n");
+    }
     return ExitStatus::solver_stopped;
   }
-  write_result(options, "law.json", law_json(wire, result));
+  const std::vector<std::string> warnings = doubts_of(wire);
+  for (const std::string& warning : warnings) console.warn(warning);
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
     write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c]);
   }
-  base::write_text(options.out / "report.html", distil_report_html(wire, result));
+  base::write_text(options.out / "report.html", distil_report_html(wire, result, warnings));
+  nlohmann::json written = law_json(wire, result);
+  written["warnings"] = warnings;
+  write_result(options, "law.json", written);
   std::filesystem::remove(journal);
   if (options.json) return ExitStatus::done;
   for (const reduction::DistilledCase& one : result.cases) {

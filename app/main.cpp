@@ -1,5 +1,7 @@
 #include "app/arm_command.hpp"
 #include "app/commands.hpp"
+#include "app/interruption.hpp"
+#include "app/result_folder.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 
@@ -9,8 +11,11 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <iterator>
 #include <new>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -89,6 +94,9 @@ ExitStatus guarded(const CommonOptions& options, const Run& run) {
   } catch (const std::bad_alloc&) {
     console.complain("out of memory");
     return ExitStatus::failure;
+  } catch (const std::length_error&) {
+    console.complain("out of memory: a list of more entries than there can be");
+    return ExitStatus::failure;
   } catch (const std::exception& error) {
     console.complain(error.what());
     return ExitStatus::failure;
@@ -127,21 +135,24 @@ int run(int argc, char** argv) {
   arm_show->add_flag("--json", arm_options.json, "as JSON");
   arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
 
+  snare::app::catch_interrupts(snare::app::release_result_folder);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
+    std::ostringstream out;
+    const int code = app.exit(error, out, std::cerr);
+    snare::app::print(out.str());
     return code == 0 ? 0 : static_cast<int>(ExitStatus::wrong_input);
   }
 
-  snare::app::catch_interrupts();
   ExitStatus status = ExitStatus::failure;
   if (arm_show->parsed()) {
     status =
         guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
-    const Parsed& p = parsed[k];
+    Parsed& p = parsed[k];
+    p.options.command = std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + p.file.string());
     if (p.command->parsed())
       status = guarded(p.options, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }

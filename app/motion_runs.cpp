@@ -1,5 +1,6 @@
 #include "app/motion_runs.hpp"
 
+#include "app/interruption.hpp"
 #include "app/motion_checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <mutex>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -41,6 +43,15 @@ class Runs {
     return std::move(progress_.finished);
   }
 
+  /// Called while a run is under way, from another thread. Writes the last checkpoint; says what it is.
+  [[nodiscard]] std::string keep() {
+    const std::scoped_lock lock(mutex_);
+    if (!progress_.state && progress_.finished.empty()) return "nothing was finished, nothing is kept";
+    write();
+    return fmt::format("the state at {:.6g} s is kept in {}; the same command goes on from there",
+                       progress_.state ? progress_.state->time : 0.0, policy_.file.string());
+  }
+
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -69,6 +80,7 @@ class Runs {
         },
         from ? &*from : nullptr,
         [&](const coupling::MotionState& state) {
+          const std::scoped_lock lock(mutex_);
           progress_.state = state;
           const auto known = static_cast<std::ptrdiff_t>(progress_.samples.size());
           progress_.samples.insert(progress_.samples.end(), samples.begin() + known, samples.end());
@@ -80,6 +92,7 @@ class Runs {
       console_.complain(fmt::format("{}: {} (what was reached is kept{})", asked.name, result.report.message,
                                     stopped ? "; the same command goes on from the last checkpoint" : ""));
     }
+    const std::scoped_lock lock(mutex_);
     if (stopped) write();  // before the motion counts as finished: it goes on from its last checkpoint
     progress_.finished.push_back({std::move(samples), std::move(result)});
     if (stopped) return false;
@@ -89,23 +102,34 @@ class Runs {
     return true;
   }
 
+  /// A checkpoint that cannot be written costs the way back to it, not the run.
   void write() {
-    write_motion_checkpoint(policy_.file, policy_.input, progress_);
     written_ = Clock::now();
+    try {
+      write_motion_checkpoint(policy_.file, policy_.input, progress_);
+      failed_ = false;
+    } catch (const std::system_error& error) {
+      if (!failed_) console_.complain(fmt::format("{}; the run goes on without this checkpoint", error.what()));
+      failed_ = true;
+    }
   }
 
   const std::vector<NamedMotion>& motions_;
   const CheckpointPolicy& policy_;
   Console& console_;
   MotionProgress progress_;
+  std::mutex mutex_;           // of progress_, which an interruption looks at from another thread
   Clock::time_point written_;  // when a checkpoint was
+  bool failed_ = false;        // the last checkpoint could not be written
 };
 
 }  // namespace
 
 std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions, const CheckpointPolicy& policy,
                                       Console& console) {
-  return Runs(motions, policy, console).all();
+  Runs runs(motions, policy, console);
+  const KeepWhenInterrupted keeping([&runs] { return runs.keep(); }, "");
+  return runs.all();
 }
 
 ExitStatus status_of(const std::vector<MotionRecord>& records) {

@@ -1,11 +1,15 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
+#include "app/result_folder.hpp"
+#include "app/warnings.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <iostream>
+#include <algorithm>
+#include <cmath>
 
 namespace snare::app {
 
@@ -18,23 +22,28 @@ nlohmann::json summary(const identification::Series& series, const identificatio
   }
   double largest = 0.0;
   for (const double force : prediction.force) largest = std::max(largest, std::abs(force));
-  return {{"series", series.name},
-          {"points", prediction.force.size()},
-          {"largest_force_N", largest},
-          {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
-          {"events", events},
-          {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()
-                                                             : nlohmann::json(prediction.curve.curve.report.message)}};
+  return {
+      {"series", series.name},
+      {"points", prediction.force.size()},
+      {"largest_force_N", largest},
+      {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
+      {"events", events},
+      {"in_contact_at_end", !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},
+      {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()
+                                                         : nlohmann::json(prediction.curve.curve.report.message)}};
 }
 
 }  // namespace
 
 ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
+  const ResultFolder folder(options, {"curves.csv"});
+  const KeepWhenInterrupted keeping({}, options.json ? "snare-push/1" : "");
 
   std::vector<identification::PredictionOptions> prediction_options(experiment.series.size());
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     prediction_options[k].examine_out_of_plane = true;
+    prediction_options[k].stop = interrupted;
     prediction_options[k].progress = [&console, &series = experiment.series[k]](double travel) {
       console.progress(fmt::format("{}: {:.3f} of {:.3f} mm", series.name, 1e3 * travel,
                                    1e3 * identification::measured_displacement(series).back()));
@@ -44,11 +53,13 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
   const std::vector<identification::Prediction> predictions =
       identification::predict_all(experiment.series, experiment.solver, {}, prediction_options);
   console.end_progress();
+  begin_writing();
 
   const std::filesystem::path csv = options.out / "curves.csv";
   write_curves(csv, experiment.series, predictions);
   nlohmann::json result{{"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
   ExitStatus status = ExitStatus::done;
+  bool partial = false;
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     result["series"].push_back(summary(experiment.series[k], predictions[k]));
     const numerics::SolveReport& report = predictions[k].curve.curve.report;
@@ -57,10 +68,15 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
                                    predictions[k].force.size(),
                                    identification::measured_displacement(experiment.series[k]).size()));
       status = ExitStatus::solver_stopped;
+      partial = partial || report.termination == numerics::Termination::interrupted;
     }
   }
+  result["interrupted"] = partial;
+  const std::vector<std::string> warnings = push_warnings(experiment.series, predictions);
+  result["warnings"] = warnings;
+  for (const std::string& warning : warnings) console.warn(warning);
   if (options.json) {
-    std::cout << result.dump(1) << '\n';
+    print(result.dump(1) + "\n");
   } else {
     for (const nlohmann::json& series : result["series"]) {
       console.say(fmt::format("{}: {} points, largest force {:.4g} N", series["series"].get<std::string>(),

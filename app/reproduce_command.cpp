@@ -1,9 +1,12 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/report/reproduce_report.hpp"
 #include "app/report/trace_findings.hpp"
 #include "app/reproduce_json.hpp"
+#include "app/result_folder.hpp"
+#include "app/warnings.hpp"
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
@@ -13,6 +16,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
 
 namespace snare::app {
 
@@ -65,6 +71,7 @@ identification::PredictionOptions with_shapes(const Series& series, double offse
   for (int i = 0; i <= 5; ++i) {
     result.shapes_at.push_back(d[(d.size() - 1) * static_cast<std::size_t>(i) / 5] - offset);
   }
+  result.stop = interrupted;
   result.progress = [&console, label, &series](double travel) {
     console.progress(fmt::format("{}, {}: {:.3f} mm", label, series.name, 1e3 * travel));
     return !interrupted();
@@ -275,6 +282,49 @@ void write_all_curves(const std::filesystem::path& file, const Reproduction& res
   write_curves(file, series, declared, columns);
 }
 
+void write_files(const CommonOptions& options, Reproduction& result) {
+  for (const ReproducedModel& model : result.models) {
+    const std::vector<std::string> more = push_warnings(result.experiment.series, model.predictions, model.label);
+    result.warnings.insert(result.warnings.end(), more.begin(), more.end());
+  }
+  write_all_curves(options.out / "curves.csv", result);
+  base::write_text(options.out / "report.html", reproduce_report_html(result, version()));
+  write_result(options, "reproduce.json", reproduce_json(result));
+}
+
+std::string partial_words(const Reproduction& result) {
+  std::string models;
+  for (const ReproducedModel& model : result.models) models += (models.empty() ? "" : ", ") + model.label;
+  return fmt::format(
+      "interrupted: what was finished is kept and marked as a part (models: {}; tracing: {}; other ranges: {})", models,
+      result.trace ? "finished" : "none", result.verdicts.size());
+}
+
+/// What of a reproduction is whole, for an interruption that comes while the next part is under way.
+class Finished {
+ public:
+  explicit Finished(const CommonOptions& options) : options_(options) {}
+
+  void reached(const Reproduction& result) {
+    Reproduction copy = result;
+    copy.interrupted = true;
+    const std::scoped_lock lock(mutex_);
+    result_ = std::move(copy);
+  }
+  /// Writes it; says what it was.
+  std::string keep() {
+    const std::scoped_lock lock(mutex_);
+    if (!result_) return "nothing was finished, nothing is kept";
+    write_files(options_, *result_);
+    return partial_words(*result_);
+  }
+
+ private:
+  const CommonOptions& options_;
+  std::mutex mutex_;
+  std::optional<Reproduction> result_;
+};
+
 }  // namespace
 
 ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
@@ -288,8 +338,12 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
           {experiment.file.string(), 0, "series[" + series.name + "]", "", "must have readings or a law to reproduce"});
     }
   }
+  const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html"});
+  Finished finished(options);
+  const KeepWhenInterrupted keeping([&finished] { return finished.keep(); }, "");
   result.assumptions = assumptions(experiment);
   result.models.push_back(declared_model(experiment, console));
+  finished.reached(result);
 
   ExitStatus status = ExitStatus::done;
   const Progress progress = [&console](const std::string& stage) {
@@ -306,7 +360,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
         result.summary = identification::summary_statistics(
             experiment.series, forces_of(result.models.back().predictions), fitted.final.numbers.size());
       }
-    } else {
+      finished.reached(result);
+    } else if (!interrupted()) {
       console.complain(fmt::format("{}: {}", words.label, fitted.report.message));
       status = ExitStatus::solver_stopped;
     }
@@ -319,10 +374,13 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
       const ModelWords words{"traced", "traced model", "The fitted model with the effect that the tracing adds"};
       if (!trace.selected.empty()) result.models.push_back(model_of(experiment, trace, words, console));
       result.trace = std::move(trace);
+      finished.reached(result);
     }
     look_at_ranges(progress, result);
   }
   console.end_progress();
+  begin_writing();
+  result.interrupted = interrupted();
   for (const ReproducedModel& model : result.models) {
     for (std::size_t k = 0; k < experiment.series.size(); ++k) {
       const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
@@ -332,9 +390,12 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     }
   }
 
-  write_all_curves(options.out / "curves.csv", result);
-  write_result(options, "reproduce.json", reproduce_json(result));
-  base::write_text(options.out / "report.html", reproduce_report_html(result, version()));
+  write_files(options, result);
+  for (const std::string& warning : result.warnings) console.warn(warning);
+  if (result.interrupted) {
+    console.complain(partial_words(result));
+    status = ExitStatus::solver_stopped;
+  }
   if (options.json) return status;
   console.say(error_table(result));
   if (result.summary) {

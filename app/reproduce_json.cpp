@@ -142,6 +142,8 @@ json reproduce_json(const Reproduction& reproduction) {
               {"title", experiment.title},
               {"source", experiment.source},
               {"version", version()},
+              {"interrupted", reproduction.interrupted},
+              {"warnings", reproduction.warnings},
               {"assumptions", reproduction.assumptions},
               {"wire",
                {{"diameter_mm", 1e3 * test.wire.diameter},

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/report/ring_down_report.hpp"
+#include "app/result_folder.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "identification/ring_down/mode_match.hpp"
@@ -60,17 +62,25 @@ json damping_json(const DampingSplit& split) {
 
 ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& options, Console& console) {
   const RingDownFile file = identification::read_ring_down_file(path, overrides_of(options));
+  const ResultFolder folder(options, {"ringdown.json", "ringdown.csv", "report.html"});
+  const KeepWhenInterrupted keeping({}, options.json ? "snare-ringdown-result/1" : "");
   std::vector<RingDownFit> fits;
   ExitStatus status = ExitStatus::done;
-  json result{
-      {"schema", "snare-ringdown-result/1"}, {"title", file.title}, {"source", file.source}, {"series", json::array()}};
+  json result{{"schema", "snare-ringdown-result/1"},
+              {"interrupted", false},
+              {"title", file.title},
+              {"source", file.source},
+              {"series", json::array()}};
   for (const identification::RingDownSeries& s : file.series) {
+    console.progress(fmt::format("fitting {}", s.data.name));
     fits.push_back(identification::fit_ring_down(s.data));
     result["series"].push_back(series_json(s.data, fits.back()));
     if (fits.back().report.usable()) continue;
     console.complain(fmt::format("{}: the fit did not converge {}", s.data.name, fits.back().report.message));
     status = ExitStatus::solver_stopped;
   }
+  console.end_progress();
+  set_stage("matching the modes");
   const std::vector<identification::MatchedMode> modes = identification::match_modes(file, fits);
   for (const identification::MatchedMode& m : modes) {
     json& one = result["series"][m.series]["modes"][m.mode];
@@ -79,7 +89,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);
-  write_result(options, "ringdown.json", result);
+  begin_writing();
   base::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});
   for (std::size_t s = 0; s < fits.size(); ++s) {
     const identification::RingDown& data = file.series[s].data;
@@ -89,6 +99,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   csv.commit();
   base::write_text(options.out / "report.html", ring_down_report_html(file, fits, split));
+  write_result(options, "ringdown.json", result);
   if (options.json) return status;
   for (std::size_t s = 0; s < fits.size(); ++s) {
     for (const RingDownMode& m : fits[s].modes) {

@@ -1,17 +1,21 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/motion_history.hpp"
 #include "app/motion_runs.hpp"
 #include "app/motion_summary.hpp"
 #include "app/report/motion_page.hpp"
 #include "app/report/motion_pictures.hpp"
 #include "app/report/paraview.hpp"
+#include "app/result_folder.hpp"
+#include "app/warnings.hpp"
 #include "base/files.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <variant>
 
@@ -44,8 +48,8 @@ void tell(const scenario::WireMotions& motions, const std::vector<FinishedMotion
 }
 
 void write_results(const CommonOptions& options, const json& summary, const std::string& page) {
-  write_result(options, "summary.json", summary);
   base::write_text(options.out / "report.html", page);
+  write_result(options, "summary.json", summary);
 }
 
 void tell_files(const CommonOptions& options, Console& console) {
@@ -56,16 +60,25 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions
                     Console& console) {
   const std::vector<MotionRecord> records = run_motions(
       motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
+  begin_writing();
+  const bool partial = records.size() < motions.runs.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
+                         return r.result.report.termination == numerics::Termination::interrupted;
+                       });
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
+  const std::vector<std::string> warnings = motion_warnings(finished);
+  for (const std::string& warning : warnings) console.warn(warning);
   write_history(options.out / "history.csv", motions, finished);
   if (!motions.sensors.empty()) write_telemetry(options.out / "telemetry.csv", motions, finished.front().samples);
-  write_results(options, motion_summary(asked, motions, finished), motion_page(asked, motions, finished, version()));
+  json summary = motion_summary(asked, motions, finished);
+  summary.update({{"interrupted", partial}, {"warnings", warnings}});
+  write_results(options, summary, motion_page(asked, motions, finished, version(), warnings, partial));
   if (motions.output.paraview) {
     for (const FinishedMotion& run : finished) {
       write_paraview(options.out, motions.probe ? run.asked.name : "motion",
                      paraview_frames(run.asked.motion, run.samples));
     }
   }
+  if (partial) console.complain("interrupted: the results are a part of what was asked for");
   if (!options.json) {
     tell(motions, finished, console);
     tell_files(options, console);
@@ -91,9 +104,13 @@ ArmRecord run_arm(const scenario::ArmMotion& motion, Console& console) {
 ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const CommonOptions& options,
                     Console& console) {
   const ArmRecord record = run_arm(motion, console);
+  begin_writing();
   const multibody::ArmHistory& history = record.history;
   write_history(options.out / "history.csv", motion.scenario.arm, history);
-  write_results(options, arm_summary(asked, motion, record), arm_page(asked, motion, record, version()));
+  json summary = arm_summary(asked, motion, record);
+  summary["interrupted"] = history.report.termination == numerics::Termination::interrupted;
+  write_results(options, summary, arm_page(asked, motion, record, version()));
+  if (summary["interrupted"].get<bool>()) console.complain("interrupted: the results are a part of what was asked for");
   if (!history.report.usable()) {
     console.complain(history.report.message + " (what was reached is kept)");
     return ExitStatus::solver_stopped;
@@ -111,6 +128,8 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& 
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
+  const ResultFolder folder(options, {"history.csv", "telemetry.csv", "summary.json", "report.html", "checkpoint.bin"});
+  const KeepWhenInterrupted word({}, options.json ? "snare-summary/1" : "");
   return std::visit([&](const auto& content) { return simulate(asked, content, options, console); }, asked.content);
 }
 

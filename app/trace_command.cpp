@@ -1,14 +1,20 @@
 #include "app/commands.hpp"
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
+#include "app/interruption.hpp"
 #include "app/report/trace_findings.hpp"
 #include "app/report/trace_report.hpp"
+#include "app/result_folder.hpp"
 #include "app/trace_json.hpp"
+#include "app/warnings.hpp"
 #include "base/files.hpp"
 #include "identification/tracing/trace.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <mutex>
+#include <optional>
 
 namespace snare::app {
 
@@ -26,20 +32,101 @@ std::vector<CurveColumn> columns_of(const Trace& trace) {
   return columns;
 }
 
-/// The trace of an experiment; its curves are written. What stops it is told to the console.
-Trace trace_and_write_curves(const identification::Experiment& experiment, identification::TraceOptions tracing,
-                             const CommonOptions& options, Console& console) {
+/// What of a trace is whole, for an interruption that comes while the next part is under way.
+class Part {
+ public:
+  void reached(const Trace& part) {
+    const std::scoped_lock lock(mutex_);
+    part_ = part;
+  }
+  [[nodiscard]] std::optional<Trace> last() {
+    const std::scoped_lock lock(mutex_);
+    return part_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<Trace> part_;
+};
+
+constexpr const char* nothing_kept = "nothing was finished, nothing is kept";
+
+std::string kept_words(const Trace& trace) {
+  return fmt::format("what was finished is kept and marked as a part: the base model{}",
+                     trace.selected.empty() ? "" : fmt::format(" and {} effects", trace.selected.size()));
+}
+
+using Write = void (*)(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options);
+
+/// The trace of an experiment, written by `write`, also where it is a part that an interruption leaves. What stops it is told to the
+/// console.
+Trace trace_and_write(const identification::Experiment& experiment, identification::TraceOptions tracing,
+                      const CommonOptions& options, const char* schema, Write write, Console& console) {
   tracing.progress = [&console](const std::string& stage) {
     console.progress(stage);
     return !interrupted();
   };
+  Part part;
+  tracing.reached = [&part](const Trace& reached) { part.reached(reached); };
+  const KeepWhenInterrupted keeping(
+      [&]() -> std::string {
+        const std::optional<Trace> reached = part.last();
+        if (!reached) {
+          if (options.json) print(nlohmann::json{{"schema", schema}, {"interrupted", true}}.dump(1) + "\n");
+          return nothing_kept;
+        }
+        write(experiment, *reached, options);
+        return kept_words(*reached);
+      },
+      "");
   Trace trace = identification::trace(experiment, tracing);
   console.end_progress();
-  if (trace.report.usable())
-    write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  else
+  begin_writing();
+  if (trace.report.usable()) {
+    write(experiment, trace, options);
+  } else {
     console.complain(trace.report.message);
+    if (options.json) {
+      const nlohmann::json word{
+          {"schema", schema}, {"interrupted", trace.interrupted}, {"stopped", trace.report.message}};
+      print(word.dump(1) + "\n");
+    }
+  }
   return trace;
+}
+
+std::vector<std::string> warnings_of(const identification::Experiment& experiment, const Trace& trace) {
+  const identification::Model model(trace.series, experiment.solver, false);
+  return push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model");
+}
+
+void write_trace(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
+  const std::vector<std::string> warnings = warnings_of(experiment, trace);
+  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
+  base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version(), warnings));
+  nlohmann::json result = trace_json(experiment, trace);
+  result["warnings"] = warnings;
+  write_result(options, "trace.json", result);
+}
+
+void write_fit(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
+  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
+  const nlohmann::json whole = trace_json(experiment, trace);
+  nlohmann::json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
+  for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
+    result[key] = whole[key];
+  }
+  result["fit"] = whole["final"];
+  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)}, {"tests", whole["residual"]["tests"]}};
+  result["warnings"] = warnings_of(experiment, trace);
+  write_result(options, "fit.json", result);
+}
+
+ExitStatus status_of(const identification::Experiment& experiment, const Trace& trace, Console& console) {
+  for (const std::string& warning : warnings_of(experiment, trace)) console.warn(warning);
+  if (!trace.interrupted) return ExitStatus::done;
+  console.complain("interrupted: " + kept_words(trace));
+  return ExitStatus::solver_stopped;
 }
 
 std::string number_line(const FittedNumber& n) {
@@ -52,51 +139,38 @@ std::string number_line(const FittedNumber& n) {
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
-  const Trace trace = trace_and_write_curves(experiment, {}, options, console);
+  const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});
+  const Trace trace = trace_and_write(experiment, {}, options, "snare-trace/1", write_trace, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
-  const nlohmann::json result = trace_json(experiment, trace);
-  write_result(options, "trace.json", result);
-  base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version()));
   if (!options.json) {
     console.say(verdict(trace));
     console.say(fmt::format("rmse: declared {:.4g} N, base {:.4g} N, final {:.4g} N; noise {:.3g} N ({})",
-                            trace.declared.rmse, trace.base.rmse, trace.final.rmse,
-                            result["noise"]["sigma_N"].get<double>(), trace.noise.source));
+                            trace.declared.rmse, trace.base.rmse, trace.final.rmse, reading_noise(trace).value_or(0.0),
+                            trace.noise.source));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
     if (trace.next) console.say("next: " + trace.next->what);
     console.say(fmt::format("wrote {0}/curves.csv, {0}/trace.json, {0}/report.html", options.out.string()));
   }
-  if (trace.interrupted) {
-    console.complain("interrupted: what was finished is kept");
-    return ExitStatus::solver_stopped;
-  }
-  return ExitStatus::done;
+  return status_of(experiment, trace, console);
 }
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
+  const ResultFolder folder(options, {"curves.csv", "fit.json"});
   identification::TraceOptions fitting;
   fitting.most_effects = 0;
   fitting.intervals = true;
   fitting.attribute = false;
-  const Trace trace = trace_and_write_curves(experiment, fitting, options, console);
+  fitting.draw = false;
+  const Trace trace = trace_and_write(experiment, fitting, options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
-  const nlohmann::json whole = trace_json(experiment, trace);
-  nlohmann::json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
-  for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
-    result[key] = whole[key];
-  }
-  result["fit"] = whole["final"];
-  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
-                        {"tests", whole["residual"]["tests"]}};
-  write_result(options, "fit.json", result);
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",
                             trace.declared.rmse, trace.final.rmse, trace.final.chi2_dof));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
     console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv", options.out.string()));
   }
-  return trace.interrupted ? ExitStatus::solver_stopped : ExitStatus::done;
+  return status_of(experiment, trace, console);
 }
 
 }  // namespace snare::app

@@ -1,5 +1,8 @@
 #include "app/commands.hpp"
+#include "app/interruption.hpp"
 #include "app/report/report_page.hpp"
+#include "app/result_folder.hpp"
+#include "base/errors.hpp"
 #include "base/files.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
@@ -15,7 +18,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
+#include <mutex>
 
 namespace snare::app {
 
@@ -34,9 +39,23 @@ nlohmann::json row_json(const validation::Row& row) {
           {"verdict", row.within() ? "within" : "out"}};
 }
 
-std::string page(const std::vector<validation::Row>& rows, const std::vector<std::string>& skipped) {
+/// What was checked, and why the rest was not.
+struct Validation {
+  std::vector<validation::Row> rows;
+  std::vector<std::string> skipped;
+  std::size_t checks = 0;  ///< asked for
+  std::size_t done = 0;    ///< of these, with those that were skipped
+  [[nodiscard]] bool whole() const { return done == checks; }
+  [[nodiscard]] auto out() const {
+    return std::ranges::count_if(rows, [](const validation::Row& row) { return !row.within(); });
+  }
+};
+
+std::string page(const Validation& v) {
+  const auto& [rows, skipped, checks, done] = v;
   ReportPage page("Validation of snare",
                   "Every row: what was computed, beside a reference that does not come from it.");
+  page.doubts({}, !v.whole());
   std::string group;
   Table table;
   const auto flush = [&] {
@@ -68,9 +87,22 @@ std::string page(const std::vector<validation::Row>& rows, const std::vector<std
   return page.html();
 }
 
-}  // namespace
+void write_files(const CommonOptions& options, const Validation& v) {
+  nlohmann::json result{{"schema", "snare-validation/1"},  {"version", version()},
+                        {"interrupted", !v.whole()},       {"checks", {{"asked", v.checks}, {"done", v.done}}},
+                        {"rows", nlohmann::json::array()}, {"skipped", v.skipped}};
+  for (const validation::Row& row : v.rows) result["rows"].push_back(row_json(row));
+  base::write_text(options.out / "report.html", page(v));
+  write_result(options, "validation.json", result);
+}
 
-ExitStatus run_validate(const CommonOptions& options, Console& console) {
+std::string count_words(const Validation& v, const CommonOptions& options) {
+  return fmt::format("{}{} rows, {} out of their limit; wrote {}/validation.json",
+                     v.whole() ? "" : fmt::format("a part, {} of {} checks: ", v.done, v.checks), v.rows.size(),
+                     v.out(), options.out.string());
+}
+
+std::vector<validation::Check> all_checks() {
   // Measurements of others are not part of the product: they are looked for beside it.
   const char* named = std::getenv("SNARE_MEASURED_DATA");
   const std::filesystem::path measured =
@@ -83,46 +115,59 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
         validation::linked_motion_checks(data_directory()), validation::tracing_checks(measured)}) {
     checks.insert(checks.end(), some.begin(), some.end());
   }
-  std::vector<validation::Row> rows;
-  std::vector<std::string> skipped;
-  int out = 0;
-  for (std::size_t i = 0; i < checks.size(); ++i) {
-    if (interrupted()) {
-      skipped.push_back("interrupted before: " + checks[i].name);
-      break;
+  return checks;
+}
+
+}  // namespace
+
+ExitStatus run_validate(const CommonOptions& options, Console& console) {
+  if (!options.overrides.empty())
+    throw base::InputError(
+        {"--set", 0, options.overrides.front(), "", "validate reads no file, so there is no key to set"});
+  const ResultFolder folder(options, {"validation.json", "report.html"});
+  const std::vector<validation::Check> checks = all_checks();
+  Validation v;
+  v.checks = checks.size();
+  std::mutex mutex;  // of v: what is finished may be asked for while a check runs
+  const KeepWhenInterrupted keeping(
+      [&] {
+        const std::scoped_lock lock(mutex);
+        write_files(options, v);
+        return count_words(v, options);
+      },
+      "");
+  for (const validation::Check& check : checks) {
+    if (interrupted()) break;
+    console.progress(fmt::format("{} of {}: {}", v.done + 1, checks.size(), check.name));
+    std::vector<validation::Row> found = check.skipped.empty() ? check.run() : std::vector<validation::Row>{};
+    const std::scoped_lock lock(mutex);
+    ++v.done;
+    if (!check.skipped.empty()) {
+      v.skipped.push_back(check.name + ": " + check.skipped);
+      console.say("skipped: " + v.skipped.back());
     }
-    if (!checks[i].skipped.empty()) {
-      skipped.push_back(checks[i].name + ": " + checks[i].skipped);
-      console.say("skipped: " + skipped.back());
-      continue;
-    }
-    console.progress(fmt::format("{} of {}: {}", i + 1, checks.size(), checks[i].name));
-    for (validation::Row& row : checks[i].run()) {
-      if (!row.within()) {
-        ++out;
+    for (validation::Row& row : found) {
+      if (!row.within())
         console.complain(
             fmt::format("out of its limit: {}, {}: {} instead of {}", row.group, row.name, row.value, row.reference));
-      }
-      rows.push_back(std::move(row));
+      v.rows.push_back(std::move(row));
     }
   }
   console.end_progress();
-  nlohmann::json result{{"schema", "snare-validation/1"},
-                        {"version", version()},
-                        {"rows", nlohmann::json::array()},
-                        {"skipped", skipped}};
-  for (const validation::Row& row : rows) result["rows"].push_back(row_json(row));
-  write_result(options, "validation.json", result);
-  base::write_text(options.out / "report.html", page(rows, skipped));
+  begin_writing();
+  write_files(options, v);
   std::string group;
-  for (const validation::Row& row : rows) {
+  for (const validation::Row& row : v.rows) {
     if (row.group != group) console.say((group = row.group) + ":");
     console.say(fmt::format("  {:<58} {:>14.8g} {:>14.8g} {:<6} error {:.1e} of {:.0e} {}", row.name, row.reference,
                             row.value, row.unit, row.error(), row.limit, row.within() ? "" : "OUT"));
   }
-  console.say(
-      fmt::format("{} rows, {} out of their limit; wrote {}/validation.json", rows.size(), out, options.out.string()));
-  return out == 0 ? ExitStatus::done : ExitStatus::row_out_of_limit;
+  if (!v.whole()) {
+    console.complain("interrupted: " + count_words(v, options));
+    return ExitStatus::solver_stopped;
+  }
+  console.say(count_words(v, options));
+  return v.out() == 0 ? ExitStatus::done : ExitStatus::row_out_of_limit;
 }
 
 }  // namespace snare::app

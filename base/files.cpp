@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cassert>
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -48,6 +50,16 @@ std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
     return continues(1) && continues(2) && continues(3) ? 4 : 0;
   }
   return 0;
+}
+
+/// Temporary names of the files that are being written, for a process that ends without leaving its functions.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::string> names;
+};
+Unfinished& unfinished() {
+  static auto* all = new Unfinished;  // outlives every thread
+  return *all;
 }
 
 }  // namespace
@@ -101,15 +113,28 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!folder.empty()) std::filesystem::create_directories(folder, code);
   if (code) fail(code.value(), folder, "cannot create the folder");
   temporary_ = folder / fmt::format(".{}.{}-{}.tmp", path_.filename().string(), ::getpid(), counter++);
+  {
+    const std::scoped_lock lock(unfinished().mutex);
+    unfinished().names.insert(temporary_.string());
+  }
   handle_.reset(std::fopen(temporary_.c_str(), "wbx"));
-  if (!handle_) fail(errno, path_, "cannot be written");
+  if (handle_) return;
+  const int error = errno;
+  forget();
+  fail(error, path_, "cannot be written");
 }
 
 AtomicFile::~AtomicFile() {
-  if (!handle_) return;
+  if (committed_) return;
   handle_.reset();
   std::error_code ignored;  // nothing better can be done while leaving
   std::filesystem::remove(temporary_, ignored);
+  forget();
+}
+
+void AtomicFile::forget() {
+  const std::scoped_lock lock(unfinished().mutex);
+  unfinished().names.erase(temporary_.string());
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -117,13 +142,25 @@ void AtomicFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size()) fail(errno, path_, "cannot be written");
 }
 
+// Its content is on the disk before its name is: after a loss of power, too, the name stands for a whole file. Where a file
+// system cannot say so (EINVAL, ENOTSUP) there is nothing to wait for.
 void AtomicFile::commit() {
   assert(handle_ && "commit twice");
   if (std::fflush(handle_.get()) != 0) fail(errno, path_, "cannot be written");
+  if (::fsync(::fileno(handle_.get())) != 0 && errno != EINVAL && errno != ENOTSUP)
+    fail(errno, path_, "cannot be written");
+  if (std::fclose(handle_.release()) != 0) fail(errno, path_, "cannot be written");
   std::error_code code;
   std::filesystem::rename(temporary_, path_, code);
   if (code) fail(code.value(), path_, "cannot be written");  // the destructor removes the temporary file
-  handle_.reset();
+  committed_ = true;
+  forget();
+}
+
+void remove_unfinished_files() noexcept {
+  const std::unique_lock lock(unfinished().mutex, std::try_to_lock);
+  if (!lock) return;  // a thread that holds it will not be waited for
+  for (const std::string& name : unfinished().names) ::unlink(name.c_str());
 }
 
 void write_text(const std::filesystem::path& path, std::string_view text) {

@@ -38,7 +38,7 @@ struct InputFile {
 
 /// A file that appears under its name when it is complete and not before.
 ///
-/// Writes go to a temporary name in the same folder; `commit()` renames it. Destroyed without a commit, it
+/// Writes go to a temporary name in the same folder; `commit()` waits until they are on the disk and renames it. Destroyed without a commit, it
 /// leaves nothing behind and what stood under the name before stays. Missing parent folders are created.
 /// Every failure of the system throws std::system_error that names the path.
 class AtomicFile {
@@ -53,10 +53,17 @@ class AtomicFile {
   void commit();
 
  private:
+  void forget();
+
   std::filesystem::path path_;
   std::filesystem::path temporary_;
   FileHandle handle_;
+  bool committed_ = false;
 };
+
+/// Removes the temporary files of AtomicFiles that are not committed: for a process that is about to end without leaving its
+/// functions. What they hold must not be written on.
+void remove_unfinished_files() noexcept;
 
 /// Writes `text` under `path` by way of AtomicFile.
 void write_text(const std::filesystem::path& path, std::string_view text);

@@ -99,7 +99,8 @@ std::string TomlDocument::suggestion(std::string_view key, const Visit& visit) c
   std::string nearest = nearest_word(key, {visit.asked.begin(), visit.asked.end()});
   for (const auto& [node, other] : visits_)  // the right key in the wrong table
     if (nearest.empty() && !other.address.empty() && other.asked.contains(key)) nearest = dotted(other.address, key);
-  return nearest.empty() ? "unknown key" : fmt::format("unknown key; did you mean {}?", nearest);
+  if (!nearest.empty()) return fmt::format("unknown key; did you mean {}?", nearest);
+  return visit.asked.empty() ? "unknown key" : fmt::format("unknown key; known here: {}", fmt::join(visit.asked, ", "));
 }
 
 void TomlDocument::report_unknown_keys() {

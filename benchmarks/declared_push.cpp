@@ -46,7 +46,7 @@ PressedWire pressed_wire(int elements, double travel) {
   constexpr int steps = 10;
   for (int i = 1; i <= steps; ++i) {
     coupling::remember_contact(*wire.system, wire.point);
-    const numerics::PathTangent t = numerics::tangent(*wire.system, wire.point, workspace, nullptr);
+    const numerics::PathTangent t = numerics::tangent(*wire.system, wire.point, workspace, nullptr).value();
     const double factor = (travel * i / steps - wire.point.parameter) / t.parameter;
     wire.point.band += factor * t.band;
     wire.point.border += factor * t.border;

@@ -61,27 +61,40 @@ std::optional<JointKind> to_kind(const urdf::Joint& joint) {
   }
 }
 
-/// Appends the children of a link, depth first, in the order of the joints' names as urdfdom keeps them.
-void append(const urdf::ModelInterface& model, const urdf::Link& link, RobotDescription& robot) {
-  robot.links.push_back({link.name, to_inertia(link)});
-  for (const auto& from : link.child_joints) {
-    RobotJoint joint;
-    joint.name = from->name;
-    joint.parent = from->parent_link_name;
-    joint.child = from->child_link_name;
-    joint.kind = to_kind(*from);
-    joint.axis = {from->axis.x, from->axis.y, from->axis.z};
-    joint.X_PJ = to_pose(from->parent_to_joint_origin_transform);
-    if (from->limits) {
-      if (from->type != urdf::Joint::CONTINUOUS) {
-        joint.lower = from->limits->lower;
-        joint.upper = from->limits->upper;
-      }
-      joint.effort = from->limits->effort;
-      joint.speed = from->limits->velocity;
+RobotJoint to_joint(const urdf::Joint* from) {
+  RobotJoint joint;
+  joint.name = from->name;
+  joint.parent = from->parent_link_name;
+  joint.child = from->child_link_name;
+  joint.kind = to_kind(*from);
+  joint.axis = {from->axis.x, from->axis.y, from->axis.z};
+  joint.X_PJ = to_pose(from->parent_to_joint_origin_transform);
+  if (from->limits) {
+    if (from->type != urdf::Joint::CONTINUOUS) {
+      joint.lower = from->limits->lower;
+      joint.upper = from->limits->upper;
     }
-    robot.joints.push_back(joint);
-    append(model, *model.getLink(joint.child), robot);
+    joint.effort = from->limits->effort;
+    joint.speed = from->limits->velocity;
+  }
+  return joint;
+}
+
+/// Appends all links, depth first, children in the order of the joints' names as urdfdom keeps them. Chains may be long: what is
+/// still to come is on a stack of its own.
+void append(const urdf::ModelInterface& model, const urdf::Link& root, RobotDescription& robot) {
+  robot.links.push_back({root.name, to_inertia(root)});
+  std::vector<const urdf::Joint*> open;
+  const auto push = [&open](const urdf::Link& link) {
+    for (auto j = link.child_joints.rbegin(); j != link.child_joints.rend(); ++j) open.push_back(j->get());
+  };
+  push(root);
+  while (!open.empty()) {
+    robot.joints.push_back(to_joint(open.back()));
+    open.pop_back();
+    const urdf::Link& child = *model.getLink(robot.joints.back().child);
+    robot.links.push_back({child.name, to_inertia(child)});
+    push(child);
   }
 }
 

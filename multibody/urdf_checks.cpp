@@ -23,6 +23,11 @@ constexpr double largest_offset = 1000.0;
 /// Radii of gyration outside these are taken for other units than kg and m [m].
 constexpr double smallest_gyration = 1e-4, largest_gyration = 1000.0;
 
+/// A URDF file nests its elements six deep; beyond this it is none.
+constexpr std::size_t deepest = 64;
+/// The dynamics go with the square and, for natural frequencies, with the cube of the number of links; no arm has as many.
+constexpr std::size_t most_links = 2000;
+
 struct JointEnds {
   std::string name, parent, child;
   int line = 0;
@@ -34,6 +39,7 @@ class Checker {
   explicit Checker(std::string file) : file_(std::move(file)) {}
 
   std::vector<InputProblem> check(const std::string& text) {
+    if (!scan(text)) return std::move(problems_);
     TiXmlDocument document;
     document.SetTabSize(1);
     document.Parse(text.c_str());
@@ -55,6 +61,11 @@ class Checker {
     for (const TiXmlElement* e = robot->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint"))
       joint(*e);
     if (links_.empty()) add(robot->Row(), "robot", "", "must have at least one <link>");
+    if (links_.size() > most_links) {
+      add(robot->Row(), "robot", fmt::format("{} links", links_.size()),
+          fmt::format("must have at most {}", most_links));
+      return std::move(problems_);
+    }
     closure();
     std::stable_sort(problems_.begin(), problems_.end(),
                      [](const InputProblem& a, const InputProblem& b) { return a.line < b.line; });
@@ -64,6 +75,56 @@ class Checker {
  private:
   void add(int line, const std::string& key, const std::string& value, const std::string& requirement) {
     problems_.push_back({file_, line, key, value, requirement});
+  }
+
+  /// What must be known before the file is given to a parser that calls itself for every element within another: how deep they
+  /// stand, and that no document type says what they are. False where it is refused.
+  bool scan(const std::string& text) {
+    int line = 1;
+    std::size_t depth = 0;
+    const auto skip_to = [&](std::size_t at, std::string_view end) {
+      const std::size_t found = text.find(end, at);
+      const std::size_t stop = found == std::string::npos ? text.size() : found + end.size();
+      line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(at),
+                                          text.begin() + static_cast<std::ptrdiff_t>(stop), '\n'));
+      return stop;
+    };
+    for (std::size_t at = 0; at < text.size();) {
+      const std::string_view rest = std::string_view(text).substr(at);
+      if (rest.starts_with("<!--")) {
+        at = skip_to(at, "-->");
+      } else if (rest.starts_with("<![CDATA[")) {
+        at = skip_to(at, "]]>");
+      } else if (rest.starts_with("<!")) {
+        add(line, "<!DOCTYPE", "", "must not be there: a robot description has no document type");
+        return false;
+      } else if (rest.starts_with("<?")) {
+        at = skip_to(at, "?>");
+      } else if (rest.starts_with("</")) {
+        if (depth > 0) --depth;
+        at = skip_to(at, ">");
+      } else if (rest.starts_with("<")) {
+        const int first_line = line;
+        char quote = '\0';  // a '>' within an attribute's value ends nothing
+        for (; at < text.size() && (quote != '\0' || text[at] != '>'); ++at) {
+          if (text[at] == '\n') ++line;
+          if (quote == text[at])
+            quote = '\0';
+          else if (quote == '\0' && (text[at] == '"' || text[at] == '\''))
+            quote = text[at];
+        }
+        at = std::min(at + 1, text.size());
+        if (text[at - 1] == '>' && text[at - 2] == '/') continue;
+        if (++depth > deepest) {
+          add(first_line, "", "", fmt::format("must not nest elements more than {} deep", deepest));
+          return false;
+        }
+      } else {
+        if (text[at] == '\n') ++line;
+        ++at;
+      }
+    }
+    return true;
   }
 
   std::string name_of(const TiXmlElement& e, const std::string& kind) {
@@ -274,15 +335,19 @@ class Checker {
       for (const std::string& name : roots) all += (all.empty() ? "\"" : ", \"") + name + "\"";
       add(0, "robot", all, "must have one root link; these are carried by no joint");
     }
+    std::set<std::string> rooted;  // links that are known to lead to a root
     for (const auto& [name, line] : links_) {
       std::string link = name;
-      for (std::size_t steps = 0; carrier.count(link) != 0; ++steps) {
+      std::vector<std::string> way;
+      for (std::size_t steps = 0; carrier.count(link) != 0 && rooted.count(link) == 0; ++steps) {
+        way.push_back(link);
         if (steps > links_.size()) {
           add(line, "link[" + name + "]", "", "must not be in a closed loop of joints");
           return;
         }
         link = carrier[link]->parent;
       }
+      rooted.insert(way.begin(), way.end());
     }
   }
 

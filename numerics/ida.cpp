@@ -216,11 +216,12 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
 
 void Ida::Memory::fail(int code, const std::string& function) {
   if (callbacks.failure) std::rethrow_exception(std::exchange(callbacks.failure, nullptr));
-  if (code == IDA_ILL_INPUT || code == IDA_MEM_NULL || code == IDA_NO_MALLOC) check(code, function);
+  if (code == IDA_MEM_NULL || code == IDA_NO_MALLOC) check(code, function);
   report.termination = meaning(code);
   report.worst_unknowns = worst_unknowns();
   report.time = time;
-  if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS) report.step = 0.0;
+  // Where the first residual is none, so is the step.
+  if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS || !std::isfinite(report.step)) report.step = 0.0;
   report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function, name_of(code),
                                time, report.step, fmt::join(report.worst_unknowns, "; "));
 }

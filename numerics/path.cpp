@@ -77,10 +77,11 @@ SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& works
       });
 }
 
-PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace, const PathTangent* like) {
+std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
+                                   const PathTangent* like) {
   problem.assemble(point, workspace.system, workspace.by_parameter);
+  if (!workspace.solver.factorize(workspace.system)) return like != nullptr ? std::optional(*like) : std::nullopt;
   PathTangent result;
-  if (!workspace.solver.factorize(workspace.system)) return like != nullptr ? *like : result;
   // [K C; D E] (q', b') = -(0, d r_b/d p) with p' = 1, then scaled to |q'|^2/n + p'^2 = 1.       theory.md (N.4)
   result.band.setZero(point.band.size());
   result.border = -workspace.by_parameter;

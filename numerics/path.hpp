@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace snare::numerics {
 
 /// A state on a path of equilibria: band unknowns, border unknowns, and the parameter that is varied.
@@ -46,13 +48,14 @@ SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& works
 
 /// Direction of the path at a corrected point, of unit length in the norm |band|^2 / n + parameter^2 and pointing
 /// so that its product with `like` is positive.                                       theory.md (N.4)
+/// Where the matrix there is singular the path has no such direction: then `like`, or nothing where that is null.
 struct PathTangent {
   Eigen::VectorXd band;
   Eigen::VectorXd border;
   double parameter = 1.0;
 };
-[[nodiscard]] PathTangent tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
-                                  const PathTangent* like);
+[[nodiscard]] std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
+                                                 const PathTangent* like);
 
 /// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to the
 /// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)

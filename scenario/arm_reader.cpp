@@ -102,8 +102,8 @@ ArmMotion read_arm_motion(TomlDocument& document, const std::filesystem::path& f
   static constexpr Choice<Kind> kinds[] = {
       {"joint_step", Kind::joint_step}, {"tip_impulse", Kind::tip_impulse}, {"joint_motion", Kind::joint_motion}};
   const Kind kind = root.choice("kind", kinds).value_or(Kind::joint_motion);
-  const double duration = root.number("duration_s", Range::above(0.0, 1e6));
-  const double interval = root.number_or("output_interval_s", 0.01, Range::above(0.0, 1e5));
+  const double duration = root.number("duration_s", durations);
+  const double interval = root.number_or("output_interval_s", 0.01, durations);
   check_output_interval(root, duration, interval);
   const TomlTable solver = root.table("solver");
   const double tolerance = solver.number_or("relative_tolerance", 1e-6, Range::from(1e-12, 1e-2));

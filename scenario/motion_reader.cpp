@@ -61,14 +61,13 @@ void finish_without(base::TomlDocument& document, std::string_view key) {
 }
 
 void check_output_interval(const TomlTable& root, double duration, double interval) {
-  constexpr double most_outputs = 1e6;
   if (duration / interval > most_outputs)
     root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
 }
 
 void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
-  o.duration = root.number("duration_s", Range::above(0.0, 1e6));
-  o.output_interval = root.number_or("output_interval_s", 1e-3, Range::above(0.0, 1e6));
+  o.duration = root.number("duration_s", durations);
+  o.output_interval = root.number_or("output_interval_s", 1e-3, durations);
   check_output_interval(root, o.duration, o.output_interval);
   const TomlTable solver = root.table("solver");
   const auto tolerance = [&solver](std::string_view key, double& value, double most) {
@@ -93,8 +92,9 @@ double default_checkpoint_interval(double duration) {
 MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions& o) {
   MotionOutput output;
   output.paraview = table.boolean_or("paraview", output.paraview);
-  o.checkpoint_interval =
-      table.number_or("checkpoint_interval_s", default_checkpoint_interval(o.duration), Range::above(0.0, 1e6));
+  o.checkpoint_interval = table.number_or("checkpoint_interval_s", default_checkpoint_interval(o.duration), durations);
+  if (o.duration / o.checkpoint_interval > most_outputs)
+    table.fail("checkpoint_interval_s", fmt::format("gives more than {:g} checkpoints", most_outputs));
   output.checkpoint_wall_time =
       table.number_or("checkpoint_wall_time_s", output.checkpoint_wall_time, Range::from(0.0, 1e6));
   return output;
@@ -122,7 +122,10 @@ coupling::WireStrength read_strength(const TomlTable& table, const wire::WireSpe
     if (table.has("at_strength")) table.fail("at_strength", "only beside strength_N");
     return {};
   }
-  return coupling::wire_strength(wire, table.number("strength_N", Range::above(0.0, 1e9)), ends_run);
+  constexpr double least = 1e-9;  // [N]: what takes a share of less takes more shares than can be counted
+  const double strength = table.number("strength_N", Range::above(0.0, 1e9));
+  if (strength < least) table.fail("strength_N", fmt::format("must be >= {}", least));
+  return coupling::wire_strength(wire, strength, ends_run);
 }
 
 bool read_quasi_static(const TomlTable& table) {

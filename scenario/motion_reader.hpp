@@ -16,7 +16,9 @@ namespace snare::scenario {
 /// What the first line of every scenario says.
 inline constexpr std::string_view scenario_schema = "snare-scenario/1";
 
-inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
+inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts [s]
+inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
+inline constexpr double farthest_mm = 1e5;                ///< of anything from anything [mm]
 
 /// Three numbers under a key; nothing when they are wrong.
 [[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const base::TomlTable& table, std::string_view key,

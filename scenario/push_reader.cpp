@@ -27,6 +27,8 @@ constexpr double largest_length = 1e5;                // [mm]
 constexpr double largest_force = 1e9;                 // [N]
 constexpr double largest_stiffness = 1e15;            // [N/m], [N m/rad], [N]
 constexpr double smallest_bending_stiffness = 1e-15;  // [N m^2]; a glass fibre of 10 um has 3e-11
+constexpr double smallest_axial_stiffness = 1e-12;    // [N]
+constexpr double smallest_mass = 1e-15;               // [kg/m]; the same fibre has 2e-7
 constexpr double shortest_length = 0.99;              // of the span, between clamps or pins
 constexpr double mount_margin = 0.01;                 // of the span, between contact and mount
 constexpr double thickest_wire = 0.2;                 // of the span
@@ -92,6 +94,12 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held) {
   if (wire.bending_stiffness() < smallest_bending_stiffness)
     table.fail("diameter_mm", fmt::format("gives a bending stiffness of {:.3g} N m^2, must be >= {}",
                                           wire.bending_stiffness(), smallest_bending_stiffness));
+  else if (wire.axial_stiffness() < smallest_axial_stiffness)
+    table.fail("diameter_mm", fmt::format("gives an axial stiffness of {:.3g} N, must be >= {}", wire.axial_stiffness(),
+                                          smallest_axial_stiffness));
+  else if (wire.mass_per_length() < smallest_mass)
+    table.fail("density_kg_m3",
+               fmt::format("gives a mass of {:.3g} kg/m, must be >= {}", wire.mass_per_length(), smallest_mass));
   return wire;
 }
 

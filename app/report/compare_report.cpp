@@ -24,9 +24,11 @@ void close_up(PlotSpecification& plot, const std::vector<double>& shown, bool dw
 
 }  // namespace
 
-std::string compare_report_html(const std::string& title, const std::vector<reduction::CaseComparison>& cases) {
+std::string compare_report_html(const std::string& title, const std::vector<reduction::CaseComparison>& cases,
+                                bool interrupted) {
   ReportPage page(title.empty() ? "Models of a snare wire compared" : title,
                   "Accuracy against the full wire and the measured force, cost, range and numbers of every model.");
+  page.doubts({}, interrupted);
   for (const reduction::CaseComparison& one : cases) {
     page.heading(one.name);
     if (!one.report.usable()) page.callout("The full wire stopped: " + one.report.message, Tone::bad);

@@ -154,8 +154,10 @@ void add_damping(ReportPage& page, const DistilledCase& one) {
 
 }  // namespace
 
-std::string distil_report_html(const reduction::WireFile& file, const reduction::Distillation& distillation) {
+std::string distil_report_html(const reduction::WireFile& file, const reduction::Distillation& distillation,
+                               const std::vector<std::string>& warnings) {
   ReportPage page(file.title.empty() ? "Distilled laws of a snare wire" : file.title, file.source);
+  page.doubts(warnings, false);
   for (std::size_t c = 0; c < distillation.cases.size(); ++c) {
     const DistilledCase& one = distillation.cases[c];
     const reduction::TableError& e = one.table.loading_error;

@@ -238,8 +238,10 @@ void add_swings(const std::vector<scenario::Swing>& swings, ReportPage& page) {
 }  // namespace
 
 std::string motion_page(const scenario::Scenario& asked, const scenario::WireMotions& motions,
-                        const std::vector<FinishedMotion>& finished, const std::string& version) {
+                        const std::vector<FinishedMotion>& finished, const std::string& version,
+                        const std::vector<std::string>& warnings, bool interrupted) {
   ReportPage page(asked.title, asked.source);
+  page.doubts(warnings, interrupted);
   page.heading("Summary");
   if (motions.probe)
     add_probe_on_wire(*motions.probe, finished, page);

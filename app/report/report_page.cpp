@@ -81,6 +81,11 @@ void ReportPage::callout(std::string_view text, Tone tone) {
   body_ += fmt::format("<p class=\"callout {}\">{}</p>\n", tone_class(tone), escape_html(text));
 }
 
+void ReportPage::doubts(const std::vector<std::string>& warnings, bool interrupted) {
+  if (interrupted) callout("This run was interrupted: what is shown is a part of what was asked for.", Tone::bad);
+  for (const std::string& warning : warnings) callout("Warning: " + warning, Tone::bad);
+}
+
 void ReportPage::key_figures(const std::vector<KeyFigure>& figures) {
   close_plots();
   body_ += "<div class=\"figures\">\n";

@@ -74,6 +74,9 @@ class ReportPage {
   /// A remark in a box: something stopped, a verdict.
   void callout(std::string_view text, Tone tone);
 
+  /// What stands before everything else: that the results are a part of what was asked for, and what is doubtful about them.
+  void doubts(const std::vector<std::string>& warnings, bool interrupted);
+
   void key_figures(const std::vector<KeyFigure>& figures);
 
   /// Throws std::invalid_argument when a row and the columns differ in length.

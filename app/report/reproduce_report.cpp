@@ -202,6 +202,7 @@ void add_wire(ReportPage& page, const Reproduction& result) {
 
 std::string reproduce_report_html(const Reproduction& result, const std::string& version) {
   ReportPage page(result.experiment.title, result.experiment.source);
+  page.doubts(result.warnings, result.interrupted);
   add_summary(page, result);
   add_overview(page, result);
   add_error_table(page, result);

@@ -73,6 +73,8 @@ struct Reproduction {
   std::vector<RangeVerdict> verdicts;
   std::optional<identification::SummaryStatistics> summary;  ///< of the best fit; none without published fits
   std::vector<Adequacy> adequacy;
+  std::vector<std::string> warnings;  ///< what is doubtful about the models
+  bool interrupted = false;           ///< this is a part of what was asked for
 
   /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
   /// no model has one.

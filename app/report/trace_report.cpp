@@ -438,8 +438,9 @@ std::string small_print(const Trace& trace, const std::string& version) {
 }  // namespace
 
 std::string trace_report_html(const identification::Experiment& experiment, const Trace& trace,
-                              const std::string& version) {
+                              const std::string& version, const std::vector<std::string>& warnings) {
   ReportPage page(experiment.title, experiment.source);
+  page.doubts(warnings, false);  // the summary says whether it was interrupted
   add_summary(page, trace);
   add_before_and_after(page, trace);
   add_residuals(page, trace);

@@ -12,6 +12,7 @@ numerics::SolveReport follow(FollowedPath& path, double target, const StepContro
   double stretch = with_remainder;
   numerics::SolveReport report;
   while (path.parameter() != target) {
+    if (control.stop && control.stop()) return report.end(numerics::Termination::interrupted, "interrupted");
     const double from = path.parameter();
     const double rest = target - from;
     if (std::abs(step) > std::abs(rest) || step * rest <= 0.0) step = rest;

@@ -2,6 +2,8 @@
 
 #include "numerics/report.hpp"
 
+#include <functional>
+
 namespace snare::coupling {
 
 /// What became of one step along a path of equilibria.
@@ -42,6 +44,7 @@ enum class StepMeasure {
 struct StepControl {
   double smallest_step = 1e-9;  ///< of the parameter, in its unit: a failed step is not halved below it
   StepMeasure measure = StepMeasure::attempted;
+  std::function<bool()> stop = {};  ///< asked before every step; true: the path ends here, interrupted. May be empty
 };
 
 /// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled, one with

@@ -156,8 +156,10 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
 // own direction of travel, recording the points on the way.
 numerics::SolveReport PlanarPush::follow_arc(double target) {
   const double sense = target > point_.parameter ? 1.0 : -1.0;
+  const std::optional<numerics::PathTangent> begin = numerics::tangent(system_, point_, workspace_, nullptr);
+  if (!begin) return ended(numerics::Termination::singular_matrix, "the tangent matrix is singular");
   note(PushEvent::Kind::fold);
-  numerics::PathTangent direction = numerics::tangent(system_, point_, workspace_, nullptr);
+  numerics::PathTangent direction = *begin;
   if (direction.parameter * sense < 0.0) {
     direction.band = -direction.band;
     direction.border = -direction.border;
@@ -166,6 +168,7 @@ numerics::SolveReport PlanarPush::follow_arc(double target) {
   const double length = system_.length_scale();
   double step = 1e-4 * length;
   for (int count = 0; count < 4000; ++count) {
+    if (options_.stop && options_.stop()) return interrupted();
     const ContactStates saved = system_.contact_states();
     memory_.begin();
     numerics::SolveReport report =
@@ -195,7 +198,7 @@ numerics::SolveReport PlanarPush::follow_arc(double target) {
     }
     const bool passed = (trial_.parameter - target) * sense >= 0.0;
     accept(saved);
-    direction = numerics::tangent(system_, point_, workspace_, &direction);
+    direction = numerics::tangent(system_, point_, workspace_, &direction).value_or(direction);
     // The factorisation of the tangent belongs to the accepted point.
     unstable_ = count_unstable_modes();
     if (passed && unstable_ == 0) {

@@ -47,11 +47,11 @@ numerics::PathPoint PlanarPush::predict(double travel) {
       guess.parameter = travel;
       return guess;
     }
-    const numerics::PathTangent t = numerics::tangent(system_, point_, workspace_, nullptr);
+    const std::optional<numerics::PathTangent> t = numerics::tangent(system_, point_, workspace_, nullptr);
     ++iterations_;
-    const double factor = (travel - point_.parameter) / t.parameter;
-    if (t.band.size() == 0) return {point_.band, point_.border, travel};
-    return {point_.band + factor * t.band, point_.border + factor * t.border, travel};
+    if (!t) return {point_.band, point_.border, travel};
+    const double factor = (travel - point_.parameter) / t->parameter;
+    return {point_.band + factor * t->band, point_.border + factor * t->border, travel};
   }
   // Lagrange polynomial x(t) = x_n + sum_i (x_i - x_n) prod_j (t - t_j)/(t_i - t_j), in differences to the
   // newest point: what does not change (the mounts) then stays to the last bit.
@@ -173,8 +173,9 @@ void PlanarPush::differentiate(const numerics::PathPoint& at) {
 // Form of the rates dq/d travel, the contact staying as it is.
 double PlanarPush::viscous_stiffness() {
   if (system_.sliding[0].status == ContactStatus::open) return 0.0;
-  numerics::PathTangent along = numerics::tangent(system_, point_, workspace_, nullptr);
-  if (along.band.size() == 0) return 0.0;
+  const std::optional<numerics::PathTangent> tangent = numerics::tangent(system_, point_, workspace_, nullptr);
+  if (!tangent) return 0.0;
+  const numerics::PathTangent& along = *tangent;
   const wire::PlanarState now = system_.state(point_);
   const wire::PlanarState ahead = system_.state({along.band, along.border, 0.0});
   wire::PlanarState rate{along.band / along.parameter, {}, nullptr};
@@ -214,6 +215,7 @@ void PlanarPush::record(double travel) {
   p.contact_coordinate = extent.coordinate;
   p.wrapped_length = extent.length;
   p.energy = system_.rod().energy(state);
+  p.bending_moment = system_.rod().moments(state).lpNorm<Eigen::Infinity>();
   if (sensitivity_) p.force_by = sensitivity_->force_by();
   if (options_.examine_rates) p.viscous_stiffness = viscous_stiffness();
   p.dissipated = dissipated_;

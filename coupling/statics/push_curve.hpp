@@ -42,6 +42,7 @@ struct PushPoint {
   double tension_right = 0.0;     ///< at the right mount [N]
   /// Material coordinate of the (middle of the) contact from the left mount [m]
   double contact_coordinate = 0.0;
+  double bending_moment = 0.0;  ///< largest in the wire [N m], >= 0; of a push in space not known, 0
   double wrapped_length = 0.0;  ///< length of wire that lies on the pusher [m]; 0 for contact at a point
   double energy = 0.0;          ///< elastic energy and potential of the weight [J]
   double dissipated = 0.0;      ///< friction work so far [J], never decreasing

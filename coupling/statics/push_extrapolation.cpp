@@ -7,6 +7,8 @@ namespace snare::coupling {
 ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
   ExtrapolatedCurve result;
   result.curve = solve_push(test, options);
+  result.discretisation_error.assign(result.curve.points.size(), 0.0);
+  if (result.curve.report.termination == numerics::Termination::interrupted) return result;
   PushOptions coarse_options = options;
   coarse_options.shapes_at.clear();
   coarse_options.progress = nullptr;
@@ -15,7 +17,11 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   const PushCurve half = solve_push(test, coarse_options, 2);
   const PushCurve quarter = solve_push(test, coarse_options, 4);
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
-  result.discretisation_error.assign(result.curve.points.size(), 0.0);
+  for (const PushCurve* coarse : {&half, &quarter}) {
+    if (coarse->report.termination != numerics::Termination::interrupted) continue;
+    result.curve.report = coarse->report;  // the forces of the fine mesh stay as they are
+    return result;
+  }
   const auto extrapolated = [](double fine, double half_value, double quarter_value) {
     return (64.0 * fine - 20.0 * half_value + quarter_value) / 45.0;
   };

@@ -33,6 +33,7 @@ struct PushOptions {
   std::vector<PushVariation> variations;
   std::vector<double> shapes_at;                ///< travels at which to keep the shape [m]
   std::function<bool(double travel)> progress;  ///< called after every point; false stops the run
+  std::function<bool()> stop;                   ///< asked between points, too; true stops the run
 };
 
 }  // namespace snare::coupling

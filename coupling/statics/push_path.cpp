@@ -2,9 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace snare::coupling {
+
+namespace {
+
+bool is_finite(const PushPoint& p) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  for (const double value : {p.travel, p.force, p.transverse_force, p.normal_force, p.friction_force, p.axial_force,
+                             p.tension_left, p.tension_right, p.contact_coordinate, p.bending_moment, p.wrapped_length,
+                             p.energy, p.dissipated, p.imbalance, p.viscous_stiffness}) {
+    if (!finite(value)) return false;
+  }
+  return std::all_of(p.force_by.begin(), p.force_by.end(), finite);
+}
+
+}  // namespace
 
 numerics::SolveReport PushPath::ended(numerics::Termination termination, const std::string& message) const {
   numerics::SolveReport report;
@@ -20,6 +36,8 @@ numerics::SolveReport PushPath::interrupted() const {
 }
 
 void PushPath::add(PushPoint point) {
+  not_finite_ = not_finite_ || !is_finite(point);
+  if (not_finite_) return;
   point.iterations = iterations_;
   curve_.newton_iterations += iterations_;
   iterations_ = 0;
@@ -40,6 +58,10 @@ PushCurve PushPath::run(const std::vector<double>& travel) {
       break;
     }
     record(target);
+    if (not_finite_) {
+      curve_.report = ended(numerics::Termination::not_finite, "a result is not finite");
+      break;
+    }
     if (options_.progress && !options_.progress(target)) {
       curve_.report = interrupted();
       break;

@@ -20,7 +20,7 @@ class PushPath : public FollowedPath {
 
  protected:
   PushPath(const PushOptions& options, StepMeasure measure)
-      : options_(options), control_{options.smallest_step, measure} {}
+      : options_(options), control_{options.smallest_step, measure, options.stop} {}
 
   /// Brings the wire to first touch.
   [[nodiscard]] virtual numerics::SolveReport start() = 0;
@@ -34,13 +34,14 @@ class PushPath : public FollowedPath {
   [[nodiscard]] numerics::SolveReport ended(numerics::Termination termination, const std::string& message) const;
   [[nodiscard]] numerics::SolveReport follow_to(double target) { return follow(*this, target, control_); }
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
-  /// Adds a point with the iterations since the one before.
+  /// Adds a point with the iterations since the one before. One with a number that is none is not added and ends the run.
   void add(PushPoint point);
 
   const PushOptions& options_;
   numerics::PathPoint point_;  // last accepted
   PushCurve curve_;
-  int iterations_ = 0;  // since the last point of the curve
+  int iterations_ = 0;       // since the last point of the curve
+  bool not_finite_ = false;  // a point was not added
 
  private:
   StepControl control_;

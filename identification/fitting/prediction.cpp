@@ -136,12 +136,18 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   for (std::size_t i = result.before_touch; i < displacement.size(); ++i) {
     test.travel.push_back(displacement[i] - reading.displacement_offset);
   }
+  if (options.stop && options.stop()) {  // of many series some are not begun
+    result.curve.curve.report.end(numerics::Termination::interrupted, "interrupted before the first point");
+    result.force_by.setZero(0, static_cast<Eigen::Index>(options.variations.size()));
+    return result;
+  }
   const bool flows = reading.relaxation_time > 0.0;
   coupling::PushOptions push;
   push.elements = solver.elements;
   push.instability = solver.instability;
   push.shapes_at = options.shapes_at;
   push.progress = options.progress;
+  push.stop = options.stop;
   push.examine_out_of_plane = options.examine_out_of_plane;
   push.variations = options.variations;
   push.examine_rates = flows || options.examine_rates;

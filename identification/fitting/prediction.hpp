@@ -28,6 +28,7 @@ struct PredictionOptions {
   bool examine_out_of_plane = false;                ///< see coupling::PushOptions
   bool examine_rates = false;                       ///< see coupling::PushOptions
   std::function<bool(double travel)> progress;      ///< see coupling::PushOptions
+  std::function<bool()> stop;                       ///< see coupling::PushOptions
   std::vector<coupling::PushVariation> variations;  ///< numbers of the test to differentiate by
   /// Compute dense records (more than 120 readings on a leg of the path) at 60 points a leg and interpolate
   /// by cubics; the readings of a leg then count by their displacement, whatever their order.

@@ -53,6 +53,7 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
     data.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
     data.displacement =
         Eigen::Map<const Eigen::VectorXd>(displacement.data(), static_cast<Eigen::Index>(displacement.size()));
+    if (time.empty()) table.fail("file", fmt::format("{} has no reading from from_s to to_s", path.string()));
     if (time.size() > most_rows)
       table.fail("file", fmt::format("{} has {} readings, must have at most {}: thin it out", path.string(),
                                      time.size(), most_rows));

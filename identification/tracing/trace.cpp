@@ -59,6 +59,7 @@ class Tracer {
 
  private:
   void look_at_base();
+  void tell_part() const;
   void add_effects();
   [[nodiscard]] bool accept();
   void drop_unneeded();
@@ -131,6 +132,21 @@ void Tracer::look_at_base() {
   }
   result_.base_tests = test_residuals(model_, data_, base_);
   result_.base = error_of(base_, result_.base_predictions);
+}
+
+// The trace as it would be without what is still to come.
+void Tracer::tell_part() const {
+  if (!options_.reached) return;
+  Trace part = result_;
+  part.interrupted = true;
+  part.seconds = progress_.seconds();
+  if (part.final_predictions.empty()) {
+    part.final_settings = base_.settings;
+    part.final_tests = part.base_tests;
+    part.final = part.base;
+    part.final_predictions = part.base_predictions;
+  }
+  options_.reached(part);
 }
 
 // Effects one at a time, until what is left is no more than noise or no effect of the catalogue helps.
@@ -379,10 +395,12 @@ Trace Tracer::run() {
   progress_.clock("base fit");
   look_at_base();
   progress_.clock("errors of declared and base model");
+  tell_part();
   add_effects();
   conclude();
   compare_models();
   result_.decided = decided();
+  tell_part();
   if (options_.intervals && !result_.selected.empty()) find_intervals();
   if (progress_.go_on("next experiment")) propose();
   progress_.clock("next experiment");

@@ -29,6 +29,10 @@ constexpr Choice<DampingRate> damping_rates[] = {{"deflection", DampingRate::def
 constexpr Choice<DriveMode> drive_modes[] = {
     {"locked", DriveMode::locked}, {"servo", DriveMode::servo}, {"limp", DriveMode::limp}};
 enum class Law { linear, piecewise, backlash };
+/// Stiffnesses, torques, inertias, rates: the bound keeps every product of them finite.
+constexpr Range positive{0.0, 1e15, false};
+constexpr Range not_negative{0.0, 1e15, true};
+
 constexpr Choice<Law> laws[] = {{"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
 enum class BaseKind { fixed, free };
 constexpr Choice<BaseKind> base_kinds[] = {{"fixed", BaseKind::fixed}, {"free", BaseKind::free}};
@@ -91,8 +95,8 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   double width = 0.0;
   if (*law == Law::piecewise) {
     const auto from = table.numbers("from_deg", 2, 20, Range::from(0.0, 180.0), degree);
-    const auto stiffness = table.numbers("stiffness_Nm_deg", 2, 20, Range::from(0.0), 1.0 / degree);
-    const auto damping = table.numbers("damping_Nms_deg", 2, 20, Range::from(0.0), 1.0 / degree);
+    const auto stiffness = table.numbers("stiffness_Nm_deg", 2, 20, not_negative, 1.0 / degree);
+    const auto damping = table.numbers("damping_Nms_deg", 2, 20, not_negative, 1.0 / degree);
     if (table.has("reading")) reading = table.choice("reading", readings);
     // A fiftieth of the narrowest range of Abiko et al., Table 2.
     constexpr double usual_width = 4e-4 * degree;
@@ -117,8 +121,8 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
       pieces.push_back({from[i], stiffness[i], damping[i], 0.0});
     }
   } else {
-    const double stiffness = table.number("stiffness_Nm_rad", Range::above(0.0));
-    const double damping = table.number("damping_Nms_rad", Range::from(0.0));
+    const double stiffness = table.number("stiffness_Nm_rad", positive);
+    const double damping = table.number("damping_Nms_rad", not_negative);
     const double gap = *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
     if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
     if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0, 0.0});
@@ -128,22 +132,22 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
 }
 
 double motor_inertia_of(const TomlTable& table) {
-  if (!table.has("rotor_inertia_kg_m2")) return table.number("motor_inertia_kg_m2", Range::above(0.0));
+  if (!table.has("rotor_inertia_kg_m2")) return table.number("motor_inertia_kg_m2", positive);
   if (table.has("motor_inertia_kg_m2")) {
     table.fail("motor_inertia_kg_m2", "must not stand beside rotor_inertia_kg_m2");
     know(table, {"gear_ratio"});
     return 0.0;
   }
   const double ratio = table.number("gear_ratio", Range::from(1.0, 1e6));
-  return ratio * ratio * table.number("rotor_inertia_kg_m2", Range::above(0.0));
+  return ratio * ratio * table.number("rotor_inertia_kg_m2", positive);
 }
 
 JointFriction friction_of(const TomlTable& table) {
   JointFriction law;
-  law.coulomb = table.number_or("coulomb_Nm", 0.0, Range::from(0.0));
-  law.breakaway = table.number_or("breakaway_Nm", law.coulomb, Range::from(0.0));
-  law.stribeck_velocity = table.number_or("stribeck_velocity_rad_s", 1e-3, Range::above(0.0));
-  law.viscous = table.number_or("viscous_Nms_rad", 0.0, Range::from(0.0));
+  law.coulomb = table.number_or("coulomb_Nm", 0.0, not_negative);
+  law.breakaway = table.number_or("breakaway_Nm", law.coulomb, not_negative);
+  law.stribeck_velocity = table.number_or("stribeck_velocity_rad_s", 1e-3, positive);
+  law.viscous = table.number_or("viscous_Nms_rad", 0.0, not_negative);
   if (law.breakaway < law.coulomb) table.fail("breakaway_Nm", "must not be smaller than coulomb_Nm");
   return law;
 }
@@ -154,9 +158,9 @@ Drive drive_of(const TomlTable& table) {
   drive.mode = mode.value_or(DriveMode::limp);
   if (!mode) know(table, {"proportional_Nm_rad", "derivative_Nms_rad", "limit_Nm"});
   if (drive.mode != DriveMode::servo) return drive;
-  drive.proportional = table.number("proportional_Nm_rad", Range::above(0.0));
-  drive.derivative = table.number("derivative_Nms_rad", Range::from(0.0));
-  drive.limit = table.number_or("limit_Nm", drive.limit, Range::above(0.0));
+  drive.proportional = table.number("proportional_Nm_rad", positive);
+  drive.derivative = table.number("derivative_Nms_rad", not_negative);
+  drive.limit = table.number_or("limit_Nm", drive.limit, positive);
   return drive;
 }
 
@@ -170,7 +174,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   description.source = root.text("source");
   Tree& tree = description.arm.tree;
   if (root.has("gravity_m_s2")) {
-    const auto g = root.numbers("gravity_m_s2", 3, 3, Range::finite());
+    const auto g = root.numbers("gravity_m_s2", 3, 3, Range::from(-1e6, 1e6));
     if (g.size() == 3) tree.gravity = {g[0], g[1], g[2]};
   }
 
@@ -223,7 +227,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
       elastic.motor_inertia = motor_inertia_of(own);
       if (const auto law = law_of(own)) elastic.spring = *law;
       elastic.friction = friction_of(own);
-      elastic.back_drive = own.number_or("back_drive_Nm", 0.0, Range::from(0.0));
+      elastic.back_drive = own.number_or("back_drive_Nm", 0.0, not_negative);
       description.drives.push_back(drive_of(own));
       description.arm.joints.push_back(elastic);
       description.joints.push_back(joint);

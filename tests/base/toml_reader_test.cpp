@@ -94,10 +94,10 @@ TEST(TomlReader, EveryProblemIsListedByLine) {
             "a.toml:2: n = 10, must be an integer >= 1 and <= 9\n"
             "a.toml:3: c = \"blue\", must be \"red\" or \"green\"\n"
             "a.toml:4: list[2] = '2', must be a number\n"
-            "a.toml:5: odd = {a = 1}, unknown key\n"
+            "a.toml:5: odd = {a = 1}, unknown key; known here: b, c, list, missing, n, t\n"
             "a.toml:7: b.x = -5_0, must be > 0 and <= 2\n"
-            "a.toml:8: table, unknown key\n"
-            "--set: extra = 1, unknown key\n"
+            "a.toml:8: table, unknown key; known here: b, c, list, missing, n, t\n"
+            "--set: extra = 1, unknown key; known here: b, c, list, missing, n, t\n"
             "other.csv:3: is odd");
 }
 
@@ -128,7 +128,7 @@ TEST(TomlReader, UnknownKeysNameTheNearestKnownOne) {
   EXPECT_EQ(message_of("[wire]\nlenght_mm = 1\nspan_mm = 1\nqqqqqqq = 1\n[mount]\n", read),
             "a.toml:2: wire.lenght_mm = 1, unknown key; did you mean length_mm?\n"
             "a.toml:3: wire.span_mm = 1, unknown key; did you mean mount.span_mm?\n"
-            "a.toml:4: wire.qqqqqqq = 1, unknown key");
+            "a.toml:4: wire.qqqqqqq = 1, unknown key; known here: length_mm");
 }
 
 TEST(TomlReader, FileFullOfProblemsIsRefusedAtOnce) {
@@ -240,7 +240,7 @@ TEST(TomlOverride, WhatCannotBeDoneIsReported) {
   EXPECT_EQ(message("a", "x\xFF"), "--set: a = x\xFF, the value must be a TOML literal or a bare word");
   EXPECT_EQ(message("a.b", "1"), "--set: a.b = 1, a is not a table");
   EXPECT_EQ(message("a[1]", "1"), "--set: a[1] = 1, a has no elements");
-  EXPECT_EQ(message("b", "1"), "--set: b = 1, unknown key");
+  EXPECT_EQ(message("b", "1"), "--set: b = 1, unknown key; known here: a, series");
   EXPECT_EQ(message("series[s41].name", "x"), "--set: series[s41].name = x, no such series; there are: s40, 2");
   EXPECT_EQ(message("series[0].name", "x"), "--set: series[0].name = x, no such series; there are: s40, 2");
   EXPECT_EQ(message("rows[1].name", "x"), "--set: rows[1].name = x, there is no [[rows]] in the file");

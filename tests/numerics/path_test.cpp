@@ -143,7 +143,7 @@ TEST(Path, TangentIsThatOfTheCurve) {
     const double p = x * x * x - x;
     const PathPoint point{Eigen::VectorXd::Constant(1, x), Eigen::VectorXd::Constant(1, p), p};
     const double slope = 3.0 * x * x - 1.0;  // dp/dx
-    const PathTangent forward = tangent(problem, point, workspace, nullptr);
+    const PathTangent forward = tangent(problem, point, workspace, nullptr).value();
     EXPECT_NEAR(forward.band[0] * slope, forward.parameter, 1e-14);
     EXPECT_NEAR(forward.border[0], forward.parameter, 1e-14);  // the force is the parameter
     EXPECT_NEAR(forward.band.squaredNorm() + forward.parameter * forward.parameter, 1.0, 1e-14);
@@ -151,7 +151,7 @@ TEST(Path, TangentIsThatOfTheCurve) {
     PathTangent back = forward;
     back.band = -back.band;
     back.parameter = -back.parameter;
-    EXPECT_LT(tangent(problem, point, workspace, &back).parameter, 0.0);  // keeps the sense of travel
+    EXPECT_LT(tangent(problem, point, workspace, &back).value().parameter, 0.0);  // keeps the sense of travel
   }
 }
 
@@ -180,7 +180,7 @@ TEST(Path, ArcLengthPassesBothFolds) {
   PathWorkspace workspace;
   PathPoint point{Eigen::VectorXd::Constant(1, -1.5), Eigen::VectorXd::Constant(1, -1.875), -1.875};
   ASSERT_TRUE(correct(problem, point, workspace, 20).usable());
-  PathTangent direction = tangent(problem, point, workspace, nullptr);
+  PathTangent direction = tangent(problem, point, workspace, nullptr).value();
   double highest = -1e9;
   double lowest_after = 1e9;
   for (int k = 0; k < 200 && point.band[0] < 1.5; ++k) {
@@ -191,7 +191,7 @@ TEST(Path, ArcLengthPassesBothFolds) {
     if (next.band[0] < 0.0) highest = std::max(highest, next.parameter);
     if (next.band[0] > 0.0) lowest_after = std::min(lowest_after, next.parameter);
     point = next;
-    direction = tangent(problem, point, workspace, &direction);
+    direction = tangent(problem, point, workspace, &direction).value();
   }
   EXPECT_GE(point.band[0], 1.5);
   const double fold = 2.0 / (3.0 * std::sqrt(3.0));

@@ -233,6 +233,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"shapes[spool].rounding_mm=[0.0, 0.0, 1.0, 9.5, 2.0, 1.0, 0.0, 0.0]",
        "rounding[4] = 0.0095, the arcs at the ends of the side before it must fit into its 0.01 m"},
       {"wires[a].strength_N=0", "wires[a].strength_N = 0, must be > 0"},
+      {"wires[a].strength_N=5e-324", "wires[a].strength_N = 5e-324, must be >= 1e-09"},
       {"wires[a].at_strength=\"break\"", "wires[a].at_strength = \"break\", must be \"flag\" or \"stop\""},
       {"shapes[box].file=\"none.stl\"", "none.stl"},
       {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},

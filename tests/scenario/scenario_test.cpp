@@ -31,7 +31,8 @@ TEST(Scenario, SaysFirstWhatItIs) {
 
 // Only a scenario that names a contact scenario has overrides for it.
 TEST(Scenario, OverridesOfAnotherFileNeedOne) {
-  EXPECT_EQ(problem_of("jemrms_step.toml", {{"contact.solver.elements", "24"}}), "--set: contact, unknown key");
+  EXPECT_THAT(problem_of("jemrms_step.toml", {{"contact.solver.elements", "24"}}),
+              testing::StartsWith("--set: contact, unknown key"));
   EXPECT_EQ(problem_of("jemrms_capture.toml", {{"contact.solver.elements", "24"}}), "");
   EXPECT_EQ(problem_of("jemrms_capture.toml", {{"contact.solver.elements", "2"}}),
             "--set: solver.elements = 2, must be an integer >= 8 and <= 20000");

@@ -165,18 +165,26 @@ const WrongFile wrong_files[] = {
     {"density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nstrand_slip_curvature_1_m = 0.1",
      "x.toml:11: wire.strand_slip_curvature_1_m = 0.1, needs strand_extra_stiffness_Nm2 beside it"},
     {"\"reading.force_gain\"", "3", "x.toml:34: fit.free[2] = 3, must be a text in quotes"},
+    {"diameter_mm = 1.5", "diameter_mm = 1e-200\nbending_stiffness_Nm2 = 1.0",
+     "x.toml:6: wire.diameter_mm = 1e-200, gives an axial stiffness of 0 N, must be >= 1e-12"},
     {"length_mm = 180.0", "lenght_mm = 180.0",
      "x.toml:4: wire.length_mm, missing, must be a number > 0 and <= 100000\n"
      "x.toml:7: wire.lenght_mm = 180.0, unknown key; did you mean length_mm?"},
     {"[wire]", "[wyre]",
      "x.toml: wire, missing, must be a table\n"
      "x.toml:4: wyre, unknown key; did you mean wire?"},
-    {"friction = 0.0", "friction = 0.0\ncolour = \"red\"", "x.toml:20: pusher.colour = \"red\", unknown key"},
+    {"friction = 0.0", "friction = 0.0\ncolour = \"red\"",
+     "x.toml:20: pusher.colour = \"red\", unknown key; known here: compliance_m_N, direction, friction, "
+     "misalignment_deg, "
+     "radius_mm, shape, tilt_deg"},
     {"friction = 0.0", "friction = 0.0\nspan_mm = 3.0",
      "x.toml:20: pusher.span_mm = 3.0, unknown key; did you mean mount.span_mm?"},
     {"points = 21", "points = 21\nmount.spam_mm = 174.0",
      "x.toml:27: series[s40].mount.spam_mm = 174.0, unknown key; did you mean span_mm?"},
-    {"points = 21", "points = 21\nsolver.elements = 64", "x.toml:27: series[s40].solver, unknown key"},
+    {"points = 21", "points = 21\nsolver.elements = 64",
+     "x.toml:27: series[s40].solver, unknown key; known here: bulge, contact_position_mm, file, force_sigma_N, "
+     "gravity, law, "
+     "mount, name, path_mm, points, pusher, travel_mm, wire"},
     {"length_mm = 180.0",
      "length_mm = ", "x.toml:7: not TOML: Error while parsing key-value pair: expected value, saw '\\n'"},
     {"length_mm = 180.0", "length_mm = 180,0",
@@ -190,7 +198,11 @@ const WrongFile wrong_files[] = {
     {"diameter_mm = 1.5\nlength_mm = 180.0", "diameter_mm = -1.5\nlength_mm = inf\ncolour = \"red\"",
      "x.toml:6: wire.diameter_mm = -1.5, must be > 0 and <= 100\n"
      "x.toml:7: wire.length_mm = inf, must be a finite number > 0 and <= 100000\n"
-     "x.toml:8: wire.colour = \"red\", unknown key"},
+     "x.toml:8: wire.colour = \"red\", unknown key; known here: axial_stiffness_N, bending_stiffness_Nm2, "
+     "construction, "
+     "density_kg_m3, diameter_mm, hardening_ratio, length_mm, natural_curvature_1_m, poisson_ratio, "
+     "strand_extra_stiffness_Nm2, strand_slip_curvature_1_m, torsional_stiffness_Nm2, yield_stress_MPa, "
+     "youngs_modulus_GPa"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, WrongExperiment, testing::ValuesIn(wrong_files));

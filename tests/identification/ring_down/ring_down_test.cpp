@@ -289,6 +289,7 @@ TEST_F(RingDownFileTest, IsReadAndChecked) {
       {series + "file = \"good.csv\"\nbending_share = [-1.5]\n", "bending_share"},
       {series + "file = \"good.csv\"\nbending_share = [0.5, 0.5]\n", "must not have more numbers than modes"},
       {series + "file = \"good.csv\"\nfrom_s = 2.0\nto_s = 1.0\n", "must be > from_s"},
+      {series + "file = \"good.csv\"\nto_s = -1.0\n", "has no reading from from_s to to_s"},
       {series + "file = \"good.csv\"\nfrom_s = 3.95\n", "readings, must have at least 20"},
       {series + "file = \"good.csv\"\n[wire]\nlength_mm = 1.0\n", "wire.diameter_mm, missing"},
       {series + "file = \"good.csv\"\n[mount]\nkind = \"supports\"\n", "must be \"clamped\" or \"pinned\""},

@@ -52,6 +52,31 @@ TEST_P(WrongArm, HasItsMessage) {
   std::filesystem::remove_all(folder);
 }
 
+// What would exhaust the stack of a reader that calls itself is refused before.
+TEST(EndlessUrdf, IsRefused) {
+  const auto message = [](const std::string& text) {
+    return message_of([&] { static_cast<void>(multibody::parse_urdf("x.urdf", text)); });
+  };
+  constexpr int many = 40000;
+  std::string nested = "<robot name='r'>\n";
+  std::string hidden = nested;
+  for (int i = 0; i < many; ++i) nested += "<link name='a'>";
+  for (int i = 0; i < many; ++i) hidden += "<a b='></a>'>";  // what stands in a value ends nothing
+  EXPECT_EQ(message(nested), "x.urdf:2: must not nest elements more than 64 deep");
+  EXPECT_EQ(message(hidden), "x.urdf:2: must not nest elements more than 64 deep");
+  std::string chain = "<robot name='r'><link name='l0'/>";
+  for (int i = 1; i < many; ++i) {
+    const std::string n = std::to_string(i);
+    chain += "<link name='l" + n + "'/><joint name='j" + n + "' type='fixed'><parent link='l" + std::to_string(i - 1) +
+             "'/><child link='l" + n + "'/></joint>";
+  }
+  EXPECT_EQ(message(chain + "</robot>"), "x.urdf:1: robot = 40000 links, must have at most 2000");
+  EXPECT_EQ(message("<!DOCTYPE robot [<!ENTITY a 'a'>]>\n<robot name='r'><link name='a'/></robot>"),
+            "x.urdf:1: <!DOCTYPE, must not be there: a robot description has no document type");
+  EXPECT_EQ(message("<!-- <a> <![CDATA[ -->\n<?xml version='1.0'?><robot name='r'><link name='a'/></robot>"),
+            "accepted");
+}
+
 const WrongFile wrong_urdfs[] = {
     {"<?xml version=\"1.0\"?>\n<robot name=\"two_links\">", "<robot name=\"two_links\"",
      "x.urdf:2: is no XML: Error reading Attributes"},
@@ -130,7 +155,7 @@ const WrongFile wrong_arms[] = {
     {"tip    = \"tip\"", "tip    = \"tipp\"", "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
     {"[joint.elbow]", "[joint.elbwo]", "x.toml:17: joint.elbwo, unknown key; did you mean elbow?"},
     {"rotor_inertia_kg_m2 = 1e-3", "rotor_inertia_kg_m2 = 0.0",
-     "x.toml:8: every_joint.rotor_inertia_kg_m2 = 0.0, must be > 0"},
+     "x.toml:8: every_joint.rotor_inertia_kg_m2 = 0.0, must be > 0 and <= 1e+15"},
     {"gear_ratio          = 100.0\n", "",
      "x.toml:7: every_joint.gear_ratio, missing, must be a number >= 1 and <= 1000000"},
     {"gear_ratio          = 100.0", "gear_ratio          = 0.01",
@@ -138,11 +163,11 @@ const WrongFile wrong_arms[] = {
     {"rotor_inertia_kg_m2 = 1e-3\n", "rotor_inertia_kg_m2 = 1e-3\nmotor_inertia_kg_m2 = 10.0\n",
      "x.toml:9: every_joint.motor_inertia_kg_m2 = 10.0, must not stand beside rotor_inertia_kg_m2"},
     {"stiffness_Nm_rad    = 1000.0", "stiffness_Nm_deg    = 1000.0",
-     "x.toml:7: every_joint.stiffness_Nm_rad, missing, must be a number > 0"},
+     "x.toml:7: every_joint.stiffness_Nm_rad, missing, must be a number > 0 and <= 1e+15"},
     {"law                 = \"linear\"", "law                 = \"springy\"",
      "x.toml:10: every_joint.law = \"springy\", must be \"linear\", \"piecewise\" or \"backlash\""},
     {"damping_Nms_rad     = 1.0", "damping_Nms_rad     = -1.0",
-     "x.toml:12: every_joint.damping_Nms_rad = -1.0, must be >= 0"},
+     "x.toml:12: every_joint.damping_Nms_rad = -1.0, must be >= 0 and <= 1e+15"},
     {"from_deg         = [0.0, 0.04]", "from_deg         = [0.01, 0.04]",
      "x.toml:19: joint.elbow.from_deg[1] = 0.01, must be 0"},
     {"from_deg         = [0.0, 0.04]", "from_deg         = [0.0, 0.0]",
@@ -150,7 +175,7 @@ const WrongFile wrong_arms[] = {
     {"stiffness_Nm_deg = [12.5, 475.0]", "stiffness_Nm_deg = [12.5, 475.0, 475.0]",
      "x.toml:20: joint.elbow.stiffness_Nm_deg = [12.5, 475.0, 475.0], must have 2 numbers, as from_deg has"},
     {"damping_Nms_deg  = [48.9, 87.3]", "damping_Nms_deg  = [48.9, \"87.3\"]",
-     "x.toml:21: joint.elbow.damping_Nms_deg[2] = \"87.3\", must be a number >= 0"},
+     "x.toml:21: joint.elbow.damping_Nms_deg[2] = \"87.3\", must be a number >= 0 and <= 1e+15"},
     {"damping_Nms_deg  = [48.9, 87.3]", "damping_Nms_deg  = [48.9, 87.3]\nreading = \"loose\"",
      "x.toml:22: joint.elbow.reading = \"loose\", must be \"continuous\" or \"literal\""},
     {"damping_Nms_deg  = [48.9, 87.3]", "damping_Nms_deg  = [48.9, 87.3]\ndamping_on = \"link\"",
@@ -163,7 +188,8 @@ const WrongFile wrong_arms[] = {
      "x.toml:17: every_joint.breakaway_Nm = 3.0, must not be smaller than coulomb_Nm"},
     {"drive               = \"servo\"", "drive               = \"held\"",
      "x.toml:13: every_joint.drive = \"held\", must be \"locked\", \"servo\" or \"limp\""},
-    {"proportional_Nm_rad = 500.0\n", "", "x.toml:7: every_joint.proportional_Nm_rad, missing, must be a number > 0"},
+    {"proportional_Nm_rad = 500.0\n", "",
+     "x.toml:7: every_joint.proportional_Nm_rad, missing, must be a number > 0 and <= 1e+15"},
     {"angles_deg = [30.0, -60.0]", "angles_deg = [30.0]",
      "x.toml:25: pose[bent].angles_deg = [30.0], must be an array of 2 numbers"},
     {"angles_deg = [30.0, -60.0]", "angles_deg = [300.0, -60.0]",

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "app/report/motion_record.hpp"
+#include "identification/fitting/prediction.hpp"
+
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// What is doubtful about results that were computed as asked, one sentence each: wires that cannot be or would have broken, pushers
+/// that the wire has left, blows beyond what a wire survives. Limits and their sources: theory.md (W.35), docs/warnings.md.
+/// `of`: whose results they are, before each sentence; may be empty.
+[[nodiscard]] std::vector<std::string> push_warnings(const std::vector<identification::Series>& series,
+                                                     const std::vector<identification::Prediction>& predictions,
+                                                     const std::string& of = "");
+
+/// The same of motions.
+[[nodiscard]] std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& finished);
+
+}  // namespace snare::app

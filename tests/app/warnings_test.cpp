@@ -1,0 +1,71 @@
+// What no wire can be or bear is said, wherever the result is read.
+
+#include "tests/app/command_fixture.hpp"
+#include "tests/support/wire_text.hpp"
+
+#include <string>
+
+namespace snare::app {
+namespace {
+
+class Warnings : public CommandFixture {
+ protected:
+  [[nodiscard]] std::string experiment(const std::string& more_of_wire, const std::string& more = "") const {
+    return "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" +
+           test::wire_tables("176.0", more_of_wire) +
+           "[solver]\nelements = 32\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = 1.0\npoints = "
+           "5\n" +
+           more;
+  }
+  /// Said on the console and in the JSON.
+  void expect_said(const std::string& arguments, const std::string& words) const {
+    ASSERT_EQ(run("push x.toml --out here --json " + arguments), 0) << contents("err.txt");
+    EXPECT_NE(contents("err.txt").find("warning: " + words), std::string::npos) << contents("err.txt");
+    bool found = false;
+    const nlohmann::json result = nlohmann::json::parse(contents("out.txt"));
+    for (const nlohmann::json& warning : result["warnings"])
+      found = found || warning.get<std::string>().find(words) == 0;
+    EXPECT_TRUE(found) << contents("out.txt");
+  }
+};
+
+TEST_F(Warnings, APushOfWhatCannotBe) {
+  write("x.toml", experiment(""));
+  ASSERT_EQ(run("push x.toml --out here --quiet --json"), 0) << contents("err.txt");
+  EXPECT_TRUE(nlohmann::json::parse(contents("out.txt"))["warnings"].empty()) << contents("out.txt");
+  expect_said("--set wire.axial_stiffness_N=1600000",
+              "the axial stiffness is 4.69 times that of a solid wire of 1.5 mm");
+  expect_said("--set wire.youngs_modulus_GPa=500", "the modulus of 500 GPa is above that of every metal");
+  expect_said("--set series[s].travel_mm=20", "series s: the stress in the wire reaches ");
+  expect_said("--set bulge.mode=2 --set wire.length_mm=180",
+              "series s: the wire has left the pusher behind a travel of 0 mm");
+}
+
+// A fitted stiffness that no wire has, on the page, too.
+TEST_F(Warnings, AFitOfWhatCannotBe) {
+  std::string csv = "displacement_mm,force_N\n";
+  for (int i = 0; i <= 20; ++i) csv += std::to_string(0.05 * i) + "," + std::to_string(4.0 * i + 2.0 * i * i) + "\n";
+  write("r.csv", csv);
+  write("x.toml", experiment("bending_stiffness_Nm2 = 0.048\n") + "[fit]\nfree = [\"wire.bending_stiffness_Nm2\"]\n");
+  std::string text = contents("x.toml");
+  text.replace(text.find("travel_mm = 1.0\npoints = 5"), 26, "file = \"r.csv\"");
+  write("x.toml", text);
+  ASSERT_EQ(run("trace x.toml --out here"), 0) << contents("err.txt");
+  EXPECT_NE(contents("err.txt").find("warning: fitted model"), std::string::npos) << contents("err.txt");
+  EXPECT_FALSE(parsed("here/trace.json")["warnings"].empty());
+  EXPECT_NE(contents("here/report.html").find("Warning: fitted model"), std::string::npos);
+}
+
+TEST_F(Warnings, ABlowThatBreaks) {
+  const std::string scenario = SNARE_SOURCE_DIR "/data/scenarios/air_table.toml";
+  const int status = run("simulate '" + scenario +
+                         "' --out here --set duration_s=2e-4 --set output_interval_s=1e-5 --set solver.elements=12 "
+                         "--set 'body.velocity_m_s=[0,400,0]'");
+  EXPECT_TRUE(status == 0 || status == 3) << contents("err.txt");
+  EXPECT_NE(contents("err.txt").find("is struck at 399."), std::string::npos) << contents("err.txt");
+  EXPECT_FALSE(parsed("here/summary.json")["warnings"].empty());
+  EXPECT_NE(contents("here/report.html").find("Warning: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace snare::app
