@@ -14,10 +14,13 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 namespace snare::benchmarks {
 namespace {
@@ -186,6 +189,59 @@ void one_wire(benchmark::State& state) {
   report(state, result);
 }
 BENCHMARK(one_wire)->Arg(60)->Unit(benchmark::kMillisecond);
+
+/// Three wires that are closed on a shaft: chords at 120 degrees from each other, 3 mm apart along it, each bulging past the
+/// shaft's middle to 0.1 mm from its surface; a body of 8.9 kg with friction swings between them.
+coupling::Motion held_shaft(int elements, bool quasi_static) {
+  const wire::WireSpecification w = validation::declared_specification();
+  coupling::Motion motion;
+  coupling::MotionBody body;
+  body.properties.mass = mass;
+  body.properties.inertia = 0.16 * Eigen::Matrix3d::Identity();
+  body.start.velocity = {0.05, 0.03, 0.0};
+  motion.bodies.push_back(body);
+  for (int k = 0; k < 3; ++k) {
+    wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
+    rod.quasi_static = quasi_static;
+    rod.damping.bending_time = rod.damping.axial_time = 1e-5;
+    coupling::MotionWire held{"wire" + std::to_string(k), rod, coupling::resting_wire(rod), {}};
+    const double bulge = held.positions.row(1).maxCoeff();
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(2.0 * std::numbers::pi / 3.0 * k, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Vector3d shift(-0.5 * span, probe + 0.5 * w.diameter + 0.1 * mm - bulge, 3.0 * mm * (k - 1));
+    held.positions = turn * (held.positions.colwise() + shift);
+    for (const wire::End which : wire::ends) {
+      wire::SpatialEnd& end = which == wire::End::left ? held.rod.properties.left : held.rod.properties.right;
+      end.position = turn * (end.position + shift);
+      end.direction = turn * end.direction;
+      end.director = turn * end.director;
+    }
+    motion.wires.push_back(held);
+    coupling::MotionContact contact;
+    contact.name = "shaft on wire" + std::to_string(k);
+    contact.shape = std::make_shared<coupling::EndlessCylinder>(probe);
+    contact.wire = k;
+    contact.wire_radius = 0.5 * w.diameter;
+    contact.friction = {0.3, 0.1, 0.01, 1.0};
+    motion.contacts.push_back(contact);
+  }
+  return motion;
+}
+
+// One second, most of it in contact with one wire or two.
+void three_wires(benchmark::State& state) {
+  const coupling::Motion motion = held_shaft(static_cast<int>(state.range(0)), state.range(1) == 1);
+  coupling::MotionOptions options;
+  options.duration = 1.0;
+  coupling::MotionResult result;
+  for (auto _ : state) result = coupling::simulate(motion, options);
+  report(state, result);
+}
+BENCHMARK(three_wires)
+    ->ArgNames({"elements", "quasi_static"})
+    ->Args({60, 0})
+    ->Args({60, 1})
+    ->Unit(benchmark::kMillisecond);
 
 // The impact with the tolerances times 10^k, k = -2 ... 2: error of the impulse against that at 10^-3.
 void tolerances(benchmark::State& state) {

@@ -40,7 +40,11 @@ DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
 
 void DaeSystem::make_pattern_anew() {
   std::vector<std::pair<int, int>> entries;
-  for (const DaePart* part : parts_) part->sparsity(entries);
+  rates_.clear();
+  for (const DaePart* part : parts_) {
+    part->sparsity(entries);
+    part->rates(rates_);
+  }
   matrix_ = make_pattern(size(), entries);
   for (DaePart* part : parts_) part->attach_pattern(matrix_);
   ++pattern_version_;

@@ -84,6 +84,8 @@ class DaePart {
   virtual void declare(DaeLayout& layout) = 0;
   /// Appends the entries (row, column) of dF/dy and dF/dy' to which the part adds; repeated ones are fine.
   virtual void sparsity(std::vector<std::pair<int, int>>& entries) const = 0;
+  /// Appends (p, v) where the row p reads y'_p - y_v = 0, whatever other parts add to it: rates of places.
+  virtual void rates(std::vector<std::pair<int, int>>& /*pairs*/) const {}
   /// Told the pattern, to look up its slots in it.
   virtual void attach_pattern(const SparseMatrix& pattern) = 0;
   /// Adds to the rows of F.
@@ -117,6 +119,9 @@ class DaeSystem {
   /// The matrix of the last `jacobian`, or the pattern with zeros.
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
 
+  /// All (p, v) of the parts, see DaePart: of the present pattern.
+  [[nodiscard]] const std::vector<std::pair<int, int>>& rates() const noexcept { return rates_; }
+
   /// F into `rows`.
   void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows);
   /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first when a part has asked for it.
@@ -139,6 +144,7 @@ class DaeSystem {
   std::vector<DaePart*> parts_;
   DaeLayout layout_;
   SparseMatrix matrix_;
+  std::vector<std::pair<int, int>> rates_;
   int event_count_ = 0;
   int pattern_version_ = 0;
   bool stale_pattern_ = true;

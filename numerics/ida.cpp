@@ -1,6 +1,7 @@
 #include "numerics/ida.hpp"
 
 #include "numerics/ida_callbacks.hpp"
+#include "numerics/newton_solver.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,11 +20,6 @@ namespace snare::numerics {
 namespace {
 
 constexpr int tries = 40;  // of one step
-
-struct NonlinearSolverDeleter {
-  void operator()(SUNNonlinearSolver s) const noexcept { SUNNonlinSolFree(s); }
-};
-using SunNonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, NonlinearSolverDeleter>;
 
 struct IdaDeleter {
   void operator()(void* memory) const noexcept { IDAFree(&memory); }
@@ -61,8 +57,8 @@ struct Ida::Memory {
   SunVector y_view, rate_view, tolerance_view, identity_view, integrals_view;
   SunMatrix matrix;
   SunLinearSolver linear;
-  SunNonlinearSolver newton;
   std::unique_ptr<void, IdaDeleter> ida;
+  SunNonlinearSolver newton;
   double time = 0.0;
   std::vector<int> events;
   IdaReport report;
@@ -93,8 +89,10 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       integrals_view(view(integrals, context)),
       matrix(made(SUNSparseMatrix(system.size(), system.size(), 1, CSC_MAT, context), "SUNSparseMatrix")),
       linear(make_linear_solver(callbacks, context)),
-      newton(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton")),
       ida(made(IDACreate(context), "IDACreate")),
+      newton(options.newton_test == NewtonTest::every_unknown
+                 ? make_newton_solver(callbacks, y_view.get(), context)
+                 : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
   // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
   // wire's hundreds, the mean is made one over blocks: an unknown counts as one over the size of its block.
@@ -135,8 +133,6 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetMaxConvFails(m, tries), "IDASetMaxConvFails");
   check(IDASetMaxErrTestFails(m, tries), "IDASetMaxErrTestFails");
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
-  if (options.newton_test == NewtonTest::every_unknown)
-    check(SUNNonlinSolSetConvTestFn(newton.get(), snare_newton_test, &callbacks), "SUNNonlinSolSetConvTestFn");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
   if (system.event_count() > 0) {

@@ -87,30 +87,30 @@ extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vec
 
 // IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
 // unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
-// quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10.
-extern "C" int snare_newton_test(SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype share,
-                                 N_Vector weight, void* data) {
-  auto& self = *static_cast<IdaCallbacks*>(data);
+// quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10. What
+// would not get there with an old matrix within the iterations that are left is given up at once: they would be lost.
+int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::Ref<const Eigen::VectorXd>& step,
+                            const Eigen::Ref<const Eigen::VectorXd>& weight) {
   constexpr double best_rate = 0.1;
   constexpr double worst_rate = 0.9;
   constexpr double converged_at_once = 1e-4;  // of the share
   constexpr double of_round_off = 1e-4;       // of the tolerance
-  int iteration = 0;
-  SUNNonlinSolGetCurIter(solver, &iteration);
-  const double size = map(correction).cwiseProduct(map(weight)).lpNorm<Eigen::Infinity>();
+  const double size = step.cwiseProduct(weight).lpNorm<Eigen::Infinity>();
   if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;
   if (iteration == 0) {
-    self.first_correction = size;
-    if (size <= converged_at_once * share) return SUN_NLS_SUCCESS;
+    if (size <= converged_at_once * at.share) return SUN_NLS_SUCCESS;
   } else {
-    const double rate = std::pow(size / self.first_correction, 1.0 / iteration);
+    const double rate = size / last_correction;
     // What no longer shrinks is round-off, when it is far below the tolerance.
-    if (size <= of_round_off && size > worst_rate * self.last_correction) return SUN_NLS_SUCCESS;
+    if (size <= of_round_off && rate > worst_rate) return SUN_NLS_SUCCESS;
     if (rate > worst_rate) return SUN_NLS_CONV_RECVR;
-    self.remainder = rate / (1.0 - rate);
+    remainder = rate / (1.0 - rate);
+    const int left = at.most - 1 - iteration;
+    if (!at.current && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share)
+      return SUN_NLS_CONV_RECVR;
   }
-  self.last_correction = size;
-  return std::max(self.remainder, best_rate) * size <= share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+  last_correction = size;
+  return std::max(remainder, best_rate) * size <= at.share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
 }
 
 namespace {
@@ -119,33 +119,32 @@ IdaCallbacks& content(SUNLinearSolver solver) {
   return *static_cast<IdaCallbacks*>(solver->content);
 }
 
-extern "C" SUNLinearSolver_Type snare_klu_type(SUNLinearSolver) {
+extern "C" SUNLinearSolver_Type snare_linear_type(SUNLinearSolver) {
   return SUNLINEARSOLVER_DIRECT;
 }
 
-extern "C" int snare_klu_setup(SUNLinearSolver solver, SUNMatrix) {
+extern "C" int snare_linear_setup(SUNLinearSolver solver, SUNMatrix) {
   IdaCallbacks& self = content(solver);
   return guarded(self, [&] {
     const Stopwatch watch(self.statistics.factor_seconds);
     self.remainder = IdaCallbacks::unknown_remainder;
-    if (!self.klu || self.analysed_pattern != self.system.pattern_version()) {
-      self.klu = std::make_unique<Klu>(self.system.matrix());
+    if (!self.solver || self.analysed_pattern != self.system.pattern_version()) {
+      self.solver = std::make_unique<DaeSolver>(self.system.matrix(), self.system.rates());
       self.analysed_pattern = self.system.pattern_version();
       ++self.statistics.analyses;
     }
     ++self.statistics.factorizations;
-    return self.klu->factorize(self.system.matrix());
+    return self.solver->factorize(self.system.matrix());
   });
 }
 
-extern "C" int snare_klu_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+extern "C" int snare_linear_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
   IdaCallbacks& self = content(solver);
   return guarded(self, [&] {
     const Stopwatch watch(self.statistics.solve_seconds);
     auto solution = map(x);
     solution = map(b);
-    self.klu->solve(solution);
-    return solution.allFinite();
+    return self.solver->solve(self.system.matrix(), solution) && solution.allFinite();
   });
 }
 
@@ -153,9 +152,9 @@ extern "C" int snare_klu_solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_
 
 SunLinearSolver make_linear_solver(IdaCallbacks& callbacks, SUNContext context) {
   SunLinearSolver solver(made(SUNLinSolNewEmpty(context), "SUNLinSolNewEmpty"));
-  solver->ops->gettype = snare_klu_type;
-  solver->ops->setup = snare_klu_setup;
-  solver->ops->solve = snare_klu_solve;
+  solver->ops->gettype = snare_linear_type;
+  solver->ops->setup = snare_linear_setup;
+  solver->ops->solve = snare_linear_solve;
   solver->ops->free = [](SUNLinearSolver s) {
     s->content = nullptr;  // ours
     SUNLinSolFreeEmpty(s);

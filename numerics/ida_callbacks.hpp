@@ -1,8 +1,8 @@
 #pragma once
 
 #include "numerics/dae.hpp"
+#include "numerics/dae_solver.hpp"
 #include "numerics/ida_statistics.hpp"
-#include "numerics/klu.hpp"
 #include "numerics/sundials.hpp"
 
 #include <sundials/sundials_nonlinearsolver.h>
@@ -20,20 +20,31 @@ namespace snare::numerics {
   return {N_VGetArrayPointer(v), N_VGetLength(v)};
 }
 
+/// What a Newton iteration has to go by.
+struct NewtonState {
+  double share = 0.0;    ///< of the tolerance that it may leave [-]
+  int most = 0;          ///< iterations
+  bool current = false;  ///< whether the matrix is that of this step
+};
+
 /// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.
 struct IdaCallbacks {
   DaeSystem& system;
   IdaStatistics statistics;
   std::exception_ptr failure;
-  std::unique_ptr<Klu> klu;
+  std::unique_ptr<DaeSolver> solver;
   int analysed_pattern = 0;
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
-  // Of the Newton iteration: the first correction of this step, and what the last rate of convergence leaves after one.
-  double first_correction = 0.0;
+  // Of the Newton iteration: the last correction of this step, and what the last rate of convergence leaves after one.
   double last_correction = 0.0;
   double remainder = unknown_remainder;
 
   static constexpr double unknown_remainder = 20.0;
+
+  /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration, the first of which
+  /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.        theory.md (M.12)
+  [[nodiscard]] int converged(int iteration, const NewtonState& at, const Eigen::Ref<const Eigen::VectorXd>& step,
+                              const Eigen::Ref<const Eigen::VectorXd>& weight);
 
   Eigen::VectorXd relative{};   // tolerance, zero where none acts
   Eigen::VectorXd tolerance{};  // absolute
@@ -49,12 +60,9 @@ int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vect
                        N_Vector work1, N_Vector work2, N_Vector work3);
 int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype* values, void* data);
 int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vector values, void* data);
-/// NewtonTest::every_unknown.
-int snare_newton_test(SUNNonlinearSolver solver, N_Vector y, N_Vector correction, realtype share, N_Vector weight,
-                      void* data);
 }
 
-/// KLU on the system's matrix. The callbacks stay the caller's and outlive it.
+/// A DaeSolver on the system's matrix. The callbacks stay the caller's and outlive it.
 [[nodiscard]] SunLinearSolver make_linear_solver(IdaCallbacks& callbacks, SUNContext context);
 
 }  // namespace snare::numerics

@@ -27,35 +27,31 @@ CellVector to_cell(const PairGradient& g) {
   return v;
 }
 
-CellMatrix to_cell(const PairMatrix& h) {
-  Eigen::Matrix<double, CellRows::count, 8> r;
-  r << -h.topRows<3>(), h.row(3), h.topRows<3>() - h.middleRows<3>(4), h.row(7), h.middleRows<3>(4);
+CellMatrix to_cell(const PairHessian& h) {
+  constexpr int x = Rows::before, y = Rows::middle, z = Rows::after, p = Rows::angle_before, q = Rows::angle_after;
   CellMatrix m;
-  m << -r.leftCols<3>(), r.col(3), r.leftCols<3>() - r.middleCols<3>(4), r.col(7), r.middleCols<3>(4);
+  const auto set = [&m](int row, int column, const Matrix3d& value) {
+    m.block<3, 3>(row, column) = value;
+    if (row != column) m.block<3, 3>(column, row) = value.transpose();
+  };
+  set(x, x, h.aa);
+  set(x, y, h.ab - h.aa);
+  set(x, z, -h.ab);
+  set(y, y, h.aa - h.ab - h.ab.transpose() + h.bb);
+  set(y, z, h.ab - h.bb);
+  set(z, z, h.bb);
+  const auto set_angle = [&m](int angle, const Vector3d& a, const Vector3d& b) {
+    m.block<3, 1>(x, angle) = -a;
+    m.block<3, 1>(y, angle) = a - b;
+    m.block<3, 1>(z, angle) = b;
+    for (const int row : {x, y, z}) m.block<1, 3>(angle, row) = m.block<3, 1>(row, angle).transpose();
+  };
+  set_angle(p, h.a_theta_a, h.b_theta_a);
+  set_angle(q, h.a_theta_b, h.b_theta_b);
+  m(p, p) = h.theta_aa;
+  m(p, q) = m(q, p) = h.theta_ab;
+  m(q, q) = h.theta_bb;
   return m;
-}
-
-PairVector to_pair(const PairGradient& g) {
-  PairVector v;
-  v << g.a, g.theta_a, g.b, g.theta_b;
-  return v;
-}
-
-PairMatrix to_pair(const PairHessian& h) {
-  PairMatrix m;
-  m << h.aa, h.a_theta_a, h.ab, h.a_theta_b,                                     //
-      h.a_theta_a.transpose(), h.theta_aa, h.b_theta_a.transpose(), h.theta_ab,  //
-      h.ab.transpose(), h.b_theta_a, h.bb, h.b_theta_b,                          //
-      h.a_theta_b.transpose(), h.theta_ab, h.b_theta_b.transpose(), h.theta_bb;
-  return m;
-}
-
-PairVector BendingCell::pair_rate() const {
-  const Vector3d middle = rate.segment<3>(Rows::middle);
-  PairVector r;
-  r << middle - rate.segment<3>(Rows::before), rate[Rows::angle_before], rate.segment<3>(Rows::after) - middle,
-      rate[Rows::angle_after];
-  return r;
 }
 
 void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor, Eigen::VectorXd& gradient) {

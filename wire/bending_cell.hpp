@@ -22,18 +22,9 @@ struct CellRows {
 using CellVector = Eigen::Matrix<double, CellRows::count, 1>;
 using CellMatrix = Eigen::Matrix<double, CellRows::count, CellRows::count>;
 
-/// By the edges a = x_i - x_{i-1}, b = x_{i+1} - x_i and their angles: a (3), theta_{i-1}, b (3), theta_i.
-using PairVector = Eigen::Matrix<double, 8, 1>;
-using PairMatrix = Eigen::Matrix<double, 8, 8>;
-[[nodiscard]] PairVector to_pair(const PairGradient& g);
-[[nodiscard]] PairMatrix to_pair(const PairHessian& h);
-
 /// Derivatives by the cell's unknowns from those by its edges and angles.
 [[nodiscard]] CellVector to_cell(const PairGradient& g);
-[[nodiscard]] CellMatrix to_cell(const PairMatrix& h);
-[[nodiscard]] inline CellMatrix to_cell(const PairHessian& h) {
-  return to_cell(to_pair(h));
-}
+[[nodiscard]] CellMatrix to_cell(const PairHessian& h);
 
 /// One vertex's bending in motion: its curvatures kappa_1, kappa_2 and the rates of what they depend on.
 struct BendingCell {
@@ -44,8 +35,6 @@ struct BendingCell {
   /// Of the cell's unknowns, relative to a mount that spins: e' - w x e of the edge beside it, theta' - w.t
   /// of its angle.                                                                           theory.md (M.17)
   CellVector rate = CellVector::Zero();
-  /// The same of its edges and angles.
-  [[nodiscard]] PairVector pair_rate() const;
   /// Change of `rate` with the cell's places at given velocities; zero but beside a mount that spins.
   [[nodiscard]] CellMatrix rate_by_place() const;
 

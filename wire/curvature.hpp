@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace snare::wire {
 
@@ -108,5 +109,57 @@ class WeightedCurvature {
 
 /// Adds factor * g g^T.
 void add_square(const PairGradient& g, double factor, PairHessian& out);
+
+// Here, for the compiler to put in where wires in motion spend their time.
+
+inline Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
+  Turn turn;
+  turn.before = before;
+  turn.after = after;
+  turn.cosine = before.dot(after);
+  turn.chi = 1.0 + turn.cosine;
+  const double inverse = 1.0 / turn.chi;
+  turn.binormal = (2.0 * inverse) * before.cross(after);
+  turn.mean = inverse * (before + after);
+  return turn;
+}
+
+// (W.23)  f(c):   df/da = f' dc/da,   dc/da = (u - c t)/|a|,   dc/db = (t - c u)/|b|;   first = f'.
+inline void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double first, PairGradient& out) {
+  out.a += (first * inverse.a) * (turn.after - turn.cosine * turn.before);
+  out.b += (first * inverse.b) * (turn.before - turn.cosine * turn.after);
+}
+
+// (W.24)  kappa_1 = 1/2 kb.(m2_- + m2_+),   kappa_2 = -1/2 kb.(m1_- + m1_+)
+inline Eigen::Vector2d curvatures(const Turn& turn, const Directors& before, const Directors& after) {
+  return {0.5 * turn.binormal.dot(before.second + after.second), -0.5 * turn.binormal.dot(before.first + after.first)};
+}
+
+// (W.25)  kappa = 1/2 kb.s with s = w_- + w_+. The carried directors change along t and u, where kb is zero,
+// so that only kb changes:
+//   |a| dkappa/da = A = u x s/chi - kappa mean,   |b| dkappa/db = B = -t x s/chi - kappa mean.
+inline WeightedCurvature::WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after,
+                                            const Eigen::Vector2d& weights)
+    : turn_(turn),
+      w_a_(weights[0] * before.second - weights[1] * before.first),
+      w_b_(weights[0] * after.second - weights[1] * after.first),
+      v_a_(weights[0] * before.first + weights[1] * before.second),
+      v_b_(weights[0] * after.first + weights[1] * after.second) {
+  const Eigen::Vector3d sum = w_a_ + w_b_;
+  const double inverse_chi = 1.0 / turn.chi;
+  value_ = 0.5 * turn.binormal.dot(sum);
+  turned_a_ = inverse_chi * turn.after.cross(sum);
+  turned_b_ = inverse_chi * turn.before.cross(sum);
+  slope_a_ = turned_a_ - value_ * turn.mean;
+  slope_b_ = -turned_b_ - value_ * turn.mean;
+}
+
+// By the angles dw/dtheta = -v:   dkappa/dtheta = -1/2 kb.v.
+inline void WeightedCurvature::add_gradient(const InverseLengths& inverse, PairGradient& out) const {
+  out.a += inverse.a * slope_a_;
+  out.b += inverse.b * slope_b_;
+  out.theta_a -= 0.5 * turn_.binormal.dot(v_a_);
+  out.theta_b -= 0.5 * turn_.binormal.dot(v_b_);
+}
 
 }  // namespace snare::wire

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
 
 namespace snare::wire {
 
@@ -34,5 +38,32 @@ struct Frame {
 /// Given the value of the last state as `near`, it follows any number of turns as long as one step changes it
 /// by less than pi.
 [[nodiscard]] double reference_twist(const Frame& before, const Frame& after, double near);
+
+// Here, for the compiler to put in where wires in motion spend their time.
+
+inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
+                                          const Eigen::Vector3d& to) {
+  return v - (v.dot(to) / (1.0 + from.dot(to))) * (from + to);
+}
+
+inline Frame transport(const Frame& frame, const Eigen::Vector3d& tangent) {
+  Eigen::Vector3d director = parallel_transport(frame.director, frame.tangent, tangent);
+  director -= tangent.dot(director) * tangent;
+  director *= 1.0 / std::sqrt(director.squaredNorm());
+  return {tangent, director};
+}
+
+inline Eigen::Vector3d turned_director(const Frame& frame, double angle) {
+  return std::cos(angle) * frame.director + std::sin(angle) * frame.tangent.cross(frame.director);
+}
+
+inline double reference_twist(const Frame& before, const Frame& after, double near) {
+  using std::numbers::pi;
+  const Eigen::Vector3d carried = parallel_transport(before.director, before.tangent, after.tangent);
+  const double sine = after.tangent.dot(carried.cross(after.director));
+  const double angle = std::atan2(sine, carried.dot(after.director));
+  const double gap = near - angle;
+  return std::abs(gap) <= pi ? angle : angle + 2.0 * pi * std::round(gap / (2.0 * pi));
+}
 
 }  // namespace snare::wire

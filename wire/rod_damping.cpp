@@ -14,6 +14,33 @@ Vector3d edge_of(const RodInstant& instant, int e) {
   return vertex(instant.state, e + 1) - vertex(instant.state, e);
 }
 
+/// H r by the rates of a cell's edges and angles.
+PairGradient times_rates(const PairHessian& h, const BendingCell& cell) {
+  const Vector3d middle = cell.rate.segment<3>(CellRows::middle);
+  const Vector3d a = middle - cell.rate.segment<3>(CellRows::before);
+  const Vector3d b = cell.rate.segment<3>(CellRows::after) - middle;
+  const double theta_a = cell.rate[CellRows::angle_before], theta_b = cell.rate[CellRows::angle_after];
+  PairGradient g;
+  g.a = h.aa * a + h.ab * b + theta_a * h.a_theta_a + theta_b * h.a_theta_b;
+  g.b = h.ab.transpose() * a + h.bb * b + theta_a * h.b_theta_a + theta_b * h.b_theta_b;
+  g.theta_a = h.a_theta_a.dot(a) + h.b_theta_a.dot(b) + h.theta_aa * theta_a + h.theta_ab * theta_b;
+  g.theta_b = h.a_theta_b.dot(a) + h.b_theta_b.dot(b) + h.theta_ab * theta_a + h.theta_bb * theta_b;
+  return g;
+}
+
+void add_scaled(const PairHessian& h, double factor, PairHessian& sum) {
+  sum.aa += factor * h.aa;
+  sum.ab += factor * h.ab;
+  sum.bb += factor * h.bb;
+  sum.a_theta_a += factor * h.a_theta_a;
+  sum.a_theta_b += factor * h.a_theta_b;
+  sum.b_theta_a += factor * h.b_theta_a;
+  sum.b_theta_b += factor * h.b_theta_b;
+  sum.theta_aa += factor * h.theta_aa;
+  sum.theta_ab += factor * h.theta_ab;
+  sum.theta_bb += factor * h.theta_bb;
+}
+
 }  // namespace
 
 // D = 1/2 tau EA h e'^2 with e' = t.w/h, w = v_{i+1} - v_i: the force f = tau EA e' along t on x_{i+1},
@@ -73,22 +100,21 @@ std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell
 // and where a mount spins, r also changes with the places.
 void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell, int i, double c,
                                   const RodSlots& slots, std::vector<double>& values) {
-  PairMatrix place = PairMatrix::Zero();
-  PairMatrix rate = PairMatrix::Zero();
-  const PairVector r = cell.pair_rate();
   const std::array<double, 2> stiffness = viscous_stiffness(model, cell);
+  PairHessian turned;  // sum k (g.r) H
+  CellMatrix by_place = CellMatrix::Zero();
+  CellMatrix by_rate = CellMatrix::Zero();
   for (int j = 0; j < 2; ++j) {
     const BendingCell::Derivatives kappa = cell.differentiate(j);
-    const PairVector slope = to_pair(kappa.gradient);
-    const PairMatrix hessian = to_pair(kappa.hessian);
-    const PairVector weighted = stiffness[base::at(j)] * slope;
-    place += weighted.dot(r) * hessian + weighted * (hessian * r).transpose();
-    rate += weighted * slope.transpose();
+    const CellVector slope = to_cell(kappa.gradient);
+    const CellVector weighted = stiffness[base::at(j)] * slope;
+    by_place += weighted * to_cell(times_rates(kappa.hessian, cell)).transpose();
+    by_rate += weighted * slope.transpose();
+    add_scaled(kappa.hessian, weighted.dot(cell.rate), turned);
   }
-  CellMatrix by_place = to_cell(place);
-  const CellMatrix by_rate = to_cell(rate);
+  by_place += to_cell(turned);
   if (model.end_of(i)) by_place += by_rate * cell.rate_by_place();
-  slots.add_cell(i, by_place, by_rate, c, model.bands() - 1, values);  // the last angle is of no edge
+  slots.add_cell(i, by_place, by_rate, c, values);
 }
 
 }  // namespace snare::wire

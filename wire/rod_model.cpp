@@ -47,12 +47,6 @@ RodModel::RodModel(const RodInMotion& constants)
   }
 }
 
-std::optional<End> RodModel::end_of(int i) const {
-  if (i == 0) return End::left;
-  if (i == edges()) return End::right;
-  return std::nullopt;
-}
-
 void RodModel::release(End end) {
   for (int k = 0; k < 3; ++k) held_[base::at(3 * vertex_at(end) + k)] = false;
 }

@@ -43,7 +43,11 @@ class RodModel {
   [[nodiscard]] int vertex_at(End end) const { return end == End::left ? 0 : edges(); }
   [[nodiscard]] int edge_at(End end) const { return end == End::left ? 0 : edges() - 1; }
   /// The end that vertex i is at.
-  [[nodiscard]] std::optional<End> end_of(int i) const;
+  [[nodiscard]] std::optional<End> end_of(int i) const {
+    if (i == 0) return End::left;
+    if (i == edges()) return End::right;
+    return std::nullopt;
+  }
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
   /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt, and what friction

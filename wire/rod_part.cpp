@@ -35,6 +35,14 @@ void RodPart::declare(numerics::DaeLayout& layout) {
   model_.declare(layout, name_, tolerances_);
 }
 
+void RodPart::rates(std::vector<std::pair<int, int>>& pairs) const {
+  for (int i = 0; i < vertices(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!is_held(i, k)) pairs.emplace_back(position_of(i) + k, velocity_of(i) + k);
+    }
+  }
+}
+
 void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eigen::VectorXd& y) {
   const int n = vertices();
   assert(positions.cols() == n);
@@ -49,6 +57,7 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   accepted_.state = rod().make_state(q, model_.controls());
   accepted_.take_directors();
   trial_ = accepted_;
+  y_.resize(0);
   if (model_.is_curved()) {
     y.segment(model_.curvature_of(0), 2 * n) =
         balanced_curvatures(model_, accepted_, {0.0, y, Eigen::VectorXd::Zero(y.size())}).reshaped();
@@ -78,8 +87,16 @@ void RodPart::set_mounts(const numerics::VectorView& y, RodInstant& instant) con
   }
 }
 
-// Frames go from the last accepted state to the point's; then dE and what damping and strands add to it.
+bool RodPart::is_evaluated(const DaePoint& at) const {
+  return y_.size() == at.y.size() && y_ == at.y && rate_ == at.rate;
+}
+
+// Frames go from the last accepted state to the point's; then dE and what damping and strands add to it. Residual and Jacobian,
+// and what is asked after a step, are of the same point.
 void RodPart::evaluate(const DaePoint& at) {
+  if (is_evaluated(at)) return;
+  y_ = at.y;
+  rate_ = at.rate;
   take_unknowns(at.y);
   trial_.state = accepted_.state;
   set_mounts(at.y, trial_);
@@ -157,7 +174,7 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
 
 void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   evaluate(at);
-  rod().assemble(trial_.state, {false, false, false}, assembly_);
+  rod().assemble(trial_.state, {false, false, false}, stiffness_);
   const int bands = model_.bands();
   // What is held: 1 for x and v, or theta. Else x' - v: (c, -1), and m v' + a m v: m (c + a).
   for (int i = 0; i < bands; ++i) {
@@ -176,7 +193,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
   }
   // d2E, both triangles of the band.
   for (int j = 0; j < bands; ++j) {
-    const double* column = assembly_.hessian.column(j);
+    const double* column = stiffness_.hessian.column(j);
     for (int i = j; i <= std::min(bands - 1, j + SpatialRod::half_bandwidth); ++i) {
       const double value = column[i - j];
       slots_.add_place(i, j, value, values);
@@ -219,6 +236,11 @@ const SpatialState& RodPart::state_at(const DaePoint& at) {
 }
 
 bool RodPart::accept(const DaePoint& at) {
+  if (is_evaluated(at)) {
+    accepted_.state = trial_.state;
+    accepted_.spin = trial_.spin;
+    return false;
+  }
   take_unknowns(at.y);
   set_mounts(at.y, accepted_);
   wire::accept(accepted_.state, band_);
@@ -244,6 +266,7 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
   accepted_.take_directors();
   trial_ = accepted_;
+  y_.resize(0);
 }
 
 double RodPart::mount_error(const numerics::VectorView& y) const {

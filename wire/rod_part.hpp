@@ -36,6 +36,7 @@ class RodPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override { append_sparsity(model_, entries); }
+  void rates(std::vector<std::pair<int, int>>& pairs) const override;
   void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(model_, pattern); }
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
@@ -114,6 +115,8 @@ class RodPart final : public numerics::DaePart {
   void add_losses_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
   void set_mounts(const numerics::VectorView& y, RodInstant& instant) const;
   void take_unknowns(const numerics::VectorView& y);
+  /// Whether `trial_` and what belongs to it are those of a point.
+  [[nodiscard]] bool is_evaluated(const numerics::DaePoint& at) const;
 
   std::string name_;
   RodTolerances tolerances_;
@@ -125,7 +128,9 @@ class RodPart final : public numerics::DaePart {
 
   // Workspace: the point of the last evaluation.
   RodInstant trial_;
-  RodAssembly assembly_;
+  Eigen::VectorXd y_, rate_;       // that point, empty: none
+  RodAssembly assembly_;           // energy and forces
+  RodAssembly stiffness_;          // second derivatives
   Eigen::Matrix2Xd by_curvature_;  // dE/dk of higher order
   Losses losses_;
   Eigen::VectorXd band_;

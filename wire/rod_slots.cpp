@@ -1,8 +1,23 @@
 #include "wire/rod_slots.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace snare::wire {
+
+namespace {
+
+/// Whether two unknowns of the band are in one cell: x_{i-1}, x_i, x_{i+1} and the angles of the edges between.
+bool share_a_cell(int i, int j) {
+  const int between = j / RodModel::block - i / RodModel::block;
+  const bool angle_i = RodModel::is_angle(i), angle_j = RodModel::is_angle(j);
+  if (angle_i && angle_j) return std::abs(between) <= 1;
+  if (angle_j) return between >= -2 && between <= 1;  // edge e is in the cells of the vertices e and e + 1
+  if (angle_i) return between >= -1 && between <= 2;
+  return std::abs(between) <= 2;
+}
+
+}  // namespace
 
 void append_sparsity(const RodModel& model, std::vector<std::pair<int, int>>& entries) {
   constexpr int reach = SpatialRod::half_bandwidth;
@@ -41,13 +56,12 @@ void append_sparsity(const RodModel& model, std::vector<std::pair<int, int>>& en
     const int at = model.unknown_of(i);
     entries.emplace_back(at, at);
     if (!RodModel::is_angle(i)) {
-      entries.emplace_back(at, model.rate_of(i));
+      if (!model.is_held(i)) entries.emplace_back(at, model.rate_of(i));
       entries.emplace_back(model.rate_of(i), model.rate_of(i));
     }
     if (model.is_held(i)) continue;
     for (int j = std::max(0, i - reach); j <= std::min(bands - 1, i + reach); ++j) {
-      // A round rod's twist acts through the edges' vectors of both sides: within the band everything may be
-      // filled.
+      if (!share_a_cell(i, j)) continue;
       entries.emplace_back(model.balance_of(i), model.unknown_of(j));
       if (damped && !RodModel::is_angle(j)) entries.emplace_back(model.balance_of(i), model.rate_of(j));
     }
@@ -75,6 +89,20 @@ void RodSlots::attach(const RodModel& model, const numerics::SparseMatrix& patte
       if (!RodModel::is_angle(j)) rate_[slot_of(i, j)] = pattern.slot(balance, model.rate_of(j));
     }
   }
+  cells_.resize(base::at(model.vertices()));
+  for (int i = 0; i < model.vertices(); ++i) {
+    CellSlots& cell = cells_[base::at(i)];
+    cell.place.fill(-1);
+    cell.rate.fill(-1);
+    const int first = CellRows::first_band(i);
+    const int begin = std::max(0, -first), end = std::min(CellRows::count, bands_ - 1 - first);
+    for (int b = begin; b < end; ++b) {
+      for (int a = begin; a < end; ++a) {
+        cell.place[base::at(CellRows::count * b + a)] = place_[slot_of(first + a, first + b)];
+        cell.rate[base::at(CellRows::count * b + a)] = rate_[slot_of(first + a, first + b)];
+      }
+    }
+  }
   curvature_.assign(model.is_curved() ? base::at(model.vertices()) : 0, {});
   for (int i = 0; model.is_curved() && i < model.vertices(); ++i) {
     CurvatureSlots& slots = curvature_[base::at(i)];
@@ -96,13 +124,26 @@ void RodSlots::attach(const RodModel& model, const numerics::SparseMatrix& patte
   }
 }
 
+namespace {
+
+template <class Slots>
+void add_all(const Slots& slots, const CellMatrix& m, std::vector<double>& values) {
+  const double* entry = m.data();
+  for (const int slot : slots) RodSlots::add_to(values, slot, *entry++);
+}
+
+}  // namespace
+
 void RodSlots::add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const {
-  const int first = CellRows::first_band(i);
-  const int begin = std::max(0, -first);
-  const int end = std::min(CellRows::count, bands_ - 1 - first);
-  for (int a = begin; a < end; ++a) {
-    for (int b = begin; b < end; ++b) add_place(first + a, first + b, by_place(a, b), values);
-  }
+  add_all(cells_[base::at(i)].place, by_place, values);
+}
+
+void RodSlots::add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
+                        std::vector<double>& values) const {
+  CellMatrix whole = by_place;
+  for (const int angle : {CellRows::angle_before, CellRows::angle_after}) whole.col(angle) += c * by_rate.col(angle);
+  add_all(cells_[base::at(i)].place, whole, values);
+  add_all(cells_[base::at(i)].rate, by_rate, values);
 }
 
 void RodSlots::add_curvature(int i, const CurvatureColumns& by_cell, const Eigen::Matrix2d& own,
@@ -125,22 +166,6 @@ void RodSlots::add_curvature_pair(int i, const Eigen::Matrix2d& block, std::vect
       const double value = block(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(m));
       add_to(values, slots.next[j][m], value);
       add_to(values, slots.next_transposed[m][j], value);
-    }
-  }
-}
-
-void RodSlots::add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c, int columns,
-                        std::vector<double>& values) const {
-  const int first = CellRows::first_band(i);
-  for (int a = 0; a < CellRows::count; ++a) {
-    const int row = first + a;
-    if (row < 0 || row >= bands_) continue;
-    for (int b = 0; b < CellRows::count; ++b) {
-      const int column = first + b;
-      if (column < 0 || column >= columns) continue;
-      const bool angle = RodModel::is_angle(column);
-      add_place(row, column, by_place(a, b) + (angle ? c * by_rate(a, b) : 0.0), values);
-      if (!angle) add_rate(row, column, by_rate(a, b), values);
     }
   }
 }

@@ -30,10 +30,10 @@ class RodSlots {
     add_to(values, rate_[slot_of(row, column)], value);
   }
   /// Adds what vertex i's cell does to the balances: by the places, and by their rates, which are unknowns v
-  /// of coordinates and c times the unknown of angles. Columns from `columns` on are left out.
-  void add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c, int columns,
+  /// of coordinates and c times the unknown of angles. None by a mount's angle.
+  void add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
                 std::vector<double>& values) const;
-  /// Adds second derivatives by the places of vertex i's cell; none by a mount's angle.
+  /// Adds second derivatives by the places of vertex i's cell.
   void add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const;
   /// Adds a 3 x 3 block by places from a band on.
   void add_places(int row, int column, const Eigen::Matrix3d& block, std::vector<double>& values) const {
@@ -80,6 +80,11 @@ class RodSlots {
   std::vector<int> place_;  // the band row by row, -1 where there is no entry
   std::vector<int> rate_;
   std::vector<Diagonal> diagonal_;
+  /// Of a vertex's cell, column by column.
+  struct CellSlots {
+    std::array<int, CellRows::count * CellRows::count> place{}, rate{};
+  };
+  std::vector<CellSlots> cells_;
   struct CurvatureSlots {
     std::array<std::array<int, 2>, CellRows::count> column{}, row{};  // balances by k, rows of k by places
     std::array<std::array<int, 2>, 2> own{}, next{}, next_transposed{};

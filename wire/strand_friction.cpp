@@ -78,7 +78,7 @@ void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i,
       }
     }
   }
-  slots.add_cell(i, by_place, by_rate, c, columns, values);
+  slots.add_cell(i, by_place, by_rate, c, values);
 }
 
 }  // namespace snare::wire

@@ -4,15 +4,6 @@ namespace snare::wire {
 
 using Eigen::Vector3d;
 
-// (W.26)  tau = theta_+ - theta_- + m:   dm/da = kb/(2 |a|),   dm/db = kb/(2 |b|).
-// An energy of tau with torque M = dE/dtau (`moment`) has the gradient M dtau.
-void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out) {
-  out.a += (0.5 * moment * inverse.a) * turn.binormal;
-  out.b += (0.5 * moment * inverse.b) * turn.binormal;
-  out.theta_a -= moment;
-  out.theta_b += moment;
-}
-
 // (W.26)  d2E = M d2tau + k dtau dtau^T, M: `moment`, k: `stiffness`. From dkb (see curvature.cpp) and
 // d(1/|a|):
 //   |a|^2 d2m/da2 = -1/2 kb (t + mean)^T - [u]_x/chi,   |b|^2 d2m/db2 = -1/2 kb (u + mean)^T + [t]_x/chi,

@@ -16,4 +16,15 @@ void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double 
 void add_twist_hessian(const Turn& turn, const InverseLengths& inverse, double moment, double stiffness,
                        PairHessian& out);
 
+// Here, for the compiler to put in where wires in motion spend their time.
+
+// (W.26)  tau = theta_+ - theta_- + m:   dm/da = kb/(2 |a|),   dm/db = kb/(2 |b|).
+// An energy of tau with torque M = dE/dtau (`moment`) has the gradient M dtau.
+inline void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out) {
+  out.a += (0.5 * moment * inverse.a) * turn.binormal;
+  out.b += (0.5 * moment * inverse.b) * turn.binormal;
+  out.theta_a -= moment;
+  out.theta_b += moment;
+}
+
 }  // namespace snare::wire

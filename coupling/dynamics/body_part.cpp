@@ -42,6 +42,10 @@ void BodyPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   add(Local::length, 1, Local::quaternion, 4);
 }
 
+void BodyPart::rates(std::vector<std::pair<int, int>>& pairs) const {
+  for (int k = 0; k < 3; ++k) pairs.emplace_back(position() + k, velocity() + k);
+}
+
 void BodyPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   slots_.clear();
   for (int i = 0; i < Local::count; ++i) {

@@ -18,6 +18,7 @@ class BodyPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
+  void rates(std::vector<std::pair<int, int>>& pairs) const override;
   void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;

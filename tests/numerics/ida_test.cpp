@@ -28,6 +28,9 @@ class Oscillator final : public DaePart {
       entries.emplace_back(first_ + i, first_ + j);
     }
   }
+  void rates(std::vector<std::pair<int, int>>& pairs) const override {
+    if (rate_follows) pairs.emplace_back(first_, first_ + 1);
+  }
   void attach_pattern(const SparseMatrix& pattern) override {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) slot_[i][j] = pattern.slot(first_ + i, first_ + j);
@@ -59,6 +62,7 @@ class Oscillator final : public DaePart {
   double fails_after = 1e300;
   bool throws = false;
   bool changes_pattern = false;
+  bool rate_follows = false;
 
  private:
   double omega_;
@@ -93,6 +97,40 @@ TEST(Ida, FollowsAnOscillationAndItsAlgebraicEnergy) {
   EXPECT_EQ(ida.statistics().analyses, 1);
   EXPECT_EQ(ida.statistics().restarts, 1);
   EXPECT_EQ(ida.statistics().factorizations, ida.statistics().jacobians);
+}
+
+// The rate is eliminated and follows its place.
+TEST(Ida, RatesFollowTheirPlaces) {
+  Oscillator part(2.0);
+  part.rate_follows = true;
+  DaeSystem system({&part});
+  IdaOptions options = tight();
+  options.newton_test = NewtonTest::every_unknown;
+  Ida ida(system, options);
+  ida.start(0.0, displaced(), displaced_rate);
+  const IdaReport report = integrate(ida, 3.0);
+  ASSERT_TRUE(report.usable()) << report.message;
+  EXPECT_NEAR(ida.y()[0], std::cos(6.0), 3e-8);  // as above
+  EXPECT_NEAR(ida.y()[2], 2.0, 1e-7);
+  // Initial values have any rates to begin with.
+  const IdaReport start = ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
+  ASSERT_TRUE(start.usable()) << start.message;
+  EXPECT_NEAR(ida.rate()[0], 0.5, 1e-9);
+  EXPECT_NEAR(ida.rate()[1], -4.0, 1e-9);
+}
+
+TEST(Ida, AFailureWithTheTestOfEveryUnknownEnds) {
+  Oscillator part(2.0);
+  part.fails_after = 1.0;
+  DaeSystem system({&part});
+  IdaOptions options = tight();
+  options.newton_test = NewtonTest::every_unknown;
+  Ida ida(system, options);
+  ida.start(0.0, displaced(), displaced_rate);
+  const IdaReport report = integrate(ida, 3.0);
+  EXPECT_FALSE(report.usable());
+  EXPECT_LE(report.time, 1.0);
+  EXPECT_THAT(report.message, testing::HasSubstr("oscillator, velocity"));
 }
 
 TEST(Ida, FindsConsistentAlgebraicUnknownsAndRates) {

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "numerics/condensation.hpp"
+#include "numerics/klu.hpp"
+#include "numerics/sparse_matrix.hpp"
+#include "numerics/static_lu.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace snare::numerics {
+
+/// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting, (N.7), and by KLU
+/// where a solution shows that digits are lost: the first one after each factorisation is put into the equations.
+class DaeSolver {
+ public:
+  /// pairs: see Condensation.
+  DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs);
+
+  [[nodiscard]] const std::vector<std::pair<int, int>>& pairs() const noexcept { return condensation_.pairs(); }
+  /// False when the matrix is singular. Throws LibraryError when memory runs out.
+  [[nodiscard]] bool factorize(const SparseMatrix& matrix);
+  /// Solves A x = b in place; `matrix` is that of the last factorisation. False when it is singular after all.
+  [[nodiscard]] bool solve(const SparseMatrix& matrix, Eigen::Ref<Eigen::VectorXd> b);
+  /// How many factorisations needed pivoting.
+  [[nodiscard]] long pivoted() const noexcept { return pivoted_; }
+
+ private:
+  [[nodiscard]] bool pivot();
+  [[nodiscard]] double backward_error(const Eigen::VectorXd& x, const Eigen::VectorXd& b);
+
+  Condensation condensation_;
+  std::optional<StaticLu> lu_;  // made with the first values
+  std::optional<Klu> klu_;
+  bool by_klu_ = false;
+  bool tried_ = false;  // a solution of the last factorisation has been looked at
+  long pivoted_ = 0;
+  Eigen::VectorXd right_, solution_, rest_, size_;
+};
+
+}  // namespace snare::numerics

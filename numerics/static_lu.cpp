@@ -1,0 +1,173 @@
+#include "numerics/static_lu.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace snare::numerics {
+
+namespace {
+
+constexpr auto at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The unknowns in their order: first those with few neighbours; one without a value on the diagonal, a multiplier for one, after
+/// the last of its neighbours that have.
+std::vector<int> elimination_order(const SparseMatrix& matrix) {
+  const int n = matrix.order;
+  const Eigen::Map<const Eigen::SparseMatrix<double>> view(n, n, static_cast<Eigen::Index>(matrix.row.size()),
+                                                           matrix.column_start.data(), matrix.row.data(),
+                                                           matrix.value.data());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(Eigen::SparseMatrix<double>(view), order);
+  std::vector<int> place(at(n));
+  for (int k = 0; k < n; ++k) place[at(order.indices()[k])] = k;
+  std::vector<bool> zero(at(n));
+  for (int j = 0; j < n; ++j) {
+    const int slot = matrix.slot(j, j);
+    zero[at(j)] = slot < 0 || matrix.value[at(slot)] == 0.0;
+  }
+  std::vector<std::pair<int, int>> keys;  // place, and one more than twice that of the last neighbour
+  for (int u = 0; u < n; ++u) keys.emplace_back(2 * place[at(u)], place[at(u)]);
+  for (int j = 0; j < n; ++j) {
+    for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s) {
+      const int i = matrix.row[at(s)];
+      if (zero[at(i)] && !zero[at(j)]) keys[at(i)].first = std::max(keys[at(i)].first, 2 * place[at(j)] + 1);
+      if (zero[at(j)] && !zero[at(i)]) keys[at(j)].first = std::max(keys[at(j)].first, 2 * place[at(i)] + 1);
+    }
+  }
+  std::vector<int> unknowns(at(n));
+  std::iota(unknowns.begin(), unknowns.end(), 0);
+  std::sort(unknowns.begin(), unknowns.end(), [&](int a, int b) { return keys[at(a)] < keys[at(b)]; });
+  return unknowns;
+}
+
+/// Two numbers at once, where they are.
+using Two [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+
+}  // namespace
+
+// Runs are short: what the compiler makes of the plain loop spends most of its time on the question how long they are.
+inline void StaticLu::subtract(const Run& run, double factor, double* values) {
+  const double* from = values + run.from;
+  double* to = values + run.to;
+  const double* const last = from + (run.length & ~1);
+  const Two factors{factor, factor};
+  for (; from != last; from += 2, to += 2) {
+    Two& sum = *reinterpret_cast<Two*>(to);
+    sum -= factors * *reinterpret_cast<const Two*>(from);
+  }
+  if ((run.length & 1) != 0) *to -= factor * *from;
+}
+
+StaticLu::StaticLu(const SparseMatrix& matrix)
+    : order_(matrix.order), unknown_(elimination_order(matrix)), work_(order_) {
+  std::vector<int> place(at(order_));
+  for (int k = 0; k < order_; ++k) place[at(unknown_[at(k)])] = k;
+  // After row k is used, every later row that has k has what k has: columns beyond k of the pattern of A + A^T and of the rows
+  // whose first later column is k.
+  std::vector<std::vector<int>> after(at(order_)), waiting(at(order_));
+  for (int j = 0; j < order_; ++j) {
+    for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s) {
+      const int a = place[at(j)], b = place[at(matrix.row[at(s)])];
+      if (a != b) after[at(std::min(a, b))].push_back(std::max(a, b));
+    }
+  }
+  std::vector<std::vector<int>> before(at(order_));
+  for (int k = 0; k < order_; ++k) {
+    std::vector<int>& list = after[at(k)];
+    for (const int child : waiting[at(k)]) {
+      const std::vector<int>& of_child = after[at(child)];
+      list.insert(list.end(), of_child.begin() + 1, of_child.end());  // the first is k
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    if (!list.empty()) waiting[at(list.front())].push_back(k);
+    for (const int i : list) before[at(i)].push_back(k);
+  }
+  for (int i = 0; i < order_; ++i) {
+    start_.push_back(static_cast<int>(column_.size()));
+    column_.insert(column_.end(), before[at(i)].begin(), before[at(i)].end());
+    diagonal_.push_back(static_cast<int>(column_.size()));
+    column_.push_back(i);
+    column_.insert(column_.end(), after[at(i)].begin(), after[at(i)].end());
+  }
+  start_.push_back(static_cast<int>(column_.size()));
+  values_.assign(column_.size(), 0.0);
+  inverse_.assign(at(order_), 0.0);
+  const auto entry = [&](int i, int j) {
+    const auto first = column_.begin() + start_[at(i)], last = column_.begin() + start_[at(i) + 1];
+    return static_cast<int>(std::lower_bound(first, last, j) - column_.begin());
+  };
+  for (int j = 0; j < order_; ++j) {
+    for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s)
+      target_.push_back(entry(place[at(matrix.row[at(s)])], place[at(j)]));
+  }
+  for (int i = 0; i < order_; ++i) {
+    first_elimination_.push_back(static_cast<int>(eliminations_.size()));
+    for (int e = start_[at(i)]; e < diagonal_[at(i)]; ++e) {
+      const int k = column_[at(e)];
+      eliminations_.push_back({e, k, static_cast<int>(runs_.size())});
+      int to = e;
+      for (int from = diagonal_[at(k)] + 1; from < start_[at(k) + 1]; ++from) {
+        while (column_[at(to)] != column_[at(from)]) ++to;
+        Run* last = runs_.size() > at(eliminations_.back().first_run) ? &runs_.back() : nullptr;
+        if (last != nullptr && last->from + last->length == from && last->to + last->length == to) {
+          ++last->length;
+        } else {
+          runs_.push_back({from, to, 1});
+        }
+      }
+    }
+  }
+  first_elimination_.push_back(static_cast<int>(eliminations_.size()));
+  eliminations_.push_back({0, 0, static_cast<int>(runs_.size())});
+}
+
+bool StaticLu::factorize(const SparseMatrix& matrix) {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  for (std::size_t s = 0; s < target_.size(); ++s) values_[at(target_[s])] = matrix.value[s];
+  double* const values = values_.data();
+  for (int i = 0; i < order_; ++i) {
+    for (int q = first_elimination_[at(i)]; q < first_elimination_[at(i) + 1]; ++q) {
+      const Elimination& e = eliminations_[at(q)];
+      const double factor = values[e.entry] * inverse_[at(e.row)];
+      values[e.entry] = factor;
+      const int last = eliminations_[at(q) + 1].first_run;
+      for (int r = e.first_run; r < last; ++r) {
+        subtract(runs_[at(r)], factor, values);
+      }
+    }
+    inverse_[at(i)] = 1.0 / values[diagonal_[at(i)]];
+    if (!std::isfinite(inverse_[at(i)]) || inverse_[at(i)] == 0.0) return false;
+  }
+  return true;
+}
+
+void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
+  const double* const values = values_.data();
+  const int* const column = column_.data();
+  double* const x = work_.data();
+  const auto products = [&](int begin, int end) {
+    double even = 0.0, odd = 0.0;
+    int e = begin;
+    for (; e + 1 < end; e += 2) {
+      even += values[e] * x[column[e]];
+      odd += values[e + 1] * x[column[e + 1]];
+    }
+    if (e < end) even += values[e] * x[column[e]];
+    return even + odd;
+  };
+  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(start_[at(i)], diagonal_[at(i)]);
+  for (int i = order_ - 1; i >= 0; --i) {
+    x[i] = (x[i] - products(diagonal_[at(i)] + 1, start_[at(i) + 1])) * inverse_[at(i)];
+    b[unknown_[at(i)]] = x[i];
+  }
+}
+
+}  // namespace snare::numerics
