@@ -117,7 +117,8 @@ void write_fit(const identification::Experiment& experiment, const Trace& trace,
     result[key] = whole[key];
   }
   result["fit"] = whole["final"];
-  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)}, {"tests", whole["residual"]["tests"]}};
+  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
+                        {"tests", whole["residual"]["tests"]}};
   result["warnings"] = warnings_of(experiment, trace);
   write_result(options, "fit.json", result);
 }
