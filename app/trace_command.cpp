@@ -162,7 +162,6 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   fitting.most_effects = 0;
   fitting.intervals = true;
   fitting.attribute = false;
-  fitting.draw = false;
   const Trace trace = trace_and_write(experiment, fitting, options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   if (!options.json) {

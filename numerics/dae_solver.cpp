@@ -7,10 +7,12 @@
 namespace snare::numerics {
 
 DaeSolver::DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs)
-    : condensation_(pattern, pairs) {}
+    : condensation_(pattern, pairs), no_rates_(pairs.empty()) {}
 
 bool DaeSolver::factorize(const SparseMatrix& matrix) {
   if (!condensation_.update(matrix)) return false;
+  // Systems without rates are small, and dense where there is an arm: nothing is gained by rows without pivots.
+  if (no_rates_) return pivot();
   tried_ = by_klu_ = false;
   if (!lu_) lu_.emplace(condensation_.matrix());
   return lu_->factorize(condensation_.matrix()) || pivot();

@@ -33,6 +33,7 @@ class DaeSolver {
   [[nodiscard]] double backward_error(const Eigen::VectorXd& x, const Eigen::VectorXd& b);
 
   Condensation condensation_;
+  bool no_rates_;
   std::optional<StaticLu> lu_;  // made with the first values
   std::optional<Klu> klu_;
   bool by_klu_ = false;

@@ -23,7 +23,7 @@ std::string problem_of(const std::string& name, const std::vector<base::Override
 
 TEST(Scenario, SaysFirstWhatItIs) {
   EXPECT_THAT(problem_of("air_table.toml", {{"schema", "x"}, {"duration_s", "-1"}}),
-              EndsWith("air_table.toml: schema = x, must be \"snare-scenario/1\""));
+              EndsWith("air_table.toml: schema = x, must be \"snare-scenario/2\" or \"snare-scenario/1\""));
   EXPECT_THAT(problem_of("air_table.toml", {{"kind", "fall"}}),
               EndsWith("kind = \"fall\", must be one of \"contact\", \"arm_contact\", \"joint_step\", \"tip_impulse\", "
                        "\"joint_motion\""));
