@@ -64,7 +64,7 @@ std::optional<PlacedFrame> Placement::find(const std::string& name) const {
 
 std::optional<PlacedFrame> Placement::frame(const TomlTable& table, std::string_view key) const {
   const std::string name = table.text_or(key, "world");
-  const std::optional<PlacedFrame> found = find(name);
+  std::optional<PlacedFrame> found = find(name);
   if (!found && !name.empty() && !is_excused(name)) table.fail(key, requirement());
   return found;
 }

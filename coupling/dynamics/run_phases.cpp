@@ -10,7 +10,6 @@ namespace snare::coupling {
 
 using base::at;
 using Eigen::Vector3d;
-using numerics::DaePoint;
 
 double MotionRun::tension(int wire) {
   const wire::RodPart& rod = rods_[at(wire)];
