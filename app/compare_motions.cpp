@@ -111,9 +111,7 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
       with.runs, {options.out / "checkpoint.bin", "compare\n" + motions->input, motions->output.checkpoint_wall_time},
       console);
   begin_writing();
-  const bool partial = records.size() < with.runs.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
-                         return r.result.report.termination == numerics::Termination::interrupted;
-                       });
+  const bool partial = left_undone(with.runs, records);
   json models = json::array();
   std::optional<json> reference;
   for (const FinishedMotion& run : finished_motions(with, records)) {

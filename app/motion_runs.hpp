@@ -22,6 +22,10 @@ struct CheckpointPolicy {
 [[nodiscard]] std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions,
                                                     const CheckpointPolicy& policy, Console& console);
 
+/// Whether a signal has left a part of the motions undone.
+[[nodiscard]] bool left_undone(const std::vector<scenario::NamedMotion>& motions,
+                               const std::vector<MotionRecord>& records);
+
 /// Worst status of some records.
 [[nodiscard]] ExitStatus status_of(const std::vector<MotionRecord>& records);
 

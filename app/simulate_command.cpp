@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <variant>
 
@@ -61,9 +60,7 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions
   const std::vector<MotionRecord> records = run_motions(
       motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
   begin_writing();
-  const bool partial = records.size() < motions.runs.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
-                         return r.result.report.termination == numerics::Termination::interrupted;
-                       });
+  const bool partial = left_undone(motions.runs, records);
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
   const std::vector<std::string> warnings = motion_warnings(finished);
   for (const std::string& warning : warnings) console.warn(warning);

@@ -31,10 +31,6 @@ namespace {
 
 constexpr double light = 0.1;  // [kg], of what a shape on an arm weighs where the file does not say
 
-Pose pose_of(const multibody::RigidBodyState& s) {
-  return {s.orientation.toRotationMatrix(), s.position};
-}
-
 void read_bodies(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("bodies")) {
     const int index = static_cast<int>(c.motion.bodies.size());

@@ -13,14 +13,6 @@ using base::TomlTable;
 using coupling::MotionCarrier;
 using multibody::Pose;
 
-namespace {
-
-Pose pose_of(const multibody::RigidBodyState& s) {
-  return {s.orientation.toRotationMatrix(), s.position};
-}
-
-}  // namespace
-
 const MotorJoint* Composition::joint(const TomlTable& table, std::string_view key) const {
   const std::string name = table.text(key);
   const auto found = joints.find(name);

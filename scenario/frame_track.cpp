@@ -8,14 +8,6 @@ namespace snare::scenario {
 using coupling::MotionCarrier;
 using multibody::Pose;
 
-namespace {
-
-Pose pose_of(const multibody::RigidBodyState& s) {
-  return {s.orientation.toRotationMatrix(), s.position};
-}
-
-}  // namespace
-
 FrameTrack::FrameTrack(const coupling::Motion& motion, const PlacedFrame& frame)
     : motion_(motion), carrier_(frame.carrier), X_CF_(frame.X_WF) {
   if (carrier_.kind == MotionCarrier::Kind::body) {

@@ -2,6 +2,7 @@
 
 #include "base/toml_reader.hpp"
 #include "coupling/dynamics/arm.hpp"
+#include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
 
 #include <functional>
@@ -17,6 +18,11 @@ struct PlacedFrame {
   coupling::MotionCarrier carrier;
   multibody::Pose X_WF;
 };
+
+/// Where a body stands.
+[[nodiscard]] inline multibody::Pose pose_of(const multibody::RigidBodyState& s) {
+  return {s.orientation.toRotationMatrix(), s.position};
+}
 
 /// Finds out where everything of a scenario stands at the start: things stand on frames that other things bring, in any order in
 /// the file.
