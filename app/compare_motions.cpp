@@ -26,16 +26,28 @@ namespace {
 
 using nlohmann::json;
 
-/// The scenario with its wires in either model.
-std::vector<scenario::NamedMotion> with_models(const scenario::NamedMotion& run) {
+/// The scenario once for each model of its wires, and the models that it cannot have, with the reason.
+struct Candidates {
   std::vector<scenario::NamedMotion> runs;
-  for (const auto& [model, quasi_static] : {std::pair{"full", false}, {"quasi_static", true}}) {
-    scenario::NamedMotion one = run;
-    one.name = one.model = model;
-    for (coupling::MotionWire& wire : one.motion.wires) wire.rod.quasi_static = quasi_static;
-    runs.push_back(std::move(one));
+  std::vector<std::pair<std::string, std::string>> left_out;
+};
+
+Candidates with_models(const std::filesystem::path& file, const CommonOptions& options,
+                       const std::vector<std::string>& model_keys) {
+  Candidates candidates;
+  for (const char* model : {"full", "quasi_static", "stretched", "rod", "rod_linear"}) {
+    std::vector<base::Override> overrides = overrides_of(options);
+    for (const std::string& key : model_keys) overrides.push_back({key, fmt::format("\"{}\"", model)});
+    try {
+      const scenario::Scenario asked = scenario::read_scenario(file, overrides);
+      scenario::NamedMotion one = std::get<scenario::WireMotions>(asked.content).runs.front();
+      one.name = one.model = model;
+      candidates.runs.push_back(std::move(one));
+    } catch (const base::InputError& error) {
+      candidates.left_out.emplace_back(model, error.problems().front().message());
+    }
   }
-  return runs;
+  return candidates;
 }
 
 /// A difference relative to a reference; none where there is nothing to relate to.
@@ -48,17 +60,18 @@ json differences(const json& outcome, const json& reference) {
   json result = json::object();
   for (const char* key : {"peak_force_N", "peak_tension_N"}) {
     for (const auto& [name, value] : reference[key].items()) {
-      if (value.is_number() && outcome[key][name].is_number())
+      if (value.is_number() && outcome[key].contains(name) && outcome[key][name].is_number())
         result[key][name] = relative(outcome[key][name].get<double>(), value.get<double>());
     }
   }
   for (const char* key : {"first_touch_s", "tight_s"}) {
     for (const auto& [name, value] : reference[key].items()) {
-      if (value.is_number() && outcome[key][name].is_number())
+      if (value.is_number() && outcome[key].contains(name) && outcome[key][name].is_number())
         result[key][name] = outcome[key][name].get<double>() - value.get<double>();
     }
   }
   for (const auto& [name, value] : reference["impulse_Ns"].items()) {
+    if (!outcome["impulse_Ns"].contains(name)) continue;
     double apart = 0.0, size = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double whole = value[k].get<double>();
@@ -87,7 +100,10 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
   for (const json& m : models) contacts.columns.push_back({m["model"].get<std::string>() + " [N]", ColumnKind::number});
   for (const auto& [name, value] : models.front()["outcome"]["peak_force_N"].items()) {
     std::vector<Cell> row{name};
-    for (const json& m : models) row.emplace_back(format_significant(m["outcome"]["peak_force_N"][name].get<double>()));
+    for (const json& m : models) {
+      const json& forces = m["outcome"]["peak_force_N"];
+      row.emplace_back(forces.contains(name) ? format_significant(forces[name].get<double>()) : "-");
+    }
     contacts.rows.push_back(std::move(row));
   }
   page.table(contacts);
@@ -103,10 +119,14 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
   if (motions == nullptr || !motions->composed)
     throw base::InputError(
         {file.string(), 0, "schema", asked.kind, "must be \"snare-scenario/2\": a scenario that lists what there is"});
+  if (motions->model_keys.empty())
+    throw base::InputError(
+        {file.string(), 0, "wires", "", "must have at least one, here or in [[snares]], to compare"});
   const ResultFolder folder(options, {"compare.json", "report.html", "checkpoint.bin"});
   const KeepWhenInterrupted word({}, options.json ? "snare-comparison/1" : "");
   scenario::WireMotions with = *motions;
-  with.runs = with_models(motions->runs.front());
+  Candidates candidates = with_models(file, options, motions->model_keys);
+  with.runs = std::move(candidates.runs);
   const std::vector<MotionRecord> records = run_motions(
       with.runs, {options.out / "checkpoint.bin", "compare\n" + motions->input, motions->output.checkpoint_wall_time},
       console);
@@ -126,19 +146,23 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
                       {"from_full", reference ? differences(outcome, *reference) : json()}});
     if (!reference) reference = outcome;
   }
+  json left_out = json::array();
+  for (const auto& [model, why] : candidates.left_out) left_out.push_back({{"model", model}, {"why", why}});
   write_result(options, "compare.json",
                {{"schema", "snare-comparison/1"},
                 {"version", version()},
                 {"title", asked.title},
                 {"kind", "motion"},
                 {"interrupted", partial},
-                {"models", models}});
+                {"models", models},
+                {"left_out", left_out}});
   base::write_text(options.out / "report.html", page_of(asked.title, asked.source, models));
   if (!options.json) {
     for (const json& m : models)
       console.say(fmt::format("{:<14} {} steps, {:.3g} s, {:.3g} times real time", m["model"].get<std::string>(),
                               m["cost"]["steps"].get<long>(), m["cost"]["wall_s"].get<double>(),
                               m["cost"]["real_time_factor"].get<double>()));
+    for (const auto& [model, why] : candidates.left_out) console.say(fmt::format("{:<14} left out: {}", model, why));
     console.say(fmt::format("wrote {}/compare.json, report.html", options.out.string()));
   }
   return status_of(records);

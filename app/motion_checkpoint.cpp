@@ -58,9 +58,9 @@ void fields(auto& a, MotionSample::Bushing& b) {
   a(b.shift)(b.turn)(b.on_second);
 }
 void fields(auto& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 7 * sizeof(std::vector<double>) + 12 * sizeof(double));
-  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.arms)(s.welds)(s.bushings)(s.energy)(s.momentum)(
-      s.angular_momentum);
+  static_assert(sizeof(MotionSample) == sizeof(double) + 8 * sizeof(std::vector<double>) + 12 * sizeof(double));
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.law_tensions)(s.arms)(s.welds)(s.bushings)(s.energy)(
+      s.momentum)(s.angular_momentum);
 }
 void fields(auto& a, MotionEvent& e) {
   static_assert(sizeof(MotionEvent) == 5 * sizeof(double));

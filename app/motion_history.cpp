@@ -183,9 +183,9 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
                   [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; });
     }
   }
-  for (std::size_t w = 0; w < motion.wires.size(); ++w) {
-    columns.add(motion.wires[w].name + " tension_N",
-                [w](const MotionSample& s) { return coupling::end_tension(s, w); });
+  const std::vector<coupling::WireFacts> wires = motion.wire_facts();
+  for (std::size_t w = 0; w < wires.size(); ++w) {
+    columns.add(wires[w].name + " tension_N", [w](const MotionSample& s) { return coupling::end_tension(s, w); });
   }
   for (std::size_t b = 0; b < motion.bushings.size(); ++b) {
     const std::string name = motion.bushings[b].name + " ";

@@ -57,8 +57,9 @@ json result_json(const MotionResult& r) {
 /// What wires with a declared strength had to bear at most; none where none has.
 json strength_json(const FinishedMotion& run) {
   json list = json::array();
+  const std::vector<coupling::WireFacts> wires = run.asked.motion.wire_facts();
   for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
-    const coupling::MotionWire& wire = run.asked.motion.wires[k];
+    const coupling::WireFacts& wire = wires[k];
     const coupling::StrengthUse& use = run.result.strength[k];
     if (!std::isfinite(wire.strength.breaking_tension)) continue;
     list.push_back({{"wire", wire.name},
@@ -174,6 +175,11 @@ json listed_contacts_json(const FinishedMotion& run) {
     list.push_back(listed_contact_json(
         run, first + k, {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
   }
+  const std::size_t laws = first + motion.wire_pairs.size(), bodies = laws + motion.law_wires.size();
+  for (std::size_t k = 0; k < motion.law_wires.size(); ++k)
+    list.push_back(listed_contact_json(run, laws + k, {{"wire", motion.law_wires[k].name}}));
+  for (std::size_t k = 0; k < motion.body_contacts.size(); ++k)
+    list.push_back(listed_contact_json(run, bodies + k, json::object()));
   return list;
 }
 
@@ -192,6 +198,8 @@ std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
     if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.springs.size() + k);
   }
+  if (wire >= motion.wires.size())
+    consider(motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size() + wire - motion.wires.size());
   return first;
 }
 
@@ -241,8 +249,9 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   json outcome{{"caught", nullptr}, {"events", json::array()}};
   for (const char* key : {"first_touch_s", "tight_s", "peak_tension_N", "strength_N", "peak_force_N", "impulse_Ns"})
     outcome[key] = json::object();
-  for (std::size_t w = 0; w < motion.wires.size(); ++w) {
-    const coupling::MotionWire& wire = motion.wires[w];
+  const std::vector<coupling::WireFacts> wires = motion.wire_facts();
+  for (std::size_t w = 0; w < wires.size(); ++w) {
+    const coupling::WireFacts& wire = wires[w];
     outcome["first_touch_s"][wire.name] = time_json(first_touch(run, w));
     outcome["strength_N"][wire.name] = finite_json(wire.strength.breaking_tension);
     const bool watched = w < run.result.wires.size();

@@ -20,7 +20,7 @@ std::optional<CaptureTest> read_capture(const Composition& c) {
     if (!snare.empty())
       table.fail("snare", list.empty() ? "must be a snare; there is none" : "must be a snare: " + list);
   } else {
-    test.wires = known->second.wires;
+    for (const int declared : known->second.wires) test.wires.push_back(c.counted(declared));
     test.sense = known->second.sense;
     test.snare = c.placement.find(snare + "::fixed").value_or(PlacedFrame{});
   }

@@ -3,9 +3,11 @@
 #include "base/index.hpp"
 #include "base/units.hpp"
 #include "scenario/arm_items.hpp"
+#include "scenario/body_contact_reader.hpp"
 #include "scenario/capture_reader.hpp"
 #include "scenario/composition.hpp"
 #include "scenario/drive_reader.hpp"
+#include "scenario/load_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/phase_reader.hpp"
 #include "scenario/sensor_reader.hpp"
@@ -62,8 +64,10 @@ void read_frames(Composition& c) {
 }
 
 void read_wires(Composition& c) {
-  for (const TomlTable& table : c.document.root().tables("wires"))
+  for (const TomlTable& table : c.document.root().tables("wires")) {
     c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping));
+    c.model_keys.push_back(table.address() + ".model");
+  }
 }
 
 void read_shapes(Composition& c) {
@@ -76,8 +80,13 @@ void read_shapes(Composition& c) {
     const std::optional<PlacedFrame> frame = c.placement.frame(table, key);
     const double mass = table.number_or("mass_kg", light, Range::above(0.0, 1e7));
     const std::vector<int> on = wires_met(table, c.wire_names, c.wires.size());
-    if (frame) c.add_shape(name, shape, *frame, mass, on);
+    if (!frame) continue;
+    c.add_shape(name, shape, *frame, mass, on);
+    const PlacedShape placed{table, {frame->carrier, frame->X_WF * shape.X_BS}, shape.shape};
+    c.shapes.try_emplace(name, placed);
+    set_shaft(c, name, placed, shape.friction, on);
   }
+  require_shafts(c);
 }
 
 void read_contacts(Composition& c) {
@@ -85,8 +94,14 @@ void read_contacts(Composition& c) {
   for (const coupling::WirePair& p : c.motion.wire_pairs) met.insert(std::minmax(p.wires[0], p.wires[1]));
   for (const TomlTable& table : c.document.root().tables("contacts")) {
     const std::string name = c.pair_names.take(table);
+    if (table.has("shape") || table.has("other_shape")) {
+      read_body_contact(c, table, name);
+      continue;
+    }
     coupling::WirePair pair = read_wire_pair(table, c.wire_names, c.wires);
     pair.name = name;
+    if (c.wires.size() > 1 && (c.wires[at(pair.wires[0])].law || c.wires[at(pair.wires[1])].law)) continue;
+    for (int& wire : pair.wires) wire = c.wires.size() > 1 ? c.counted(wire) : wire;
     if (!met.insert(std::minmax(pair.wires[0], pair.wires[1])).second)
       table.fail("other_wire", "is already in contact with this wire");
     c.motion.wire_pairs.push_back(pair);
@@ -111,6 +126,8 @@ void read_bushings(Composition& c) {
     b.first = on.carrier;
     b.second = other.carrier;
     b.X_WF = on.X_WF;
+    static constexpr base::Choice<bool> neutrals[] = {{"start", false}, {"frames", true}};
+    if (table.has("neutral") && table.choice("neutral", neutrals).value_or(false)) b.X_WG = other.X_WF;
     if (table.text_or("frame", "world") == table.text_or("other_frame", "world"))
       table.fail("other_frame", "must be another frame");
     b.translational_stiffness = along_axes(table, "translational_stiffness_N_m", true);
@@ -170,11 +187,12 @@ void add_mounts(Composition& c) {
   for (std::size_t w = 0; w < c.wires.size(); ++w) {
     const std::pair<wire::End, const MotionCarrier*> ends[] = {{wire::End::left, &c.wires[w].from_carrier},
                                                                {wire::End::right, &c.wires[w].to_carrier}};
+    if (c.wires[w].law) continue;
     for (const auto& [end, carrier] : ends) {
       if (carrier->kind == MotionCarrier::Kind::world) continue;
       coupling::MotionMount mount;
       mount.name = c.wires[w].wire.name + (end == wire::End::left ? " left mount" : " right mount");
-      mount.wire = static_cast<int>(w);
+      mount.wire = c.counted(static_cast<int>(w));
       mount.end = end;
       mount.carrier = *carrier;
       c.motion.mounts.push_back(mount);
@@ -208,6 +226,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   snares.add_walls();
   read_contacts(c);
   read_bushings(c);
+  read_loads(c);
   read_welds(c);
   order_welds(c);
   read_drives(c);
@@ -223,7 +242,13 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.input = c.input + document.canonical();
   motions.duration = run.options.duration;
   document.finish();
-  for (DeclaredWire& w : c.wires) c.motion.wires.push_back(at_rest(std::move(w)));
+  for (DeclaredWire& w : c.wires) {
+    if (w.law)
+      c.motion.law_wires.push_back(law_in_place(w));
+    else
+      c.motion.wires.push_back(at_rest(std::move(w)));
+  }
+  motions.model_keys = std::move(c.model_keys);
   run.motion = std::move(c.motion);
   motions.runs.push_back(std::move(run));
   return motions;

@@ -44,7 +44,16 @@ int Composition::wire(const TomlTable& table, std::string_view key) const {
   const std::string name = table.text(key);
   const std::optional<int> index = wire_names.find(name);
   if (!index && !name.empty()) table.fail(key, wire_names.requirement());
-  return index.value_or(0);
+  return index ? counted(*index) : 0;
+}
+
+int Composition::counted(int declared) const {
+  const auto by_law = [](const DeclaredWire& w) { return w.law.has_value(); };
+  const auto before = wires.begin() + declared;
+  const auto laws = static_cast<int>(std::count_if(wires.begin(), before, by_law));
+  if (!wires[at(declared)].law) return declared - laws;
+  return static_cast<int>(wires.size() - at(static_cast<int>(std::count_if(wires.begin(), wires.end(), by_law)))) +
+         laws;
 }
 
 int Composition::body_on(const PlacedFrame& frame, const std::string& name, double mass) {
@@ -72,13 +81,15 @@ int Composition::body_on(const PlacedFrame& frame, const std::string& name, doub
 
 void Composition::add_shape(const std::string& name, const coupling::MotionContact& shape, const PlacedFrame& frame,
                             double mass, const std::vector<int>& on) {
+  if (std::all_of(on.begin(), on.end(), [this](int wire) { return wires[at(wire)].law.has_value(); })) return;
   const int body = body_on(frame, name, mass);
   const Pose X_BF = pose_of(motion.bodies[at(body)].start).inverse() * frame.X_WF;
   for (const int wire : on) {
     const DeclaredWire& met = wires[at(wire)];
+    if (met.law) continue;
     coupling::MotionContact contact = shape;
     contact.body = body;
-    contact.wire = wire;
+    contact.wire = counted(wire);
     contact.X_BS = X_BF * shape.X_BS;
     contact.name = fmt::format("{} on {}", name, met.wire.name);
     contact.wire_radius = 0.5 * met.specification.diameter;

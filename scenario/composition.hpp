@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,13 @@ struct SnareWires {
   double sense = 1.0;
 };
 
+/// A shape of the list, for contacts of bodies.
+struct PlacedShape {
+  base::TomlTable table;
+  PlacedFrame on;  ///< of the shape's own frame
+  std::shared_ptr<const coupling::ContactShape> shape;
+};
+
 /// A composed scenario while it is read: what there is so far, by name.
 struct Composition {
   base::TomlDocument& document;
@@ -38,16 +46,20 @@ struct Composition {
   Names wire_names{"wire"}, body_names{"body"}, arm_names{"arm"}, shape_names{"shape"}, pair_names{"contact"};
   std::map<std::string, MotorJoint> joints = {};  ///< "ARM::JOINT", "SNARE::ring", "SNARE::carriage"
   std::map<std::string, SnareWires> snares = {};
+  std::map<std::string, PlacedShape> shapes = {};
+  std::vector<std::string> model_keys = {};  ///< of the wires
 
   /// The joint under a key, reported when there is none.
   [[nodiscard]] const MotorJoint* joint(const base::TomlTable& table, std::string_view key) const;
-  /// Indices of the contact (as results count them) and of the wire under a key; 0 where there is none, which is reported.
+  /// Where results count a wire, by where it is declared: those that laws stand for behind the others.
+  [[nodiscard]] int counted(int declared) const;
+  /// Indices of the contact and of the wire under a key, as results count them; 0 where there is none, which is reported.
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key) const;
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key, const std::string& name) const;
   [[nodiscard]] int wire(const base::TomlTable& table, std::string_view key) const;
   /// A body on which a shape or a weld may sit where a frame is: that of the frame, a light one welded to an arm's, or one at rest.
   int body_on(const PlacedFrame& frame, const std::string& name, double mass);
-  /// Adds a shape on its frame, in contact with the wires of these indices.
+  /// Adds a shape on its frame, in contact with the declared wires of these indices, but for those that laws stand for.
   void add_shape(const std::string& name, const coupling::MotionContact& shape, const PlacedFrame& frame, double mass,
                  const std::vector<int>& on);
 };

@@ -3,6 +3,7 @@
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "coupling/dynamics/start.hpp"
+#include "scenario/contact_law_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
 #include "wire/rod_constants.hpp"
@@ -25,73 +26,28 @@ namespace {
 
 using base::mm;
 
-enum class ModelKind {
-  wire,
-  quasi_static,
-  spring_dashpot,
-  power,
-  step_damped,
-  quadratic,
-  stretched_wire,
-  stretched_wire_linear
+/// What stands for the wire: itself, or a law.
+struct Asked {
+  bool quasi_static = false;
+  std::optional<LawModel> law = {};
 };
 
 WireModel read_model(const TomlTable& table) {
-  static constexpr Choice<ModelKind> kinds[] = {{"wire", ModelKind::wire},
-                                                {"quasi_static", ModelKind::quasi_static},
-                                                {"spring_dashpot", ModelKind::spring_dashpot},
-                                                {"power", ModelKind::power},
-                                                {"step_damped", ModelKind::step_damped},
-                                                {"quadratic", ModelKind::quadratic},
-                                                {"stretched_wire", ModelKind::stretched_wire},
-                                                {"stretched_wire_linear", ModelKind::stretched_wire_linear}};
-  const Range stiffness = Range::above(0.0, 1e15);
-  const Range damping = Range::from(0.0, 1e15);
+  static constexpr Choice<Asked> kinds[] = {{"wire", {}},
+                                            {"quasi_static", {true}},
+                                            {"spring_dashpot", {false, LawModel::spring_dashpot}},
+                                            {"power", {false, LawModel::power}},
+                                            {"step_damped", {false, LawModel::step_damped}},
+                                            {"quadratic", {false, LawModel::quadratic}},
+                                            {"stretched_wire", {false, LawModel::stretched_wire}},
+                                            {"stretched_wire_linear", {false, LawModel::stretched_wire_linear}}};
   WireModel model;
   model.name = table.text("name");
   model.kind = table.text("model");
-  const std::optional<ModelKind> kind = table.choice("model", kinds);
-  if (!kind) return model;
-  switch (*kind) {
-    case ModelKind::wire:
-      break;
-    case ModelKind::quasi_static:
-      model.quasi_static = true;
-      break;
-    case ModelKind::spring_dashpot:
-      model.law = coupling::spring_dashpot(table.number("k_N_m", stiffness), table.number_or("c_Ns_m", 0.0, damping));
-      break;
-    case ModelKind::power: {
-      const double p = table.number("p", Range::from(1.0, 10.0));
-      const double n = table.number_or("n", p, Range::from(0.0, 10.0));
-      if (n > 0.0 && n < 1.0) table.fail("n", "must be 0 or >= 1: between, the force would rise infinitely fast");
-      model.law = coupling::power_law(table.number("k", stiffness), p, table.number_or("c", 0.0, damping),
-                                      table.number_or("q", 1.0, Range::from(1.0, 10.0)), n);
-      break;
-    }
-    case ModelKind::step_damped:
-      model.law = coupling::step_damped_law(table.number("k", stiffness), table.number("p", Range::from(1.0, 10.0)),
-                                            table.number("c_Ns_m", damping),
-                                            table.number("full_depth_mm", Range::above(0.0, 1e3), mm));
-      break;
-    case ModelKind::quadratic: {
-      const Range coefficient = Range::from(-1e12, 1e12);
-      model.law = coupling::quadratic_law(table.number("A_N_m2", coefficient), table.number("B_N_m", coefficient),
-                                          table.number("C_N", coefficient));
-      break;
-    }
-    case ModelKind::stretched_wire:
-    case ModelKind::stretched_wire_linear: {
-      const double k = table.number("half_stiffness_N_m", stiffness);
-      const double length = table.number("half_length_mm", Range::above(0.0, 1e5), mm);
-      const double span = table.number("half_span_mm", Range::above(0.0, 1e5), mm);
-      if (length < span)
-        table.fail("half_length_mm", "must be >= half_span_mm");
-      else
-        model.law = *kind == ModelKind::stretched_wire ? coupling::stretched_wire_law(k, length, span)
-                                                       : coupling::stretched_wire_tangent(k, length, span);
-    }
-  }
+  const std::optional<Asked> asked = table.choice("model", kinds);
+  if (!asked) return model;
+  model.quasi_static = asked->quasi_static;
+  if (asked->law) model.law = read_contact_law(table, *asked->law);
   return model;
 }
 

@@ -3,6 +3,7 @@
 #include "base/index.hpp"
 #include "base/units.hpp"
 #include "coupling/dynamics/start.hpp"
+#include "scenario/law_wire_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
 #include "scenario/shape_reader.hpp"
@@ -61,7 +62,9 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
   w.wire.rod.elements = table.integer_or("elements", 60, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
-  w.wire.rod.quasi_static = read_quasi_static(table);
+  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping);
+  w.wire.rod.quasi_static = stand_in.quasi_static;
+  w.law = stand_in.law;
   w.wire.rod.damping = damping;
   w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind;
   w.wire.strength = read_strength(table, w.specification);
@@ -104,6 +107,19 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   w.bulge = placement.find(table.text_or("from_frame", "world")).value_or(PlacedFrame{}).X_WF.R * w.bulge;
   stretch(w, table, "to_mm", table.has("bulge") ? "bulge" : "");
   return w;
+}
+
+coupling::LawWire law_in_place(const DeclaredWire& w) {
+  coupling::LawWire law = *w.law;
+  law.name = w.wire.name;
+  law.from = w.from_carrier;
+  law.to = w.to_carrier;
+  law.p_from = w.from;
+  law.p_to = w.to;
+  law.bulge = w.bulge;
+  law.strength = w.wire.strength;
+  law.tightness = w.wire.tightness;
+  return law;
 }
 
 // The wire of its own frame (chord along x, bulge to y) turned to where its mounts are.

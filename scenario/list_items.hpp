@@ -24,10 +24,14 @@ struct DeclaredWire {
   coupling::MotionWire wire;
   /// Of the ends and of the slack, in the world at the start.
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(), bulge = Eigen::Vector3d::UnitY();
-  double span = 0.0;  ///< [m]
+  double span = 0.0;                     ///< [m]
+  std::optional<coupling::LawWire> law;  ///< stands for it
   /// What carries the ends; the world: they stand still.
   coupling::MotionCarrier from_carrier, to_carrier;
 };
+
+/// The wire for which a law stands, in its place but without a shaft.
+[[nodiscard]] coupling::LawWire law_in_place(const DeclaredWire& wire);
 
 /// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires.
 [[nodiscard]] DeclaredWire read_wire_item(const base::TomlTable& table, const wire::RodDamping& damping,

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace snare::scenario {
@@ -25,6 +26,21 @@ using base::mm;
 constexpr double far = farthest_mm;
 
 enum class ShapeKind { knife_edge, cylinder, sphere, capsule, cone, grapple_shaft, ring, cup, plane, revolved, mesh };
+
+std::optional<ShapeKind> read_kind(const TomlTable& table) {
+  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
+                                                {"cylinder", ShapeKind::cylinder},
+                                                {"sphere", ShapeKind::sphere},
+                                                {"capsule", ShapeKind::capsule},
+                                                {"cone", ShapeKind::cone},
+                                                {"grapple_shaft", ShapeKind::grapple_shaft},
+                                                {"ring", ShapeKind::ring},
+                                                {"cup", ShapeKind::cup},
+                                                {"plane", ShapeKind::plane},
+                                                {"revolved", ShapeKind::revolved},
+                                                {"mesh", ShapeKind::mesh}};
+  return table.choice("kind", kinds);
+}
 
 // The document is told what a maker of shapes finds wrong.
 template <class Make>
@@ -54,24 +70,25 @@ std::shared_ptr<const coupling::ContactShape> read_revolved(const TomlTable& tab
               [&] { return std::make_shared<coupling::RevolvedShape>(coupling::rounded_profile(corners, rounding)); });
 }
 
+coupling::GrappleShaft read_grapple_shaft(const TomlTable& table) {
+  coupling::GrappleShaft s;
+  s.shaft_radius = table.number_or("shaft_radius_mm", s.shaft_radius, Range::above(0.0, far), mm);
+  s.shaft_length = table.number_or("shaft_length_mm", s.shaft_length, Range::above(0.0, far), mm);
+  s.cam_radius = table.number_or("cam_radius_mm", s.cam_radius, Range::above(0.0, far), mm);
+  s.underside_length = table.number_or("underside_length_mm", s.underside_length, Range::from(0.0, far), mm);
+  s.cam_length = table.number_or("cam_length_mm", s.cam_length, Range::above(0.0, far), mm);
+  s.end_radius = table.number_or("end_radius_mm", s.end_radius, Range::above(0.0, far), mm);
+  s.bulge = table.number_or("bulge_mm", s.bulge, Range::from(0.0, far), mm);
+  return s;
+}
+
 }  // namespace
 
 std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder,
                                                          std::string& meshes) {
-  static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
-                                                {"cylinder", ShapeKind::cylinder},
-                                                {"sphere", ShapeKind::sphere},
-                                                {"capsule", ShapeKind::capsule},
-                                                {"cone", ShapeKind::cone},
-                                                {"grapple_shaft", ShapeKind::grapple_shaft},
-                                                {"ring", ShapeKind::ring},
-                                                {"cup", ShapeKind::cup},
-                                                {"plane", ShapeKind::plane},
-                                                {"revolved", ShapeKind::revolved},
-                                                {"mesh", ShapeKind::mesh}};
   const Range size = Range::above(0.0, far);
   const Range from_zero = Range::from(0.0, far);
-  const auto kind = table.choice("kind", kinds);
+  const auto kind = read_kind(table);
   if (!kind) return nullptr;
   switch (*kind) {
     case ShapeKind::knife_edge:
@@ -97,14 +114,7 @@ std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
       return coupling::truncated_cone(lower, upper, length);
     }
     case ShapeKind::grapple_shaft: {
-      coupling::GrappleShaft s;
-      s.shaft_radius = table.number_or("shaft_radius_mm", s.shaft_radius, size, mm);
-      s.shaft_length = table.number_or("shaft_length_mm", s.shaft_length, size, mm);
-      s.cam_radius = table.number_or("cam_radius_mm", s.cam_radius, size, mm);
-      s.underside_length = table.number_or("underside_length_mm", s.underside_length, from_zero, mm);
-      s.cam_length = table.number_or("cam_length_mm", s.cam_length, size, mm);
-      s.end_radius = table.number_or("end_radius_mm", s.end_radius, size, mm);
-      s.bulge = table.number_or("bulge_mm", s.bulge, from_zero, mm);
+      const coupling::GrappleShaft s = read_grapple_shaft(table);
       return made(table, "kind", [&s] { return grapple_shaft(s); });
     }
     case ShapeKind::ring: {
@@ -147,6 +157,111 @@ std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
     }
   }
   return nullptr;
+}
+
+std::optional<ShaftSize> read_shaft_size(const TomlTable& table) {
+  const auto kind = read_kind(table);
+  if (!kind) return std::nullopt;
+  const Range size = Range::above(0.0, far);
+  switch (*kind) {
+    case ShapeKind::knife_edge:
+      return ShaftSize{0.0, 0.5 * table.number("length_mm", size, mm), 0.0};
+    case ShapeKind::capsule:
+    case ShapeKind::cylinder:
+      return ShaftSize{table.number("radius_mm", size, mm), 0.5 * table.number("length_mm", size, mm), 0.0};
+    case ShapeKind::grapple_shaft: {
+      const coupling::GrappleShaft s = read_grapple_shaft(table);
+      return ShaftSize{s.shaft_radius, 0.5 * s.shaft_length, 0.5 * s.shaft_length};
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+ShapePoints read_shape_points(const TomlTable& table, const std::filesystem::path& folder) {
+  ShapePoints result;
+  const auto kind = read_kind(table);
+  if (!kind) return result;
+  const Range size = Range::above(0.0, far), from_zero = Range::from(0.0, far);
+  const int around = table.integer_or("rim_points", 8, 1, 1000);
+  const auto rim = [&](double radius, double height) {
+    const int count = radius > 0.0 ? around : 1;
+    for (int k = 0; k < count; ++k) {
+      const double azimuth = 2.0 * std::numbers::pi * k / count;
+      result.points.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), height);
+    }
+  };
+  const auto number = [&](const char* key, const Range& range) { return table.number(key, range, mm); };
+  switch (*kind) {
+    case ShapeKind::sphere:
+      result.points.emplace_back(Eigen::Vector3d::Zero());
+      result.radius = number("radius_mm", size);
+      break;
+    case ShapeKind::knife_edge:
+    case ShapeKind::capsule: {
+      const double half = 0.5 * number("length_mm", size);
+      for (const double z : {-half, half}) result.points.emplace_back(0.0, 0.0, z);
+      if (*kind == ShapeKind::capsule) result.radius = number("radius_mm", size);
+      break;
+    }
+    case ShapeKind::cylinder: {
+      const double half = 0.5 * number("length_mm", size);
+      for (const double z : {-half, half}) rim(number("radius_mm", size), z);
+      break;
+    }
+    case ShapeKind::cone: {
+      const double half = 0.5 * number("length_mm", size);
+      rim(number("lower_radius_mm", from_zero), -half);
+      rim(number("upper_radius_mm", from_zero), half);
+      break;
+    }
+    case ShapeKind::grapple_shaft: {
+      const coupling::GrappleShaft s = read_grapple_shaft(table);
+      const double cam = s.shaft_length + s.underside_length;
+      rim(s.shaft_radius, 0.0);
+      rim(s.cam_radius, cam);
+      rim(s.end_radius, cam + s.cam_length);
+      break;
+    }
+    case ShapeKind::ring: {
+      const double half = 0.5 * number("length_mm", size);
+      for (const double z : {-half, half}) {
+        rim(number("inner_radius_mm", size), z);
+        rim(number("outer_radius_mm", size), z);
+      }
+      break;
+    }
+    case ShapeKind::cup: {
+      const double inner = number("inner_radius_mm", size), thickness = number("thickness_mm", size);
+      const double depth = number("depth_mm", size);
+      rim(inner, depth);
+      rim(inner + thickness, depth);
+      rim(inner + thickness, -thickness);
+      break;
+    }
+    case ShapeKind::plane:
+      break;
+    case ShapeKind::revolved: {
+      const std::vector<double> radius = table.numbers("radius_mm", 3, 1000, from_zero, mm);
+      const std::vector<double> height =
+          table.numbers("height_mm", radius.size(), radius.size(), Range::from(-far, far), mm);
+      for (std::size_t k = 0; k < std::min(radius.size(), height.size()); ++k) rim(radius[k], height[k]);
+      break;
+    }
+    case ShapeKind::mesh: {
+      static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
+      const auto unit = table.choice("unit", units);
+      const std::string name = table.text("file");
+      if (name.empty() || !unit) break;
+      try {
+        result.points = coupling::read_triangle_mesh(folder / name, *unit).points;
+      } catch (const base::InputError&) {  // told where the shape is read
+        result.points.clear();
+      }
+      break;
+    }
+  }
+  return result;
 }
 
 }  // namespace snare::scenario

@@ -197,13 +197,15 @@ void Snares::add_wires() {
       c_.snares[item.name].wires.push_back(static_cast<int>(c_.wires.size()));
       c_.wires.push_back(w);
     }
+    c_.model_keys.push_back(table.address() + ".model");
     if (count < 2 || !table.boolean_or("touch_each_other", true)) continue;
     const coupling::WirePair law = read_pair_law(item.table.table("wire_contact"));
+    if (item.wire->law) continue;
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = i + 1; j < count; ++j) {
         coupling::WirePair pair = law;
         pair.name = fmt::format("{} on {}", c_.wires[first + i].wire.name, c_.wires[first + j].wire.name);
-        pair.wires = {static_cast<int>(first + i), static_cast<int>(first + j)};
+        pair.wires = {c_.counted(static_cast<int>(first + i)), c_.counted(static_cast<int>(first + j))};
         pair.radii = {0.5 * item.wire->specification.diameter, 0.5 * item.wire->specification.diameter};
         c_.pair_names.add(pair.name);
         c_.motion.wire_pairs.push_back(pair);

@@ -44,6 +44,7 @@ struct WireMotions {
   bool composed = false;
   std::vector<Sensor> sensors;
   std::optional<CaptureTest> capture;
+  std::vector<std::string> model_keys;  ///< of the models of a composed scenario's wires, as for `--set`
   std::vector<NamedMotion> runs;
 };
 

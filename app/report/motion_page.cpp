@@ -79,8 +79,9 @@ void add_strength(const std::vector<FinishedMotion>& finished, ReportPage& page)
               {"Model"_code, "Wire"_code, "Share"_number, "Tension [N]"_number, "Bending as tension [N]"_number,
                "Along the wire [mm]"_number, "Time [s]"_number}};
   for (const FinishedMotion& run : finished) {
+    const std::vector<coupling::WireFacts> wires = run.asked.motion.wire_facts();
     for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
-      const coupling::MotionWire& wire = run.asked.motion.wires[k];
+      const coupling::WireFacts& wire = wires[k];
       const coupling::StrengthUse& use = run.result.strength[k];
       if (!std::isfinite(wire.strength.breaking_tension)) continue;
       table.rows.push_back({run.asked.name, wire.name, format_significant(use.share), format_significant(use.tension),

@@ -130,7 +130,7 @@ AnimationSpecification animation_of(const coupling::Motion& motion, const std::v
       frame.outlines.push_back(skeleton(motion.arms[a].arm.tree, s.arms[a].state.q, across));
     animation.frames.push_back(std::move(frame));
   }
-  for (const auto& w : motion.wires) animation.names.push_back(w.name);
+  for (const auto& w : motion.wire_facts()) animation.names.push_back(w.name);
   for (const auto& b : motion.bodies) animation.names.push_back(b.name);
   for (const auto& a : motion.arms) animation.names.push_back(a.name);
   return animation;

@@ -69,13 +69,15 @@ ContactLaw quadratic_law(double a, double b, double c) {
   return contact_law(quadratic_law()->with(Vector3d(a, b, c)));
 }
 
-ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span) {
-  return contact_law(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)));
+ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span, Damping damping) {
+  return contact_law(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
+                     std::move(damping));
 }
 
-ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span) {
+ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span, Damping damping) {
   return contact_law(
-      stretched_wire_linearised(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)));
+      stretched_wire_linearised(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
+      std::move(damping));
 }
 
 }  // namespace snare::coupling

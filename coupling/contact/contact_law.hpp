@@ -49,9 +49,11 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 ///   F = 2 K (1 - l/sqrt(l^2 + 2 h d + d^2)) (h + d),  h = sqrt(l^2 - L^2)
 /// which is (R.8) at mid-span with the axial stiffness K l and no free travel.
 /// K: stiffness of one half [N/m], > 0; l: half its length, L: half the distance of its ends [m], l >= L > 0.
-[[nodiscard]] ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span);
+[[nodiscard]] ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span,
+                                            Damping damping = {});
 
 /// Its tangent at d = 0: F = 2 K (l^2 - L^2)/l^2 d.                      Honda et al. 2014, eq. 2
-[[nodiscard]] ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span);
+[[nodiscard]] ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span,
+                                                Damping damping = {});
 
 }  // namespace snare::coupling

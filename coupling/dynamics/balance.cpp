@@ -53,6 +53,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->momentum += b.body().properties.mass * s.velocity;
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
+  for (const PressPart* p : presses_) e.strain += p->power(at.y).energy;
   constraints_->add_energy(at.y, e, into);
   if (into != nullptr) constraints_->fill(at.y, *into);
   return e;
@@ -121,11 +122,33 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
   for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k, at, rates);
-  const ConstraintSet::Outer held = constraints_->outer(at);
+  ConstraintSet::Outer held = constraints_->outer(at);
+  for (std::size_t k = 0; k < presses_.size(); ++k) {
+    const ContactSample s = presses_[k]->sample(at.y);
+    const auto index = static_cast<Eigen::Index>(first_press() + k);
+    rates.segment<3>(integral::contacts + 3 * index) = s.force;
+    rates[integral::contacts + 3 * count + index] = s.normal_force;
+    constraints_->add_forces(*presses_[k], at, held);
+  }
+  for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
   rates.segment<3>(integral::outer) += held.force;
   rates.segment<3>(integral::outer_moment) += held.moment;
   rates[integral::work] += held.power;
   rates[integral::dissipated] += held.lost;
+}
+
+// Of a wire that a law stands for tension alone is known.
+void MotionRun::watch_law_wire(std::size_t k) {
+  const LawWire& wire = motion_.law_wires[k];
+  const double tension = law_wires_[k].shape(y_).tension;
+  const std::size_t index = rods_.size() + k;
+  if (wire.tightness.watched) sums_.wires[index].add(wire.tightness, time_, tension);
+  if (std::isinf(wire.strength.breaking_tension)) return;
+  StrengthUse& largest = sums_.strength[index];
+  const double share = tension / wire.strength.breaking_tension;
+  if (share <= largest.share) return;
+  largest = {share, tension, 0.0, 0.0, time_};
+  if (share >= 1.0 && wire.strength.ends_run) broken_ = wire.name + strength_reached(wire.strength, largest);
 }
 
 double MotionRun::longest_step() const {
@@ -160,10 +183,13 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     note(contacts_.size() + springs_.size() + k, sum, pairs_[k].observe(sum, {time_, y_}, {time_before, before}),
          false);
   }
+  for (std::size_t k = 0; k < presses_.size(); ++k)
+    forces[static_cast<Eigen::Index>(first_press() + k)] = presses_[k]->sample(y_).normal_force;
   peak_.add(time_before, time_, forces, integrals_.tail(count), sums_.peak_force);
   // Laws take no mass of the wire along at once.
-  for (std::size_t k = 0; k < contacts_.size() + springs_.size(); ++k) {
+  for (std::size_t k = 0; k < touching(); ++k) {
     if (k < contacts_.size() && !motion_.contacts[k].law) continue;
+    if (k >= contacts_.size() + springs_.size() && k < first_press()) continue;
     sums_.peak_force[k] = std::max(sums_.peak_force[k], forces[static_cast<Eigen::Index>(k)]);
   }
   sums_.largest_drift = std::max(sums_.largest_drift, constraints_->largest_gap(y_));
@@ -171,8 +197,9 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
   }
   for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
-  sums_.strength.resize(rods_.size());
-  sums_.wires.resize(rods_.size());
+  sums_.strength.resize(rods_.size() + law_wires_.size());
+  sums_.wires.resize(rods_.size() + law_wires_.size());
+  for (std::size_t k = 0; k < law_wires_.size(); ++k) watch_law_wire(k);
   for (std::size_t w = 0; w < rods_.size(); ++w) {
     const MotionWire& wire = motion_.wires[w];
     if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))
@@ -221,10 +248,17 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
         s.mount_forces[2 * base::at(motion_.wire_pairs[k].wires[w]) + end] -= sums.on_mounts[w][end];
     }
   }
+  for (const PressPart* p : presses_) s.contacts.push_back(p->sample(at.y));
   for (const wire::RodPart& r : rods_) {
     Eigen::Matrix3Xd x(3, r.vertices());
     for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));
     s.wires.push_back(std::move(x));
+  }
+  for (const LawWirePart& w : law_wires_) {
+    LawWirePart::Shape shape = w.shape(at.y);
+    s.wires.push_back(std::move(shape.points));
+    for (const Vector3d& force : shape.mount_forces) s.mount_forces.push_back(force);
+    s.law_tensions.push_back(shape.tension);
   }
   return s;
 }

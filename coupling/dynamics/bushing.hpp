@@ -5,18 +5,20 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 
 namespace snare::coupling {
 
 /// A spring of six freedoms with damping between two carriers: an attachment that gives.              theory.md (M.22)
 ///
-/// Its frame stands on either carrier; both are in one place at the start, where nothing acts. Stiffnesses and dampings act along
-/// and about the axes of that frame on the first carrier.
+/// A frame on either carrier: where both are in one place nothing acts. Stiffnesses and dampings act along and about the axes of the
+/// first carrier's.
 struct MotionBushing {
   std::string name = "bushing";
   MotionCarrier first, second;
-  multibody::Pose X_WF;                                               ///< at the start
+  multibody::Pose X_WF;                                               ///< the first carrier's at the start
+  std::optional<multibody::Pose> X_WG;                                ///< the second one's; none: there too
   Eigen::Vector3d translational_stiffness = Eigen::Vector3d::Zero();  ///< [N/m], >= 0
   Eigen::Vector3d translational_damping = Eigen::Vector3d::Zero();    ///< [N s/m], >= 0
   Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();     ///< [N m/rad], >= 0

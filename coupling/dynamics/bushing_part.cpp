@@ -8,10 +8,7 @@ namespace snare::coupling {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
-using multibody::Matrix6X;
 using multibody::Wrench;
-using numerics::DaePoint;
 using numerics::VectorView;
 
 namespace {
@@ -62,7 +59,7 @@ struct Relative {
   Vector3d r, u, spin;         // p_B - p_A, v_B - v_A - w_A x r, w_B - w_A
   Vector3d d, d_rate, phi, w;  // in A
 
-  Relative(const std::array<MovingFrame, 2>& frames, const VectorView& y)
+  Relative(const std::vector<MovingFrame>& frames, const VectorView& y)
       : a(frames[0].state(y)),
         b(frames[1].state(y)),
         r(b.X_WF.p - a.X_WF.p),
@@ -82,10 +79,10 @@ struct FrameChange {
 }  // namespace
 
 BushingPart::BushingPart(const MotionBushing& bushing, MovingFrame first, MovingFrame second)
-    : bushing_(bushing), frames_{std::move(first), std::move(second)} {}
+    : FrameForces({std::move(first), std::move(second)}), bushing_(bushing) {}
 
 BushingPart::State BushingPart::state(const VectorView& y) const {
-  const Relative now(frames_, y);
+  const Relative now(frames(), y);
   const MotionBushing& c = bushing_;
   State s;
   s.shift = now.d;
@@ -101,34 +98,21 @@ BushingPart::State BushingPart::state(const VectorView& y) const {
   return s;
 }
 
-void BushingPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  for (const MovingFrame& carrier : frames_) {
-    if (!carrier.moves_freely()) continue;
-    for (const int row : carrier.velocities()) {
-      for (const MovingFrame& other : frames_) {
-        for (const int column : other.coordinates()) entries.emplace_back(row, column);
-        for (const int column : other.velocities()) entries.emplace_back(row, column);
-      }
-    }
-  }
+std::vector<Wrench> BushingPart::wrenches(const VectorView& y) const {
+  const State s = state(y);
+  return {s.on_first, s.on_second};
 }
 
-void BushingPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
-  const State s = state(at.y);
-  const std::array<Wrench, 2> wrenches{s.on_first, s.on_second};
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (frames_[k].moves_freely()) frames_[k].push(frames_[k].jacobian(at.y), wrenches[k], rows);
-  }
+FrameForces::Power BushingPart::power(const VectorView& y) const {
+  const State s = state(y);
+  return {s.energy, s.lost_power};
 }
 
-void BushingPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
-  const numerics::PatternValues into(*pattern_, values);
-  const Relative now(frames_, at.y);
+Eigen::MatrixXd BushingPart::derivatives(const VectorView& y) const {
+  const Relative now(frames(), y);
   const MotionBushing& c = bushing_;
   const Matrix3d& R = now.a.X_WF.R;
-  const State s = state(at.y);
-  const std::array<Wrench, 2> wrenches{s.on_first, s.on_second};
-  const std::array<MovingFrame::Derivatives, 2> d{frames_[0].differentiate(at.y), frames_[1].differentiate(at.y)};
+  const State s = state(y);
   // Changes of both wrenches when both frames move.
   const auto change = [&](const FrameChange& a, const FrameChange& b) {
     const Vector3d dr = b.shift - a.shift;
@@ -145,35 +129,17 @@ void BushingPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
     return std::array<Wrench, 2>{Wrench{-moment - dr.cross(s.on_second.force) - now.r.cross(force), -force},
                                  Wrench{moment, force}};
   };
-  const auto add = [&](int column, const std::array<Wrench, 2>& changes) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!frames_[k].moves_freely()) continue;
-      const VectorXd by = d[k].jacobian.transpose() * changes[k].vector();
-      const std::vector<int> rows = frames_[k].velocities();
-      for (std::size_t i = 0; i < rows.size(); ++i) into.add(rows[i], column, -by[static_cast<Eigen::Index>(i)]);
-    }
+  Eigen::MatrixXd D(2 * wrench_rows, 2 * motion_columns);
+  const auto fill = [&D](Eigen::Index column, const std::array<Wrench, 2>& changes) {
+    D.col(column) << changes[0].vector(), changes[1].vector();
   };
-  for (std::size_t k = 0; k < 2; ++k) {
-    const auto of_frame = [&](const FrameChange& one) { return k == 0 ? change(one, {}) : change({}, one); };
-    const std::vector<int> q = frames_[k].coordinates(), v = frames_[k].velocities();
-    for (std::size_t j = 0; j < q.size(); ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
-      add(q[j], of_frame({d[k].place.col(column).head<3>(), d[k].place.col(column).tail<3>(),
-                          d[k].motion.col(column).head<3>(), d[k].motion.col(column).tail<3>()}));
-    }
-    for (std::size_t j = 0; j < v.size() && d[k].jacobian.cols() > 0; ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
-      add(v[j], of_frame({Vector3d::Zero(), Vector3d::Zero(), d[k].jacobian.col(column).head<3>(),
-                          d[k].jacobian.col(column).tail<3>()}));
-    }
-    // The Jacobian of the carrier turns with it.
-    if (!frames_[k].moves_freely()) continue;
-    const Eigen::MatrixXd turned = d[k].force(wrenches[k]);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      for (std::size_t j = 0; j < q.size(); ++j)
-        into.add(v[i], q[j], -turned(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
-    }
+  for (Eigen::Index j = 0; j < motion_columns; ++j) {
+    const Eigen::Matrix<double, motion_columns, 1> e = Eigen::Matrix<double, motion_columns, 1>::Unit(j);
+    const FrameChange one{e.segment<3>(0), e.segment<3>(3), e.segment<3>(6), e.segment<3>(9)};
+    fill(j, change(one, {}));
+    fill(motion_columns + j, change({}, one));
   }
+  return D;
 }
 
 }  // namespace snare::coupling

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 
 namespace snare::coupling {
@@ -39,6 +40,50 @@ void validate_foundation(Complaints& c, const std::string& key, const ElasticFou
   c.require(std::isfinite(f.modulus) && f.modulus >= 0.0, key + "modulus", f.modulus,
             "must be > 0, or 0 for the default");
   c.require(std::isfinite(f.damping) && f.damping >= 0.0, key + "damping", f.damping, "must be >= 0");
+}
+
+void validate_laws(const Motion& motion, Complaints& c) {
+  const auto at_least_zero = [&c](const std::string& key, double value) {
+    c.require(std::isfinite(value) && value >= 0.0, key, value, "must be >= 0");
+  };
+  for (const LawWire& w : motion.law_wires) {
+    for (const MotionCarrier& carrier : {w.from, w.to, w.shaft.carrier})
+      ConstraintSet::check_carrier(motion, w.name, carrier, c);
+    at_least_zero(w.name + ".axial_time", w.axial_time);
+    at_least_zero(w.name + ".standoff", w.standoff);
+    at_least_zero(w.name + ".radius", w.radius);
+    at_least_zero(w.name + ".shaft.radius", w.shaft.radius);
+    c.require(w.shaft.half_length > 0.0, w.name + ".shaft.half_length", w.shaft.half_length, "must be > 0");
+    c.require((w.p_to - w.p_from).norm() > 0.0, w.name + ".p_to", 0.0, "must not be where the wire begins");
+    c.require(w.friction.law == ContactFriction::smooth || !w.friction.acts(), w.name + ".friction", 0.0,
+              "must be the smooth law");
+    validate_friction(c, w.name + ".friction.", w.friction);
+    if (w.kind == LawWire::Kind::stretched) {
+      c.require(w.length > 0.0 && w.axial_stiffness > 0.0, w.name + ".length", w.length,
+                "must be > 0, and so the axial stiffness");
+    } else {
+      c.require(static_cast<bool>(w.law), w.name + ".law", 0.0, "must be given");
+    }
+  }
+  for (const BodyContact& b : motion.body_contacts) {
+    ConstraintSet::check_carrier(motion, b.name, b.carrier, c);
+    ConstraintSet::check_carrier(motion, b.name, b.other, c);
+    c.require(b.shape != nullptr, b.name + ".shape", 0.0, "must be given");
+    c.require(static_cast<bool>(b.law), b.name + ".law", 0.0, "must be given");
+    c.require(!b.points.empty(), b.name + ".points", 0.0, "must be at least one");
+    at_least_zero(b.name + ".radius", b.radius);
+    c.require(b.friction.law == ContactFriction::smooth || !b.friction.acts(), b.name + ".friction", 0.0,
+              "must be the smooth law");
+    validate_friction(c, b.name + ".friction.", b.friction);
+  }
+  for (const FrameLoad& l : motion.loads) {
+    ConstraintSet::check_carrier(motion, l.name, l.carrier, c);
+    const auto n = static_cast<Eigen::Index>(l.times.size());
+    c.require(n >= 2 && l.forces.cols() == n && l.moments.cols() == n, l.name + ".times", static_cast<double>(n),
+              "must be at least two, with a force and a moment each");
+    c.require(std::is_sorted(l.times.begin(), l.times.end()), l.name + ".times", 0.0, "must ascend");
+    c.require(l.forces.allFinite() && l.moments.allFinite(), l.name + ".forces", std::nan(""), "must be finite");
+  }
 }
 
 }  // namespace
@@ -131,6 +176,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
               fmt::format("must be 0: it drags against the world, which {} leaves", m.name));
   }
   ConstraintSet::check(motion, c);
+  validate_laws(motion, c);
   c.raise();
 }
 

@@ -29,7 +29,10 @@ Pose mount_pose(const wire::SpatialEnd& end) {
   return X;
 }
 
-void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier, Complaints& c) {
+}  // namespace
+
+void ConstraintSet::check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier,
+                                  Complaints& c) {
   if (carrier.kind == MotionCarrier::Kind::body) {
     c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.bodies.size()), name + ".carrier",
               carrier.index, "must be the index of a body");
@@ -42,8 +45,6 @@ void check_carrier(const Motion& motion, const std::string& name, const MotionCa
               "must be the index of a frame of the arm");
   }
 }
-
-}  // namespace
 
 void ConstraintSet::check(const Motion& motion, Complaints& c) {
   // Arms: sizes, and frames of their loads.
@@ -132,7 +133,7 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
                          options);
   }
   for (const MotionBushing& b : motion.bushings)
-    bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF), frame_of(b.second, bodies, b.X_WF));
+    bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF), frame_of(b.second, bodies, b.X_WG.value_or(b.X_WF)));
   for (const WeldPart& w : welds_) constraints_.push_back(&w);
   for (const MountPart& m : mounts_) constraints_.push_back(&m);
 }
@@ -313,13 +314,12 @@ bool ConstraintSet::counted(const MovingFrame& frame) const {
   return false;
 }
 
-// A bushing between what is counted and what is not.
-void ConstraintSet::add_bushing(const BushingPart& bushing, const DaePoint& at, Outer& sum) const {
-  const BushingPart::State s = bushing.state(at.y);
-  sum.lost += s.lost_power;
-  const std::array<multibody::Wrench, 2> wrenches{s.on_first, s.on_second};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const MovingFrame& frame = bushing.frame(k);
+// Of forces between what is counted and what is not.
+void ConstraintSet::add_forces(const FrameForces& forces, const DaePoint& at, Outer& sum) const {
+  sum.lost += forces.power(at.y).lost;
+  const std::vector<multibody::Wrench> wrenches = forces.wrenches(at.y);
+  for (std::size_t k = 0; k < wrenches.size(); ++k) {
+    const MovingFrame& frame = forces.frames()[k];
     const MovingFrame::State carrier = frame.state(at.y);
     if (counted(frame)) {
       sum.force += wrenches[k].force;
@@ -329,6 +329,16 @@ void ConstraintSet::add_bushing(const BushingPart& bushing, const DaePoint& at, 
     if (!frame.moves_freely())
       sum.power -= wrenches[k].force.dot(carrier.linear) + wrenches[k].moment.dot(carrier.angular);
   }
+}
+
+void ConstraintSet::add_load(const LoadPart& load, const DaePoint& at, Outer& sum) const {
+  const multibody::Wrench w = load.wrench(at);
+  const MovingFrame::State s = load.frame().state(at.y);
+  if (!load.frame().moves_freely()) return;
+  sum.power += w.force.dot(s.linear) + w.moment.dot(s.angular);
+  if (!counted(load.frame())) return;
+  sum.force += w.force;
+  sum.moment += w.moment + s.X_WF.p.cross(w.force);
 }
 
 // Forces and moments about the origin on everything whose momentum is counted: what carriers give whose own is not, and
@@ -347,7 +357,7 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   };
   for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
   for (const MountPart& m : mounts_) add(m, -m.moment(at));
-  for (const BushingPart& b : bushings_) add_bushing(b, at, sum);
+  for (const BushingPart& b : bushings_) add_forces(b, at, sum);
   for (std::size_t k = 0; k < arms_.size(); ++k) {
     if (!arms_[k].floats) continue;
     const multibody::Tree& tree = arms_[k].model.tree;

@@ -3,6 +3,7 @@
 #include "base/index.hpp"
 #include "coupling/dynamics/bushing_part.hpp"
 #include "coupling/dynamics/complaints.hpp"
+#include "coupling/dynamics/load_part.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/mount_part.hpp"
 #include "coupling/dynamics/options.hpp"
@@ -22,6 +23,9 @@ class ConstraintSet {
  public:
   /// What is wrong with them.
   static void check(const Motion& motion, Complaints& complaints);
+  /// And with one carrier.
+  static void check_carrier(const Motion& motion, const std::string& name, const MotionCarrier& carrier,
+                            Complaints& complaints);
 
   ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
                 const MotionOptions& options);
@@ -72,6 +76,9 @@ class ConstraintSet {
     double lost = 0.0;
   };
   [[nodiscard]] Outer outer(const numerics::DaePoint& at) const;
+  /// What forces between frames, and loads, add to that.
+  void add_load(const LoadPart& load, const numerics::DaePoint& at, Outer& sum) const;
+  void add_forces(const FrameForces& forces, const numerics::DaePoint& at, Outer& sum) const;
   /// Force of a moving mount on its wire's end, if the end has one [N].
   [[nodiscard]] std::optional<Eigen::Vector3d> mount_force(int wire, wire::End end,
                                                            const numerics::VectorView& y) const;
@@ -87,7 +94,6 @@ class ConstraintSet {
     bool floats = false;  // nothing holds its base: its momentum is counted
   };
   [[nodiscard]] bool counted(const MovingFrame& frame) const;
-  void add_bushing(const BushingPart& bushing, const numerics::DaePoint& at, Outer& sum) const;
   void enter(double time);
 
   const Motion& motion_;

@@ -5,7 +5,10 @@
 #include "coupling/contact/friction.hpp"
 #include "coupling/contact/shape.hpp"
 #include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/body_contact.hpp"
 #include "coupling/dynamics/bushing.hpp"
+#include "coupling/dynamics/frame_load.hpp"
+#include "coupling/dynamics/law_wire.hpp"
 #include "coupling/dynamics/phase.hpp"
 #include "coupling/dynamics/strength.hpp"
 #include "coupling/dynamics/tightness.hpp"
@@ -83,6 +86,13 @@ struct PointContactLaw {
   ContactLaw law;                                        ///< of penetration along `direction` and its rate
 };
 
+/// What every wire has, whatever stands for it.
+struct WireFacts {
+  std::string name;
+  WireStrength strength;
+  WireTightness tightness;
+};
+
 /// Everything that moves and acts. Indices count within these lists.
 struct Motion {
   std::vector<MotionWire> wires;
@@ -94,15 +104,29 @@ struct Motion {
   std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
   std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies; the others stand still
   std::vector<MotionBushing> bushings;
+  std::vector<LawWire> law_wires;  ///< behind the other wires where wires are counted
+  std::vector<BodyContact> body_contacts;
+  std::vector<FrameLoad> loads;
   std::vector<MotionPhase> phases;                    ///< in their order
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 
-  /// Names of all that presses, in the order in which results count it: contacts, springs, pairs of wires.
+  /// Of all wires, in the order in which results count them: those of the list, then those that laws stand for.
+  [[nodiscard]] std::vector<WireFacts> wire_facts() const {
+    std::vector<WireFacts> facts;
+    for (const MotionWire& w : wires) facts.push_back({w.name, w.strength, w.tightness});
+    for (const LawWire& w : law_wires) facts.push_back({w.name, w.strength, w.tightness});
+    return facts;
+  }
+
+  /// Names of all that presses, in the order in which results count it: contacts, springs, pairs of wires, wires that laws stand for
+  /// on their shafts, contacts of bodies.
   [[nodiscard]] std::vector<std::string> contact_names() const {
     std::vector<std::string> names;
     for (const MotionContact& c : contacts) names.push_back(c.name);
     for (const PointContactLaw& s : springs) names.push_back(s.name);
     for (const WirePair& p : wire_pairs) names.push_back(p.name);
+    for (const LawWire& w : law_wires) names.push_back(w.shaft.name + " on " + w.name);
+    for (const BodyContact& b : body_contacts) names.push_back(b.name);
     return names;
   }
 };

@@ -24,6 +24,8 @@ double end_tension(const Eigen::Matrix3Xd& x, const Eigen::Vector3d& left, const
 }
 
 double end_tension(const MotionSample& sample, std::size_t wire) {
+  const std::size_t rods = sample.wires.size() - sample.law_tensions.size();
+  if (wire >= rods) return sample.law_tensions[wire - rods];
   return end_tension(sample.wires[wire], sample.mount_forces[2 * wire], sample.mount_forces[2 * wire + 1]);
 }
 

@@ -47,9 +47,11 @@ struct EnergyBalance {
 struct MotionSample {
   double time = 0.0;
   std::vector<multibody::RigidBodyState> bodies;
-  std::vector<ContactSample> contacts;        ///< then the springs, then the pairs of wires (on the first of each)
-  std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices [m]
+  /// As Motion::contact_names counts them; of springs, pairs and contacts of bodies on the first of each.
+  std::vector<ContactSample> contacts;
+  std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices, then of the wires that laws stand for [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
+  std::vector<double> law_tensions;           ///< of the wires that laws stand for [N]
   struct Arm {
     multibody::ArmState state;
     multibody::ArmWork work;
@@ -68,7 +70,7 @@ struct MotionSample {
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
 };
 
-/// Tension of a wire from the forces of its mounts on its ends: the smaller of their parts along the edges there [N]; negative where
+/// Tension of a wire, of a law or from the forces of its mounts on its ends: the smaller of their parts along the edges there [N]; negative where
 /// they press.
 [[nodiscard]] double end_tension(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& left,
                                  const Eigen::Vector3d& right);
@@ -78,7 +80,7 @@ struct MotionSample {
 struct MotionEvent {
   enum class Kind { touch, lift_off, stick, slip };
   double time = 0.0;
-  int contact = 0;   ///< index; springs count on after the contacts, pairs of wires after these
+  int contact = 0;   ///< index as Motion::contact_names counts them
   int point = 0;     ///< of the contact
   double arc = 0.0;  ///< material coordinate [m]
   Kind kind = Kind::touch;
@@ -98,7 +100,7 @@ struct PhaseBeginning {
 /// What a motion has summed up since its start.
 struct MotionSums {
   std::vector<MotionEvent> events;
-  std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
+  std::vector<double> peak_force;        ///< of everything that presses: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
   std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
@@ -131,12 +133,12 @@ struct MotionResult {
   Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
   /// The same about the origin, less that of all outer moments [N m s].
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
-  std::vector<double> peak_force;        ///< of every contact, spring and pair of wires: see PeakForce [N]
+  std::vector<double> peak_force;        ///< of everything that presses: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
   std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
   std::vector<PhaseBeginning> phases;    ///< begun
-  std::vector<Eigen::Vector3d> impulse;  ///< of contacts on their wires, bodies on springs, pairs on first wires [N s]
+  std::vector<Eigen::Vector3d> impulse;  ///< of what presses, on the wire or the first of two [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
   numerics::IdaStatistics statistics;

@@ -32,6 +32,16 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const WirePair& p : motion.wire_pairs)
     pairs_.emplace_back(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]);
   constraints_.emplace(motion, rods_, bodies_, options);
+  const auto frame = [this](const MotionCarrier& carrier, const multibody::Pose& X_WF) {
+    return constraints_->frame_of(carrier, bodies_, X_WF);
+  };
+  const auto place = [](const Eigen::Vector3d& p) { return multibody::Pose{Eigen::Matrix3d::Identity(), p}; };
+  for (const LawWire& w : motion.law_wires)
+    presses_.push_back(&law_wires_.emplace_back(w, frame(w.from, place(w.p_from)), frame(w.to, place(w.p_to)),
+                                                frame(w.shaft.carrier, w.shaft.X_WS)));
+  for (const BodyContact& b : motion.body_contacts)
+    presses_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
+  for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
@@ -66,6 +76,8 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
   }
   for (auto& s : springs_) list.push_back(&s);
   for (auto& p : pairs_) list.push_back(&p);
+  for (PressPart* p : presses_) list.push_back(p);
+  for (auto& l : loads_) list.push_back(&l);
   constraints_->append(list);
   return list;
 }
@@ -119,6 +131,7 @@ void MotionRun::begin() {
   for (WirePairPart& p : pairs_) {
     if (p.look_around(y_)) system_->invalidate_pattern();
   }
+  for (LawWirePart& w : law_wires_) w.look_around(y_);
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
@@ -146,6 +159,7 @@ void MotionRun::resume(const MotionState& from) {
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
   restore_phases(memory);
   constraints_->restore_state(time_, memory);
+  for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
   system_->restore_state(y_, memory);
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
@@ -160,7 +174,8 @@ MotionResult MotionRun::go(double limit) {
   forces_.add(time_, rates.tail(of_contacts));
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
-    const double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
+    double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
+    for (const LoadPart& l : loads_) stop = std::min(stop, l.next_break(time_));
     const numerics::IdaAdvance advance = ida_->advance(stop, longest_step());
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
@@ -194,6 +209,13 @@ MotionResult MotionRun::go(double limit) {
       sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
                               touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
+    for (std::size_t k = 0; k < presses_.size(); ++k, ++event) {
+      if (behind || found[event] == 0) continue;
+      changed = changed || presses_[k]->jumps();
+      sums_.events.push_back({time_, static_cast<int>(first_press() + k), 0, presses_[k]->sample(y_).arc,
+                              found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
+    }
+    for (LoadPart& l : loads_) changed = l.enter(time_) || changed;
     if (phase) {
       over_ = begin_phases();
     } else if (changed) {

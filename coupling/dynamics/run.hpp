@@ -1,10 +1,13 @@
 #pragma once
 
+#include "coupling/dynamics/body_contact_part.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/constraint_set.hpp"
 #include "coupling/dynamics/contact_group.hpp"
 #include "coupling/dynamics/force_record.hpp"
 #include "coupling/dynamics/law_part.hpp"
+#include "coupling/dynamics/law_wire_part.hpp"
+#include "coupling/dynamics/load_part.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/peak_force.hpp"
@@ -26,8 +29,8 @@
 namespace snare::coupling {
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, the force of every contact on its wire, of every body on its spring and of every pair on its first wire
-/// [N], and behind them the normal force of each.
+/// wires and free bodies, the force of everything that presses on the wire or the first of two [N], and behind them the normal force
+/// of each.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
@@ -78,9 +81,14 @@ class MotionRun {
   void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
+  void watch_law_wire(std::size_t k);
   [[nodiscard]] double longest_step() const;
-  /// Number of contacts, springs and pairs.
-  [[nodiscard]] std::size_t touching() const { return contacts_.size() + springs_.size() + pairs_.size(); }
+  /// Number of all that presses.
+  [[nodiscard]] std::size_t touching() const {
+    return contacts_.size() + springs_.size() + pairs_.size() + presses_.size();
+  }
+  /// Index of the first press among all that does.
+  [[nodiscard]] std::size_t first_press() const { return touching() - presses_.size(); }
   /// At the last state, or within the step before it.
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
   /// The sample of a contact, by its index among all, with the forces that are recorded.
@@ -96,6 +104,10 @@ class MotionRun {
   std::deque<LawPart> springs_;
   std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
+  std::deque<LawWirePart> law_wires_;
+  std::deque<BodyContactPart> body_contacts_;
+  std::vector<PressPart*> presses_;  // both of them
+  std::deque<LoadPart> loads_;
   PhaseWatch phases_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;

@@ -35,6 +35,9 @@ struct StrengthUse {
 };
 [[nodiscard]] StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const numerics::DaePoint& at);
 
+/// " reaches its strength of ...": of a use that does.
+[[nodiscard]] std::string strength_reached(const WireStrength& strength, const StrengthUse& use);
+
 /// Takes an accepted step into the largest use so far. Where the strength is reached and ends the run, says so: " reaches ...".
 [[nodiscard]] std::optional<std::string> watch_strength(const WireStrength& strength, wire::RodPart& rod,
                                                         const numerics::DaePoint& at, StrengthUse& largest);

@@ -1,0 +1,144 @@
+#pragma once
+
+#include "coupling/contact/friction.hpp"
+#include "coupling/dynamics/frame_forces.hpp"
+#include "multibody/spatial.hpp"
+
+#include <ceres/jet.h>
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace snare::coupling {
+
+/// Laws between frames in numbers that carry their derivatives along, so that a law is written once: Ceres' Jet.
+template <int N>
+using Dual = ceres::Jet<double, N>;
+template <class S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+
+/// Axes, origin, angular velocity and velocity of the origin of a frame, in the world.
+template <class S>
+struct FrameMotion {
+  Eigen::Matrix<S, 3, 3> R;
+  Vector3<S> p, angular, linear;
+
+  [[nodiscard]] Vector3<S> point(const Eigen::Vector3d& p_FP) const { return p + R * p_FP.cast<S>(); }
+  [[nodiscard]] Vector3<S> velocity_at(const Vector3<S>& p_WP) const { return linear + angular.cross(p_WP - p); }
+};
+
+/// Moment about the frame's origin and force on it.
+template <class S>
+struct FrameWrench {
+  Vector3<S> moment = Vector3<S>::Zero(), force = Vector3<S>::Zero();
+
+  void add(const FrameMotion<S>& frame, const Vector3<S>& p_WP, const Vector3<S>& f) {
+    force += f;
+    moment += Vector3<S>(p_WP - frame.p).cross(f);
+  }
+};
+
+/// The frames now.
+template <std::size_t K>
+[[nodiscard]] std::array<FrameMotion<double>, K> motions(const std::vector<MovingFrame>& frames,
+                                                         const numerics::VectorView& y) {
+  std::array<FrameMotion<double>, K> now;
+  for (std::size_t k = 0; k < K; ++k) {
+    const MovingFrame::State s = frames[k].state(y);
+    now[k] = {s.X_WF.R, s.X_WF.p, s.angular, s.linear};
+  }
+  return now;
+}
+
+/// With their turn, shift, angular velocity and velocity as variables, 12 a frame.
+template <std::size_t K>
+[[nodiscard]] auto with_derivatives(const std::array<FrameMotion<double>, K>& now) {
+  constexpr int n = 12 * static_cast<int>(K);
+  using S = Dual<n>;
+  std::array<FrameMotion<S>, K> dual;
+  for (std::size_t k = 0; k < K; ++k) {
+    const auto variables = [&](const Eigen::Vector3d& value, int first) {
+      Vector3<S> v;
+      for (int i = 0; i < 3; ++i) v[i] = S(value[i], 12 * static_cast<int>(k) + first + i);
+      return v;
+    };
+    const Vector3<S> turn = variables(Eigen::Vector3d::Zero(), 0);
+    for (int j = 0; j < 3; ++j) {
+      const Vector3<S> axis = now[k].R.col(j).template cast<S>();
+      dual[k].R.col(j) = axis + turn.cross(axis);
+    }
+    dual[k].p = variables(now[k].p, 3);
+    dual[k].angular = variables(now[k].angular, 6);
+    dual[k].linear = variables(now[k].linear, 9);
+  }
+  return dual;
+}
+
+template <std::size_t K>
+[[nodiscard]] std::vector<multibody::Wrench> plain(const std::array<FrameWrench<double>, K>& wrenches) {
+  std::vector<multibody::Wrench> list;
+  for (const FrameWrench<double>& w : wrenches) list.push_back({w.moment, w.force});
+  return list;
+}
+
+/// Their derivatives: D of FrameForces.
+template <class S, std::size_t K>
+[[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
+  Eigen::MatrixXd D(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
+  Eigen::Index row = 0;
+  for (const FrameWrench<S>& w : wrenches) {
+    for (const Vector3<S>* part : {&w.moment, &w.force}) {
+      for (int i = 0; i < 3; ++i) D.row(row++) = (*part)[i].v.transpose();
+    }
+  }
+  return D;
+}
+
+/// Power that the frames get [W].
+template <std::size_t K>
+[[nodiscard]] double power_of(const std::array<FrameWrench<double>, K>& wrenches,
+                              const std::array<FrameMotion<double>, K>& frames) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < K; ++k)
+    sum += wrenches[k].moment.dot(frames[k].angular) + wrenches[k].force.dot(frames[k].linear);
+  return sum;
+}
+
+/// The number without its derivatives.
+[[nodiscard]] inline double value_of(double x) {
+  return x;
+}
+template <int N>
+[[nodiscard]] double value_of(const Dual<N>& x) {
+  return x.a;
+}
+
+/// f(x, y) by its value and slopes there.
+[[nodiscard]] inline double lifted(double value, double /*by_x*/, double /*x*/, double /*by_y*/, double /*y*/) {
+  return value;
+}
+template <int N>
+[[nodiscard]] Dual<N> lifted(double value, double by_x, const Dual<N>& x, double by_y, const Dual<N>& y) {
+  return Dual<N>(value, by_x * x.v + by_y * y.v);
+}
+
+/// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.  theory.md (M.9)
+template <class S>
+[[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w, const S& normal) {
+  if (!friction.acts()) return Vector3<S>::Zero();
+  Eigen::Vector3d plain;
+  for (int i = 0; i < 3; ++i) plain[i] = value_of(w[i]);
+  const double speed = plain.norm();
+  // The law along w: f = -mu(s) N w/s; at rest it is linear in w, as the law is.
+  const auto at = [&](double s) {
+    return tangent_force(friction, {Eigen::Vector2d::Zero(), Eigen::Vector2d(s, 0.0), value_of(normal)});
+  };
+  if (speed < 1e-12) return -w * S(at(0.0).by_sliding(0, 0));
+  const TangentForce f = at(speed);
+  const S s = w.norm();
+  return -w / s * lifted(f.force.x(), f.by_sliding(0, 0), s, f.by_normal.x(), normal);
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "coupling/dynamics/moving_frame.hpp"
+#include "multibody/spatial.hpp"
+#include "numerics/dae.hpp"
+
+#include <Eigen/Core>
+
+#include <utility>
+#include <vector>
+
+namespace snare::coupling {
+
+/// A law between frames of several carriers, in a DAE: no unknowns, a wrench on every carrier.          theory.md (M.26)
+///
+/// The law says what it does to each frame and how that changes; how frames depend on the unknowns, and rows on wrenches, is here:
+///   r -= J_k^T W_k,   dr = -J_i^T dW_i - (dJ_i)^T W_i,   dW_i = sum_k D_ik (turn_k, shift_k, spin_k, velocity_k)
+class FrameForces : public numerics::DaePart {
+ public:
+  explicit FrameForces(std::vector<MovingFrame> frames) : frames_(std::move(frames)) {}
+
+  void declare(numerics::DaeLayout& /*layout*/) override {}
+  void sparsity(std::vector<std::pair<int, int>>& entries) const final;
+  void attach_pattern(const numerics::SparseMatrix& pattern) final { pattern_ = &pattern; }
+  void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) final;
+  void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) final;
+
+  [[nodiscard]] const std::vector<MovingFrame>& frames() const { return frames_; }
+  /// On every frame, about its origin, in the axes of the world; empty while the law does nothing.
+  [[nodiscard]] virtual std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const = 0;
+  /// What it stores [J], and loses [W].
+  struct Power {
+    double energy = 0.0;
+    double lost = 0.0;
+  };
+  [[nodiscard]] virtual Power power(const numerics::VectorView& y) const = 0;
+
+ protected:
+  static constexpr int wrench_rows = 6;      // moment, force
+  static constexpr int motion_columns = 12;  // turn, shift, angular velocity, velocity of the origin
+  /// D: (6 x frames, 12 x frames), asked for only where there are wrenches.
+  [[nodiscard]] virtual Eigen::MatrixXd derivatives(const numerics::VectorView& y) const = 0;
+
+ private:
+  std::vector<MovingFrame> frames_;
+  const numerics::SparseMatrix* pattern_ = nullptr;
+};
+
+}  // namespace snare::coupling

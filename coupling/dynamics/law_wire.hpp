@@ -1,0 +1,52 @@
+#pragma once
+
+#include "coupling/contact/contact_law.hpp"
+#include "coupling/contact/friction.hpp"
+#include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/strength.hpp"
+#include "coupling/dynamics/tightness.hpp"
+#include "multibody/spatial.hpp"
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace snare::coupling {
+
+/// A round shaft with which wires meet that a law stands for: a segment on z about its frame's origin.
+struct MotionShaft {
+  std::string name = "shaft";
+  MotionCarrier carrier;
+  multibody::Pose X_WS;      ///< at the start
+  double radius = 0.0;       ///< [m], >= 0
+  double half_length = 0.0;  ///< [m], > 0
+};
+
+/// A wire without mass for which a law stands, between two mounts on carriers, and the one shaft that it meets.  theory.md (M.27)
+///
+/// It holds the shaft on the side away from its bulge. A shaft that is out of its reach along z when it is behind the wire is missed:
+/// nothing acts until it has been before it.
+struct LawWire {
+  enum class Kind {
+    stretched,  ///< an elastic string, straight and round the shaft: T = EA (l - L)/L
+    rod  ///< a rod that turns about `from` and is met by the shaft: F(x), x = lever (commanded less actual angle)
+  };
+  std::string name = "wire";
+  Kind kind = Kind::stretched;
+  MotionCarrier from, to;
+  Eigen::Vector3d p_from = Eigen::Vector3d::Zero(),
+                  p_to = Eigen::Vector3d::UnitX();   ///< of the mounts at the start [m]
+  Eigen::Vector3d bulge = Eigen::Vector3d::UnitY();  ///< at the start, across the chord
+  double radius = 0.0;                               ///< half the diameter [m], >= 0
+  double length = 0.0;                               ///< unstretched [m]; stretched: > 0
+  double axial_stiffness = 0.0;                      ///< EA [N]; stretched: > 0
+  double axial_time = 0.0;                           ///< stretched: T = EA (e + tau e')/L [s], >= 0
+  ContactLaw law;                                    ///< rod: F(x, x')
+  double standoff = 0.0;    ///< rod: by which the wire that the law means stands off the rod [m], >= 0, for its tension
+  MotionFriction friction;  ///< smooth; acts where the shaft slides along wire and axis
+  WireStrength strength = {};
+  WireTightness tightness = {};
+  MotionShaft shaft;
+};
+
+}  // namespace snare::coupling

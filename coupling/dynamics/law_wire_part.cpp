@@ -1,0 +1,280 @@
+#include "coupling/dynamics/law_wire_part.hpp"
+
+#include "coupling/dynamics/dual_frames.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace snare::coupling {
+
+using Eigen::Vector3d;
+using multibody::Wrench;
+using numerics::VectorView;
+
+namespace {
+
+enum Frame : std::size_t { from, to, on_shaft };
+
+/// Larger than any wire bears without breaking: a string that begins with more would have to be behind the shaft.
+constexpr double largest_strain = 0.02;
+
+/// Where the chord and the shaft's axis are nearest: along the chord from the first mount, and along the axis. Parallel: nowhere.
+template <class S>
+struct NearestOfLines {
+  bool exists = false;
+  S along_chord{}, along_axis{};
+
+  NearestOfLines(const Vector3<S>& chord, const Vector3<S>& axis, const Vector3<S>& from_centre) {
+    const S b = chord.dot(axis), d = chord.dot(from_centre), f = axis.dot(from_centre);
+    constexpr double parallel = 1e-6;
+    exists = 1.0 - value_of(b) * value_of(b) > parallel;
+    if (!exists) return;
+    along_chord = (b * f - d) / (1.0 - b * b);
+    along_axis = (f - b * d) / (1.0 - b * b);
+  }
+};
+
+}  // namespace
+
+template <class S>
+struct LawWirePart::Action {
+  std::array<FrameWrench<S>, 3> wrenches;
+  bool acts = false, touches = false;
+  S depth{-1.0};                                     // elongation, or x of the rod
+  S tension{}, normal{};                             // [N]
+  Vector3<S> point;                                  // on the shaft
+  Vector3<S> slide = Vector3<S>::Zero();             // of the shaft along the wire there
+  S share{0.5};                                      // of the way from the first mount
+  double stiffness = 0.0, rate = 0.0, energy = 0.0;  // of the string: d(tension)/d(elongation), rate of the elongation
+};
+
+LawWirePart::LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft)
+    : PressPart({std::move(from), std::move(to), std::move(shaft)}),
+      wire_(wire),
+      binormal_(wire.bulge.cross(wire.p_to - wire.p_from).normalized()) {}
+
+// Friction on the shaft and, shared by the carriers of the mounts, against it: all at the point of contact.
+namespace {
+
+template <class S>
+void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<FrameMotion<S>, 3>& frames,
+                  const Vector3<S>& point, const Vector3<S>& force, const S& share) {
+  wrenches[on_shaft].add(frames[on_shaft], point, force);
+  wrenches[from].add(frames[from], point, -force * (S(1.0) - share));
+  wrenches[to].add(frames[to], point, -force * share);
+}
+
+}  // namespace
+
+// A string round a cylinder unrolls to a straight line: in the plane across the axis two tangents t_k = sqrt(rho_k^2 - r^2) and an
+// arc r phi, phi = Phi - acos(r/rho_1) - acos(r/rho_2), Phi the angle between the mounts as seen from the axis on the side of the
+// bulge; with the height h along the axis l = sqrt((t_1 + t_2 + r phi)^2 + h^2). dl is that of the ends along the string alone.
+template <class S>
+LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3>& frames) const {
+  using std::acos, std::atan2, std::sqrt;
+  Action<S> a;
+  const Vector3<S> P = frames[from].p, T = frames[to].p, c = frames[on_shaft].p;
+  Vector3<S> axis = frames[on_shaft].R.col(2);
+  const Vector3<S> binormal = frames[from].R * binormal_.cast<S>();
+  if (value_of(axis.dot(binormal)) < 0.0) axis = -axis;
+  const Vector3<S> to_p = P - c, to_t = T - c;
+  const S z_p = axis.dot(to_p), z_t = axis.dot(to_t);
+  const Vector3<S> p = to_p - axis * z_p, t = to_t - axis * z_t;
+  const double r = wire_.shaft.radius + wire_.radius;
+  const S rho_p = p.norm(), rho_t = t.norm();
+
+  S turned{-1.0};
+  if (holds_ && value_of(rho_p) > r && value_of(rho_t) > r) {
+    S angle = atan2(axis.dot(p.cross(t)), p.dot(t));
+    if (value_of(angle) < 0.0) angle += 2.0 * std::numbers::pi;
+    turned = angle - acos(r / rho_p) - acos(r / rho_t);
+  }
+  a.touches = value_of(turned) > 0.0;
+  Vector3<S> u_p, u_t, q_p = P, q_t = T;  // pulls on the mounts, and where the string meets and leaves the shaft
+  S length;
+  if (a.touches) {
+    const S t_p = sqrt(rho_p * rho_p - r * r), t_t = sqrt(rho_t * rho_t - r * r);
+    const S flat = t_p + t_t + r * turned, height = z_t - z_p;
+    length = sqrt(flat * flat + height * height);
+    const Vector3<S> p_unit = p / rho_p, t_unit = t / rho_t;
+    const Vector3<S> m_p = p_unit * (r / rho_p) + axis.cross(p_unit) * (t_p / rho_p);
+    const Vector3<S> m_t = t_unit * (r / rho_t) - axis.cross(t_unit) * (t_t / rho_t);
+    const S rise = height / length, along = flat / length;
+    u_p = (m_p * S(r) - p) / t_p * along + axis * rise;
+    u_t = (m_t * S(r) - t) / t_t * along - axis * rise;
+    q_p = c + m_p * S(r) + axis * (z_p + height * t_p / flat);
+    q_t = c + m_t * S(r) + axis * (z_t - height * t_t / flat);
+    a.point = (q_p + q_t) * S(0.5);
+    a.share = (t_p + 0.5 * r * turned) / flat;
+  } else {
+    length = (T - P).norm();
+    u_p = (T - P) / length;
+    u_t = -u_p;
+    a.point = (P + T) * S(0.5);
+  }
+  a.depth = length - S(wire_.length);
+  if (!(value_of(a.depth) > 0.0)) return a;
+  const double k = a.stiffness = wire_.axial_stiffness / wire_.length;
+  S rate = -u_p.dot(frames[from].linear) - u_t.dot(frames[to].linear);
+  if (a.touches) rate += u_p.dot(frames[on_shaft].velocity_at(q_p)) + u_t.dot(frames[on_shaft].velocity_at(q_t));
+  a.rate = value_of(rate);
+  a.tension = k * (a.depth + wire_.axial_time * rate);
+  a.energy = 0.5 * k * value_of(a.depth) * value_of(a.depth);
+  if (!(value_of(a.tension) > 0.0)) {
+    a.tension = S(0.0);
+    return a;
+  }
+  a.acts = true;
+  a.wrenches[from].add(frames[from], P, u_p * a.tension);
+  a.wrenches[to].add(frames[to], T, u_t * a.tension);
+  if (!a.touches) return a;
+  a.wrenches[on_shaft].add(frames[on_shaft], q_p, -u_p * a.tension);
+  a.wrenches[on_shaft].add(frames[on_shaft], q_t, -u_t * a.tension);
+  const Vector3<S> press = -(u_p + u_t) * a.tension;
+  a.normal = press.norm();
+  if (!(value_of(a.normal) > 0.0)) return a;
+  const Vector3<S> n = press / a.normal;
+  const Vector3<S> v = frames[on_shaft].velocity_at(a.point) - frames[from].velocity_at(a.point) * (S(1.0) - a.share) -
+                       frames[to].velocity_at(a.point) * a.share;
+  a.slide = v - n * n.dot(v);
+  add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), a.share);
+  return a;
+}
+
+// The rod points from its pivot to the other mount; the shaft, a circle of radius r at the distance rho from the pivot, lets it turn
+// up to the tangent: x = l (asin(delta/rho) + asin(r/rho)), l = sqrt(rho^2 - r^2), delta the axis' distance behind the rod.
+template <class S>
+LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& frames) const {
+  using std::asin, std::sqrt;
+  Action<S> a;
+  const Vector3<S> P = frames[from].p, T = frames[to].p, c = frames[on_shaft].p;
+  const S span = (T - P).norm();
+  const Vector3<S> e = (T - P) / span;
+  a.point = (P + T) * S(0.5);
+  Vector3<S> axis = frames[on_shaft].R.col(2);
+  if (value_of(axis.dot(frames[from].R * binormal_.cast<S>())) < 0.0) axis = -axis;
+  const NearestOfLines<S> near(e, axis, P - c);
+  if (!holds_ || !near.exists) return a;
+  const S& s = near.along_chord;
+  if (!(value_of(s) > 0.0 && value_of(s) < value_of(span))) return a;
+  const Vector3<S> n = Vector3<S>(e.cross(axis)).normalized();
+  const S behind = n.dot(c - P);
+  const double r = wire_.shaft.radius + wire_.radius;
+  const S rho = sqrt(s * s + behind * behind);
+  if (!(value_of(rho) > r)) return a;
+  a.depth = sqrt(rho * rho - r * r) * (asin(behind / rho) + asin(r / rho));
+  a.touches = value_of(a.depth) > 0.0;
+  a.point = P + e * s;
+  a.share = s / span;
+  if (!a.touches) return a;
+  const S& share = a.share;
+  const Vector3<S> wire_velocity = frames[from].linear * (S(1.0) - share) + frames[to].linear * share;
+  const Vector3<S> v = frames[on_shaft].velocity_at(a.point) - wire_velocity;
+  const S speed = n.dot(v);
+  const Vector3d law = wire_.law(value_of(a.depth), value_of(speed));
+  a.normal = lifted(law.x(), law.y(), a.depth, law.z(), speed);
+  if (!(value_of(a.normal) > 0.0)) {
+    a.normal = S(0.0);
+    return a;
+  }
+  a.acts = true;
+  const S y = a.depth + S(wire_.standoff);
+  a.tension = a.normal / (y / sqrt(s * s + y * y) + y / sqrt((span - s) * (span - s) + y * y));
+  a.wrenches[on_shaft].add(frames[on_shaft], a.point, -n * a.normal);
+  a.wrenches[from].add(frames[from], P, n * a.normal * (S(1.0) - share));
+  a.wrenches[to].add(frames[to], T, n * a.normal * share);
+  a.slide = v - n * speed;
+  add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), share);
+  return a;
+}
+
+template <class S>
+LawWirePart::Action<S> LawWirePart::act(const std::array<FrameMotion<S>, 3>& frames) const {
+  return wire_.kind == LawWire::Kind::stretched ? stretched(frames) : rod(frames);
+}
+
+LawWirePart::Action<double> LawWirePart::now(const VectorView& y) const {
+  return act(motions<3>(frames(), y));
+}
+
+std::vector<Wrench> LawWirePart::wrenches(const VectorView& y) const {
+  const Action<double> a = now(y);
+  return a.acts ? plain(a.wrenches) : std::vector<Wrench>{};
+}
+
+Eigen::MatrixXd LawWirePart::derivatives(const VectorView& y) const {
+  return derivatives_of(act(with_derivatives(motions<3>(frames(), y))).wrenches);
+}
+
+// The string stores what it is stretched by; of a rod's law all that is taken counts as lost, and what it gives back as gained.
+FrameForces::Power LawWirePart::power(const VectorView& y) const {
+  const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
+  const Action<double> a = act(frames);
+  const double taken = -power_of(a.wrenches, frames);
+  if (wire_.kind == LawWire::Kind::rod) return {0.0, taken};
+  const double by_friction = -smooth_friction(wire_.friction, a.slide, a.normal).dot(a.slide);
+  return {a.energy, (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction};
+}
+
+double LawWirePart::depth(const VectorView& y) const {
+  return now(y).depth;
+}
+
+ContactSample LawWirePart::sample(const VectorView& y) const {
+  const Action<double> a = now(y);
+  ContactSample s;
+  s.closed = a.touches && a.acts;
+  s.gap = -a.depth;
+  s.normal_force = a.normal;
+  s.force = s.closed ? -a.wrenches[on_shaft].force : Vector3d(Vector3d::Zero());
+  s.point = a.point;
+  s.arc = a.share * wire_.length;
+  s.slip_speed = a.slide.norm();
+  return s;
+}
+
+LawWirePart::Shape LawWirePart::shape(const VectorView& y) const {
+  const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
+  const Action<double> a = act(frames);
+  Shape shape;
+  shape.points.resize(3, 3);
+  shape.points << frames[from].p, a.point, frames[to].p;
+  for (std::size_t k = 0; k < 2; ++k) shape.mount_forces[k] = -a.wrenches[k].force;
+  shape.tension = a.tension;
+  return shape;
+}
+
+void LawWirePart::look_around(const VectorView& y) {
+  const std::array<FrameMotion<double>, 3> now = motions<3>(frames(), y);
+  const Vector3d chord = (now[to].p - now[from].p).normalized();
+  const NearestOfLines<double> near(chord, now[on_shaft].R.col(2), now[from].p - now[on_shaft].p);
+  const bool was_within = std::exchange(within_, near.exists && std::abs(near.along_axis) <= wire_.shaft.half_length);
+  if (!within_) {
+    holds_ = false;
+  } else if (!was_within) {
+    holds_ = true;
+    const double depth = act(now).depth;
+    holds_ = depth <= (wire_.kind == LawWire::Kind::stretched ? largest_strain * wire_.length : wire_.shaft.radius);
+  }
+}
+
+bool LawWirePart::accept(const numerics::DaePoint& at) {
+  look_around(at.y);
+  return false;
+}
+
+void LawWirePart::save_state(std::vector<double>& memory) const {
+  memory.push_back(within_ ? 1.0 : 0.0);
+  memory.push_back(holds_ ? 1.0 : 0.0);
+}
+
+void LawWirePart::restore_state(const VectorView& /*y*/, std::span<const double>& memory) {
+  within_ = numerics::take(memory) != 0.0;
+  holds_ = numerics::take(memory) != 0.0;
+}
+
+}  // namespace snare::coupling

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "coupling/dynamics/law_wire.hpp"
+#include "coupling/dynamics/press_part.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace snare::coupling {
+
+template <class S>
+struct FrameMotion;
+
+/// A wire for which a law stands, in a DAE.                                                             theory.md (M.27)
+class LawWirePart final : public PressPart {
+ public:
+  /// Frames on the carriers of its ends, there, and of the shaft.
+  LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft);
+
+  [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
+  [[nodiscard]] Power power(const numerics::VectorView& y) const override;
+  [[nodiscard]] double depth(const numerics::VectorView& y) const override;
+  [[nodiscard]] bool jumps() const override {
+    return wire_.kind == LawWire::Kind::rod ? jumps_at_touch(wire_.law) : wire_.axial_time > 0.0;
+  }
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const override;
+
+  /// What a whole wire would show.
+  struct Shape {
+    Eigen::Matrix3Xd points;                      ///< mount, where it meets the shaft if it does, mount [m]
+    std::array<Eigen::Vector3d, 2> mount_forces;  ///< on the wire's ends [N]
+    double tension = 0.0;                         ///< [N], >= 0
+  };
+  [[nodiscard]] Shape shape(const numerics::VectorView& y) const;
+
+  /// Looks whether the shaft is within reach, and before the wire; to be told the start.
+  void look_around(const numerics::VectorView& y);
+  bool accept(const numerics::DaePoint& at) override;
+  void save_state(std::vector<double>& memory) const override;
+  void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
+
+ private:
+  template <class S>
+  struct Action;
+  [[nodiscard]] Eigen::MatrixXd derivatives(const numerics::VectorView& y) const override;
+  template <class S>
+  [[nodiscard]] Action<S> act(const std::array<FrameMotion<S>, 3>& frames) const;
+  template <class S>
+  [[nodiscard]] Action<S> stretched(const std::array<FrameMotion<S>, 3>& frames) const;
+  template <class S>
+  [[nodiscard]] Action<S> rod(const std::array<FrameMotion<S>, 3>& frames) const;
+  [[nodiscard]] Action<double> now(const numerics::VectorView& y) const;
+
+  LawWire wire_;
+  Eigen::Vector3d binormal_;  // of bulge and chord, in the axes of the frame at `from`
+  bool within_ = false;       // the shaft is within reach along its axis
+  bool holds_ = false;        // and was before the wire when it came there
+};
+
+}  // namespace snare::coupling

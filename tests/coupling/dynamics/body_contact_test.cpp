@@ -1,0 +1,193 @@
+#include "coupling/dynamics/body_contact_part.hpp"
+
+#include "coupling/contact/revolved_solids.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "tests/support/dae_jacobian.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace snare::coupling {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr MotionCarrier body_of(int index) {
+  return {MotionCarrier::Kind::body, index, 0};
+}
+
+MotionBody block(const char* name, double mass, const Vector3d& moments) {
+  MotionBody body;
+  body.name = name;
+  body.properties.mass = mass;
+  body.properties.inertia = moments.asDiagonal();
+  return body;
+}
+
+MotionOptions fine(double duration) {
+  MotionOptions o;
+  o.duration = duration;
+  o.output_interval = 1e-4;
+  o.relative_tolerance = 1e-8;
+  o.body_position_tolerance = o.angle_tolerance = 1e-11;
+  o.body_velocity_tolerance = o.spin_tolerance = 1e-8;
+  return o;
+}
+
+/// A ball of 2 kg that flies down to a plane of the world at 0.1 m/s, 1 mm above it.
+Motion ball_on_plane(ContactLaw law) {
+  Motion motion;
+  motion.bodies = {block("ball", 2.0, {0.1, 0.1, 0.1})};
+  motion.bodies[0].start.position = {0.0, 0.0, 0.051};
+  motion.bodies[0].start.velocity = {0.0, 0.0, -0.1};
+  BodyContact contact;
+  contact.shape = std::make_shared<HalfSpace>(1.0);
+  contact.other = body_of(0);
+  contact.X_WP.p = motion.bodies[0].start.position;
+  contact.points = {Vector3d::Zero()};
+  contact.radius = 0.05;
+  contact.law = std::move(law);
+  motion.body_contacts = {contact};
+  return motion;
+}
+
+struct Bounce {
+  double speed = 0.0, touch = 0.0, lift_off = 0.0;
+  MotionResult result;
+};
+
+Bounce bounce(const Motion& motion, double duration) {
+  Bounce b;
+  double last_force = 0.0;
+  b.result = simulate(motion, fine(duration), [&](const MotionSample& s) {
+    b.speed = s.bodies[0].velocity.z();
+    if (s.contacts[0].normal_force > 0.0) last_force = s.time;
+    return false;
+  });
+  b.lift_off = last_force;
+  if (!b.result.events.empty()) b.touch = b.result.events.front().time;
+  return b;
+}
+
+// Linear spring and dashpot that do not pull: x = (v/w_d) e^(-s t) sin w_d t up to k x + c x' = 0,
+// tan(w_d t) = -2 s w_d/(w^2 - 2 s^2).
+TEST(BodyContact, LinearLawRestitution) {
+  constexpr double m = 2.0, k = 2e4, c = 60.0, v = 0.1;
+  const Bounce b = bounce(ball_on_plane(spring_dashpot(k, c)), 0.06);
+  ASSERT_TRUE(b.result.report.usable()) << b.result.report.message;
+  const double w = std::sqrt(k / m), s = c / (2.0 * m), wd = std::sqrt(w * w - s * s);
+  const double t = (M_PI - std::atan2(2.0 * s * wd, w * w - 2.0 * s * s)) / wd;
+  const double speed = -v * std::exp(-s * t) * (std::cos(wd * t) - s / wd * std::sin(wd * t));
+  EXPECT_NEAR(b.speed / speed, 1.0, 1e-3);
+  EXPECT_NEAR(b.touch, 0.01, 1e-6);
+  EXPECT_NEAR(b.lift_off - b.touch, t, 1e-3 * t + 2e-4);  // read to the output's interval
+  EXPECT_NEAR(b.result.impulse[0].norm(), m * (v + speed), 1e-3 * m * v);
+  EXPECT_NEAR(b.result.energy.dissipated, 0.5 * m * (v * v - speed * speed), 1e-3 * 0.5 * m * v * v);
+  EXPECT_LT(b.result.momentum_error.norm(), 1e-8);
+}
+
+// Hunt and Crossley: m v dv = -(k + c v) x^p dx, so that v/c - k/c^2 ln(k + c v) is the same before and after.
+TEST(BodyContact, HuntCrossleyRestitution) {
+  constexpr double k = 5e6, p = 1.5, c = 4e7, v = 0.1;
+  const Bounce b = bounce(ball_on_plane(power_law(k, p, c, 1.0)), 0.06);
+  ASSERT_TRUE(b.result.report.usable()) << b.result.report.message;
+  const auto invariant = [&](double u) { return u / c - k / (c * c) * std::log(k + c * u); };
+  double low = 0.0, high = std::min(v, k / c);
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (invariant(-middle) > invariant(v) ? high : low) = middle;
+  }
+  EXPECT_NEAR(b.speed / low, 1.0, 1e-3) << low;
+}
+
+// A ball that slides into a plane is slowed by Coulomb's force and begins to roll: mu N in all, as long as it slides.
+TEST(BodyContact, FrictionTakesMuTimesTheImpulse) {
+  Motion motion = ball_on_plane(spring_dashpot(2e4, 0.0));
+  motion.bodies[0].start.velocity.x() = 1.0;
+  MotionFriction& f = motion.body_contacts[0].friction;
+  f.law = ContactFriction::smooth;
+  f.static_coefficient = f.dynamic_coefficient = 0.2;
+  f.static_speed = 1e-3;
+  f.dynamic_speed = 1e-2;
+  Vector3d velocity, spin;
+  const MotionResult r = simulate(motion, fine(0.06), [&](const MotionSample& s) {
+    velocity = s.bodies[0].velocity;
+    spin = s.bodies[0].spin;
+    return false;
+  });
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const double normal = 2.0 * 2.0 * 0.1;
+  EXPECT_NEAR(velocity.x(), 1.0 - 0.2 * normal / 2.0, 1e-6);
+  EXPECT_NEAR(spin.y(), 0.2 * normal * 0.05 / 0.1, 2e-3 * 0.04);  // the lever is shorter by the depth
+  EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);
+}
+
+TEST(BodyContact, JacobianMatchesDifferences) {
+  const MotionOptions options;
+  BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
+  BodyPart b(block("b", 2.0, {0.2, 0.3, 0.4}), Vector3d::Zero(), options);
+  BodyContact contact;
+  contact.shape = std::make_shared<Capsule>(0.2, 0.5);
+  contact.points = {{0.1, 0.05, -0.02}, {-0.05, 0.1, 0.1}, {0.4, 0.5, 0.6}};
+  contact.radius = 0.1;
+  contact.law = power_law(50.0, 1.5, 20.0, 1.0);
+  contact.friction.law = ContactFriction::smooth;
+  contact.friction.static_coefficient = 0.5;
+  contact.friction.dynamic_coefficient = 0.3;
+  contact.friction.static_speed = 0.1;
+  contact.friction.dynamic_speed = 3.0;
+  BodyContactPart part(contact, {a, {}}, {b, {}});
+  numerics::DaeSystem system({&a, &b, &part});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int acting = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    VectorXd y(system.size()), rate(system.size());
+    for (double& v : y) v = unit(random);
+    for (double& v : rate) v = unit(random);
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
+    for (const BodyPart* body : {&a, &b}) {
+      y.segment<3>(body->position()) *= 0.1;
+      const Eigen::Vector4d q = y.segment<4>(body->quaternion()).normalized();
+      y.segment<4>(body->quaternion()) = q;
+      directions.block<4, 4>(body->quaternion(), body->quaternion()) -= q * q.transpose();
+    }
+    acting += part.wrenches(y).empty() ? 0 : 1;
+    const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-5);
+    EXPECT_LT(error.relative, 2e-6) << trial << ": " << error.worst;
+  }
+  EXPECT_GE(acting, 6);
+}
+
+// A thruster in a body's axes turns with it: a body that spins at w gets F/(m w) (sin w t, 1 - cos w t). Pulses add up.
+TEST(FrameLoad, ThrusterTurnsWithItsBody) {
+  Motion motion;
+  motion.bodies = {block("visitor", 2.0, {0.3, 0.3, 0.3})};
+  motion.bodies[0].start.spin = {0.0, 0.0, 2.0};
+  FrameLoad load;
+  load.carrier = body_of(0);
+  load.times = {0.0, 0.5, 0.5, 1.0, 1.0, 1.5};
+  load.forces = Eigen::Matrix3Xd::Zero(3, 6);
+  load.moments = Eigen::Matrix3Xd::Zero(3, 6);
+  for (const Eigen::Index k : {0, 1, 4, 5}) load.forces.col(k) = Vector3d(3.0, 0.0, 0.0);
+  motion.loads = {load};
+  Vector3d velocity;
+  const MotionResult r = simulate(motion, fine(2.0), [&](const MotionSample& s) {
+    velocity = s.bodies[0].velocity;
+    return false;
+  });
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const auto of = [](double from, double to) -> Vector3d {
+    return 3.0 / 2.0 / 2.0 *
+           Vector3d(std::sin(2.0 * to) - std::sin(2.0 * from), std::cos(2.0 * from) - std::cos(2.0 * to), 0.0);
+  };
+  EXPECT_LT((velocity - of(0.0, 0.5) - of(1.0, 1.5)).norm(), 1e-6);
+  EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);
+  EXPECT_LT(r.momentum_error.norm(), 1e-7);
+}
+
+}  // namespace
+}  // namespace snare::coupling

@@ -1,0 +1,275 @@
+#include "coupling/dynamics/law_wire_part.hpp"
+
+#include "coupling/dynamics/simulate.hpp"
+#include "multibody/arm/arm_part.hpp"
+#include "tests/support/dae_jacobian.hpp"
+#include "tests/support/same_bits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace snare::coupling {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr MotionCarrier body_of(int index) {
+  return {MotionCarrier::Kind::body, index, 0};
+}
+
+MotionBody block(const char* name, double mass, const Vector3d& moments) {
+  MotionBody body;
+  body.name = name;
+  body.properties.mass = mass;
+  body.properties.inertia = moments.asDiagonal();
+  return body;
+}
+
+/// Wire of a ring of a radius, from azimuth 0 to theta, about a shaft along z that body 0 carries in the middle.
+LawWire ring_wire(double radius, double theta, double length) {
+  LawWire w;
+  w.p_from = {radius, 0.0, 0.0};
+  w.p_to = {radius * std::cos(theta), radius * std::sin(theta), 0.0};
+  w.bulge = {std::cos(0.5 * theta), std::sin(0.5 * theta), 0.0};
+  w.length = length;
+  w.axial_stiffness = 5e4;
+  w.radius = 0.75e-3;
+  w.shaft.radius = 6e-3;
+  w.shaft.half_length = 0.1;
+  w.shaft.carrier = body_of(0);
+  return w;
+}
+
+MovingFrame fixed_at(const Vector3d& p) {
+  return MovingFrame({Eigen::Matrix3d::Identity(), p});
+}
+
+// The length of a string about a shaft in the middle of a ring, beyond the angle at which it touches: 2 sqrt(R^2 - r^2) +
+// r (theta - 2 acos(r/R)); its ends pull the ring with the moment T r, and the shaft with 2 T sin(half the turn).
+TEST(LawWire, RingHasTheClosedForm) {
+  constexpr double radius = 0.1, r = 6.75e-3, length = 0.2;
+  const MotionOptions options;
+  const BodyPart shaft(block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), options);
+  VectorXd y = VectorXd::Zero(13);
+  y[3] = 1.0;
+  for (const double degrees : {170.0, 177.0, 180.0, 200.0, 340.0}) {
+    const double theta = degrees * std::numbers::pi / 180.0;
+    const LawWire w = ring_wire(radius, theta, length);
+    // Told its reach with the ring open, where it is slack.
+    BodyPart body(block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), options);
+    numerics::DaeLayout layout;
+    body.declare(layout);
+    LawWirePart part(w, fixed_at(w.p_from), fixed_at(w.p_to), {body, {}});
+    const std::vector<double> before{1.0, 1.0};
+    std::span<const double> memory = before;
+    part.restore_state(y, memory);
+    const double touch = 2.0 * std::acos(r / radius);
+    const double taut = theta < touch ? 2.0 * radius * std::sin(0.5 * theta)
+                                      : 2.0 * std::sqrt(radius * radius - r * r) + r * (theta - touch);
+    const double tension = std::max(0.0, w.axial_stiffness * (taut - length) / length);
+    EXPECT_NEAR(part.shape(y).tension, tension, 1e-9 * w.axial_stiffness) << degrees;
+    if (tension == 0.0) {
+      EXPECT_TRUE(part.wrenches(y).empty()) << degrees;
+      continue;
+    }
+    const std::vector<multibody::Wrench> wrenches = part.wrenches(y);
+    EXPECT_NEAR(w.p_to.cross(wrenches[1].force).z(), -tension * r, 1e-9 * tension) << degrees;
+    EXPECT_NEAR(w.p_from.cross(wrenches[0].force).z(), tension * r, 1e-9 * tension) << degrees;
+    EXPECT_NEAR(part.sample(y).normal_force,
+                2.0 * tension * std::sin(0.5 * (theta - touch)) * (theta - touch > std::numbers::pi ? -1.0 : 1.0),
+                1e-9 * tension)
+        << degrees;
+  }
+}
+
+TEST(LawWire, JacobianMatchesDifferences) {
+  multibody::ElasticArm model;
+  model.tree.add_moving(
+      0, "ring", multibody::JointKind::revolute, Vector3d(0.1, 0.05, 1.0).normalized(), {},
+      multibody::SpatialInertia::about_centre(4.0, {0.2, 0.1, 0.0}, 0.2 * Eigen::Matrix3d::Identity()));
+  multibody::ElasticJoint joint;
+  joint.motor_inertia = 1.0;
+  joint.spring = multibody::DeflectionLaw::linear(20.0, 1.0);
+  model.joints.push_back(joint);
+  multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
+  const MotionOptions options;
+  BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
+  BodyPart b(block("b", 2.0, {0.2, 0.3, 0.4}), Vector3d::Zero(), options);
+  LawWire w = ring_wire(0.1, 3.1, 0.15);
+  w.axial_stiffness = 10.0;
+  w.axial_time = 0.05;
+  w.friction.law = ContactFriction::smooth;
+  w.friction.static_coefficient = 0.4;
+  w.friction.dynamic_coefficient = 0.2;
+  w.friction.static_speed = 0.05;
+  w.friction.dynamic_speed = 2.0;
+  w.shaft.half_length = 10.0;
+  const auto at = [](const Vector3d& p) { return multibody::Pose{Eigen::Matrix3d::Identity(), p}; };
+  const multibody::Pose X_BS{Eigen::AngleAxisd(0.2, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(),
+                             {0.02, -0.01, 0.02}};
+  LawWirePart string(w, {a, at(w.p_from)}, {arm, 0, at(w.p_to)}, {b, X_BS});
+  w.kind = LawWire::Kind::rod;
+  w.law = spring_dashpot(300.0, 2.0);
+  LawWirePart rod(w, {a, at(w.p_from)}, {arm, 0, at(w.p_to)}, {b, X_BS});
+  numerics::DaeSystem system({&arm, &a, &b, &string, &rod});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int acting = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    VectorXd y(system.size()), rate(system.size());
+    for (double& v : y) v = 0.2 * unit(random);
+    for (double& v : rate) v = unit(random);
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
+    for (const BodyPart* body : {&a, &b}) {
+      y.segment<3>(body->position()) *= 0.05;
+      y.segment<4>(body->quaternion()) =
+          (y.segment<4>(body->quaternion()) * 0.3 + Eigen::Vector4d(1.0, 0, 0, 0)).normalized();
+      const Eigen::Vector4d q = y.segment<4>(body->quaternion());
+      directions.block<4, 4>(body->quaternion(), body->quaternion()) -= q * q.transpose();
+    }
+    y[arm.coordinates()] *= 0.2;
+    arm.settle(0.0, y);
+    for (LawWirePart* part : {&string, &rod}) {
+      const std::vector<double> held{1.0, 1.0};
+      std::span<const double> memory = held;
+      part->restore_state(y, memory);
+      acting += part->wrenches(y).empty() ? 0 : 1;
+    }
+    const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-5);
+    EXPECT_LT(error.relative, 2e-6) << trial << ": " << error.worst;
+  }
+  EXPECT_GE(acting, 10);
+}
+
+/// A body with a shaft between three strings of a ring that is turned to an angle, thrown in its plane and along the axis.
+Motion thrown(LawWire::Kind kind) {
+  Motion motion;
+  motion.bodies = {block("visitor", 20.0, {2.0, 3.0, 1.0}), block("ring", 5.0, {0.4, 0.5, 0.6})};
+  motion.bodies[0].start.velocity = {0.1, 0.065, 0.004};
+  motion.bodies[0].start.spin = {0.1, 0.02, 0.05};
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(2.0 * std::numbers::pi * k / 3.0, Vector3d::UnitZ()).toRotationMatrix();
+    LawWire w = ring_wire(0.1, 2.7, 0.1975);
+    w.name = "wire " + std::to_string(k);
+    w.kind = kind;
+    if (kind == LawWire::Kind::rod) w.law = stretched_wire_law(5e5, 0.1, 0.0995);
+    w.p_from = turn * w.p_from + Vector3d(0, 0, 0.003 * k);
+    w.p_to = turn * w.p_to + Vector3d(0, 0, 0.003 * k);
+    w.bulge = turn * w.bulge;
+    w.from = w.to = body_of(1);
+    w.tightness.watched = true;
+    motion.law_wires.push_back(w);
+  }
+  return motion;
+}
+
+MotionOptions fine(double duration) {
+  MotionOptions o;
+  o.duration = duration;
+  o.output_interval = 1e-2;
+  o.relative_tolerance = 1e-9;
+  o.body_position_tolerance = o.angle_tolerance = 1e-11;
+  o.body_velocity_tolerance = o.spin_tolerance = 1e-9;
+  o.max_order = 5;
+  return o;
+}
+
+// Without friction and damping nothing is lost, whatever the shaft does between the strings; momenta stay. Tolerances as those of the
+// integration.
+TEST(LawWire, StringsKeepEnergyAndMomentum) {
+  const Motion motion = thrown(LawWire::Kind::stretched);
+  double highest = 0.0;
+  const MotionResult r = simulate(motion, fine(3.0), [&](const MotionSample& s) {
+    for (const double tension : s.law_tensions) highest = std::max(highest, tension);
+    return false;
+  });
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const double energy = r.energy.kinetic + r.energy.strain;
+  EXPECT_GT(highest, 50.0);
+  EXPECT_GE(r.events.size(), 4u);
+  EXPECT_NEAR(r.energy.dissipated, 0.0, 1e-12);
+  EXPECT_NEAR(r.energy.integrator / energy, 0.0, 2e-6);
+  EXPECT_LT(r.momentum_error.norm(), 1e-8);
+  EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
+}
+
+// With friction, damping and with the rods all that goes is accounted for.
+TEST(LawWire, LossesCloseTheBalance) {
+  for (const LawWire::Kind kind : {LawWire::Kind::stretched, LawWire::Kind::rod}) {
+    Motion motion = thrown(kind);
+    for (LawWire& w : motion.law_wires) {
+      w.axial_time = 1e-3;
+      w.friction.law = ContactFriction::smooth;
+      w.friction.static_coefficient = 0.3;
+      w.friction.dynamic_coefficient = 0.1;
+      w.friction.static_speed = 0.01;
+    }
+    const MotionResult r = simulate(motion, fine(3.0), {});
+    ASSERT_TRUE(r.report.usable()) << r.report.message;
+    const double energy = r.energy.kinetic + r.energy.strain;
+    EXPECT_NEAR(r.energy.integrator / energy, 0.0, 1e-4);  // falls with the tolerances
+    EXPECT_LT(r.momentum_error.norm(), 1e-8);
+    EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
+    if (kind == LawWire::Kind::stretched) EXPECT_GT(r.energy.dissipated, 0.01 * energy);
+  }
+}
+
+// A shaft in the middle of a rod that is driven into it: x = lever (commanded less actual angle), the angle of the tangent.
+TEST(LawWire, RodIsMetByItsAngle) {
+  const MotionOptions options;
+  BodyPart body(block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), options);
+  numerics::DaeLayout layout;
+  body.declare(layout);
+  LawWire w = ring_wire(0.1, std::numbers::pi, 0.2);  // the chord is the x axis, the bulge y
+  w.kind = LawWire::Kind::rod;
+  constexpr double k = 1e4, r = 6.75e-3;
+  w.law = spring_dashpot(k, 0.0);
+  LawWirePart part(w, fixed_at(w.p_from), fixed_at(w.p_to), {body, {}});
+  const std::vector<double> held{1.0, 1.0};
+  std::span<const double> memory = held;
+  VectorXd y = VectorXd::Zero(13);
+  y[3] = 1.0;
+  part.restore_state(y, memory);
+  y.head<3>() = Vector3d(0.02, -0.004, 0.0);
+  // From the pivot at x = R the axis stands at an angle above the chord of asin(y/rho); the tangent is asin(r/rho) beyond.
+  const double rho = std::hypot(0.08, 0.004);
+  const double x = std::sqrt(rho * rho - r * r) * (std::asin(-0.004 / rho) + std::asin(r / rho));
+  EXPECT_NEAR(part.sample(y).normal_force, k * x, 1e-9);
+  EXPECT_NEAR(part.wrenches(y)[2].force.y(), -k * x, 1e-9);
+  EXPECT_NEAR(part.wrenches(y)[0].force.y(), k * x * 0.6, 1e-9);  // the shares of a beam on two supports
+  EXPECT_NEAR(part.wrenches(y)[1].force.y(), k * x * 0.4, 1e-9);
+  y[1] = -0.01;
+  EXPECT_TRUE(part.wrenches(y).empty());
+}
+
+// What is behind the wire when it comes within reach is missed; what was before it is held.
+TEST(LawWire, ShaftBehindTheWireIsMissed) {
+  const MotionOptions options;
+  BodyPart body(block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), options);
+  numerics::DaeLayout layout;
+  body.declare(layout);
+  const LawWire w = ring_wire(0.1, 2.0, 0.2);
+  LawWirePart part(w, fixed_at(w.p_from), fixed_at(w.p_to), {body, {}});
+  VectorXd y = VectorXd::Zero(13);
+  y[3] = 1.0;
+  y[2] = 0.5;  // out of reach
+  part.look_around(y);
+  y.head<3>() = 0.12 * Vector3d(std::cos(1.0), std::sin(1.0), 0.0);
+  part.look_around(y);
+  EXPECT_TRUE(part.wrenches(y).empty());
+  y[2] = 0.5;
+  part.look_around(y);
+  y.head<3>().setZero();
+  part.look_around(y);
+  y.head<3>() = 0.12 * Vector3d(std::cos(1.0), std::sin(1.0), 0.0);
+  part.look_around(y);
+  EXPECT_FALSE(part.wrenches(y).empty());
+}
+
+}  // namespace
+}  // namespace snare::coupling
