@@ -90,11 +90,17 @@ Snares::Snares(Composition& composition) : c_(composition) {
     if (table.has("turns")) item.sense = table.choice("turns", senses).value_or(1.0);
     item.ring = read_joint(table.table("ring"), item.name + "::ring", false);
     if (table.has("carriage")) item.carriage = read_joint(table.table("carriage"), item.name + "::carriage", true);
-    const TomlTable wire = table.table("wire");
-    item.wire = read_wire_item(wire, c_.damping, wire::SpatialEnd::Kind::twisting_pin);
-    const int count = table.integer_or("wires", 3, 1, 12);
-    const double step = 2.0 * item.wire->specification.diameter;
-    if (table.has("heights_mm")) {
+    const int count = table.integer_or("wires", 3, 0, 12);
+    double step = 0.0;
+    if (count > 0) {
+      item.wire = read_wire_item(table.table("wire"), c_.damping, wire::SpatialEnd::Kind::twisting_pin);
+      step = 2.0 * item.wire->specification.diameter;
+    } else {
+      for (const char* key : {"wire", "wire_contact", "wall", "heights_mm"}) {
+        if (table.has(key)) table.fail(key, "cannot stand beside wires = 0");
+      }
+    }
+    if (table.has("heights_mm") && count > 0) {
       item.heights = table.numbers("heights_mm", at(count), at(count), Range::from(-1e4, 1e4), mm);
     } else {
       for (int k = 0; k < count; ++k) item.heights.push_back((k - 0.5 * (count - 1)) * step);
@@ -173,6 +179,7 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
 // Wire k from the fixed ring at the azimuth of its place to the turning ring, which at zero is over the fixed one.
 void Snares::add_wires() {
   for (Item& item : items_) {
+    if (!item.wire) continue;
     const std::optional<PlacedFrame> fixed = c_.placement.find(item.name + "::fixed");
     const std::optional<PlacedFrame> turning = c_.placement.find(item.name + "::turning");
     if (!fixed || !turning) continue;
@@ -216,7 +223,7 @@ void Snares::add_wires() {
 
 void Snares::add_walls() {
   for (const Item& item : items_) {
-    if (!item.table.has("wall")) continue;
+    if (!item.wire || !item.table.has("wall")) continue;
     const TomlTable table = item.table.table("wall");
     const double inner = table.number("radius_mm", Range::above(0.0, 1e4), mm);
     const double length = table.number_or("length_mm", 60.0, Range::above(0.0, 1e5), mm);
