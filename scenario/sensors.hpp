@@ -27,9 +27,10 @@ struct Sensor {
   std::string name;
   Kind kind = Kind::position;
   PlacedFrame frame, relative_to;
-  int index = 0;          ///< of the arm, the contact or the wire
-  int joint = 0;          ///< of the arm
-  bool slides = false;    ///< the joint's coordinate is a length: metres and newtons in the place of radians and newton metres
+  int index = 0;  ///< of the arm, the contact or the wire
+  int joint = 0;  ///< of the arm
+  bool slides =
+      false;  ///< the joint's coordinate is a length: metres and newtons in the place of radians and newton metres
   double interval = 0.0;  ///< between two readings, a whole multiple of that of the output [s]
   double delay = 0.0;     ///< age of what a reading tells [s]
   double noise = 0.0;     ///< standard deviation of a reading, in the unit of its column

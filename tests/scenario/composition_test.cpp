@@ -267,7 +267,8 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"snares[snare].wall.radius_mm=100", "snares[snare].wall.radius_mm = 100, must be > 1"},
       {"snares[snare].wire.diameter_mm=0", "snares[snare].wire.diameter_mm = 0, must be > 0"},
       {"snares[snare].wire.model=\"table\"",
-       "snares[snare].wire.model = \"table\", must be \"full\", \"quasi_static\", \"stretched\", \"rod\" or \"rod_linear\""},
+       "snares[snare].wire.model = \"table\", must be \"full\", \"quasi_static\", \"stretched\", \"rod\" or "
+       "\"rod_linear\""},
       {"snares[snare].wire.tight_N=0", "snares[snare].wire.tight_N = 0, must be > 0"},
       {"snares[snare].wire.tight_hold_s=-1", "snares[snare].wire.tight_hold_s = -1, must be >= 0"},
       {"snares[snare].wire_contact.friction=9", "snares[snare].wire_contact.friction = 9"},
