@@ -1,6 +1,7 @@
 #include "app/arm_command.hpp"
 #include "app/commands.hpp"
 #include "app/interruption.hpp"
+#include "app/new_command.hpp"
 #include "app/result_folder.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
@@ -135,6 +136,14 @@ int run(int argc, char** argv) {
   arm_show->add_flag("--json", arm_options.json, "as JSON");
   arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
 
+  CommonOptions new_options;
+  std::string new_what;
+  CLI::App* new_files = app.add_subcommand("new", "a commented starting set of files that run");
+  new_files->add_option("WHAT", new_what, "capture, experiment or wire")->required();
+  new_files->add_option("--out", new_options.out, "folder for the files")->required();
+  new_files->add_flag("--quiet", new_options.quiet, "no messages but errors");
+  new_files->footer("Example: snare new capture --out my/");
+
   snare::app::catch_interrupts(snare::app::release_result_folder);
   try {
     app.parse(argc, argv);
@@ -150,6 +159,8 @@ int run(int argc, char** argv) {
     status =
         guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
+  if (new_files->parsed())
+    status = guarded(new_options, [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     Parsed& p = parsed[k];
     p.options.command = std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + p.file.string());

@@ -46,6 +46,26 @@ class Command : public CommandFixture {
   }
 };
 
+// A starting set runs as it is, and never writes over what is there.
+TEST_F(Command, NewWritesAStartingSet) {
+  const Result made = run("new capture --out my");
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("next: snare simulate my/capture.toml"), std::string::npos) << made.out;
+  const Result simulated =
+      run("simulate my/capture.toml --out ran --quiet --set duration_s=0.005 --set "
+          "snares[snare].wire.model=\"stretched\"");
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
+  const Result again = run("new capture --out my");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.err.find("must be a folder without that file"), std::string::npos) << again.err;
+  const Result unknown = run("new ship --out other");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("must be \"capture\", \"experiment\" or \"wire\""), std::string::npos) << unknown.err;
+  EXPECT_FALSE(fs::exists(folder_ / "other"));
+  EXPECT_EQ(run("new wire --out w").status, 0);
+  EXPECT_EQ(run("new experiment --out e").status, 0);
+}
+
 TEST_F(Command, HelpOfEveryVerbHasAnExample) {
   EXPECT_EQ(run("--help").status, 0);
   for (const std::string verb : {"push", "fit", "trace", "reproduce", "validate"}) {
