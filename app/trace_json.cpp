@@ -232,4 +232,24 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
   return result;
 }
 
+json fit_json(const identification::Experiment& experiment, const Trace& trace) {
+  const json whole = trace_json(experiment, trace);
+  json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
+  for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
+    result[key] = whole[key];
+  }
+  result["fit"] = whole["final"];
+  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
+                        {"tests", whole["residual"]["tests"]}};
+  return result;
+}
+
+identification::TraceOptions fit_options() {
+  identification::TraceOptions fitting;
+  fitting.most_effects = 0;
+  fitting.intervals = true;
+  fitting.attribute = false;
+  return fitting;
+}
+
 }  // namespace snare::app
