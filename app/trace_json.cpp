@@ -27,6 +27,15 @@ json finite(const std::optional<double>& value) {
   return value ? finite(*value) : json();
 }
 
+/// Correlations of the fitted numbers by their keys; those without a standard error have none.
+json correlation_json(const std::vector<FittedNumber>& numbers) {
+  json result = json::object();
+  for (const FittedNumber& n : numbers)
+    for (std::size_t k = 0; k < n.correlation.size() && k < numbers.size(); ++k)
+      if (numbers[k].key != n.key && numbers[k].standard_error) result[n.key][numbers[k].key] = n.correlation[k];
+  return result;
+}
+
 json error_json(const Trace& trace, const ModelError& error) {
   json series = json::object();
   for (std::size_t k = 0; k < error.series_rmse.size(); ++k)
@@ -35,7 +44,8 @@ json error_json(const Trace& trace, const ModelError& error) {
           {"nrmse", finite(error.nrmse)},
           {"chi2_dof", finite(error.chi2_dof)},
           {"series_rmse_N", series},
-          {"parameters", numbers_json(error.numbers)}};
+          {"parameters", numbers_json(error.numbers)},
+          {"correlation", correlation_json(error.numbers)}};
 }
 
 json tests_json(const identification::ResidualTests& tests) {

@@ -74,7 +74,6 @@ class Reader {
     const std::string source = top_.text_or("source", "");
     const std::filesystem::path case_file = beside(top_.text("case"));
     const std::string verb = top_.text_or("verb", "");
-    const bool histories = top_.boolean_or("histories", false);
     const double time_limit = top_.number_or("time_limit_s", 3600.0, Range::above(0.0));
     kind_ = top_.choice("design", designs).value_or(DesignKind::grid);
     const std::vector<base::Override> fixed = read_fixed();
@@ -91,7 +90,7 @@ class Reader {
             source, case_file,
             verb,   fixed,
             Design(std::move(variables), std::move(settings)),
-            collect, limits, subset, time_limit, histories, std::move(canonical)};
+            collect, limits, subset, time_limit, std::move(canonical)};
   }
 
  private:

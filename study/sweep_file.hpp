@@ -37,7 +37,6 @@ struct SweepFile {
   std::vector<Limit> limits;
   SubsetSettings subset;
   double time_limit = 0.0;  ///< of one case [s], > 0
-  bool histories = false;   ///< of every case, in one HDF5 file
   std::string canonical;    ///< equal for files that say the same, trace and table beside them included
 };
 

@@ -129,7 +129,7 @@ TEST_F(SweepCommand, WrongFilesWriteNothing) {
 
 TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
   write("sweep.toml",
-        std::string(sweep_of_pushes).replace(std::string(sweep_of_pushes).find("cases = 60"), 10, "cases = 1500"));
+        std::string(sweep_of_pushes).replace(std::string(sweep_of_pushes).find("cases = 60"), 10, "cases = 600"));
   ASSERT_EQ(run("sweep sweep.toml --out whole"), 0);
   const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--threads", "1"});
   const Ending ending = interrupt(child, 0.4);
@@ -178,7 +178,7 @@ TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
 
 TEST_F(SweepCommand, ARareEventByLevels) {
   ASSERT_EQ(run("sweep sweep.toml --out a --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
-                "--set limits[1].above=48"),
+                "--set limits[1].above=40"),
             0)
       << contents("err.txt");
   const nlohmann::json failure = parsed("a/summary.json")["failure"];
@@ -187,11 +187,11 @@ TEST_F(SweepCommand, ARareEventByLevels) {
   const std::string before = cases("a");
   ASSERT_EQ(
       run("sweep sweep.toml --out b --threads 1 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
-          "--set limits[1].above=48"),
+          "--set limits[1].above=40"),
       0);
   EXPECT_EQ(cases("b"), before);
   EXPECT_EQ(run("sweep sweep.toml --out a --case 3 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
-                "--set limits[1].above=48"),
+                "--set limits[1].above=40"),
             0);
 }
 

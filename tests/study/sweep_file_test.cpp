@@ -50,11 +50,11 @@ values = ["clamped", "pinned"]
   EXPECT_EQ(sweep.case_file, folder_ / "x.toml");
   const auto changes = overrides_of(sweep, sweep.design.values(3));
   ASSERT_EQ(changes.size(), 5U);
-  EXPECT_EQ(changes[0].key + "=" + changes[0].value, "wire.length_mm=180");
+  EXPECT_EQ(changes[1].key + "=" + changes[1].value, "wire.length_mm=180");
   EXPECT_EQ(changes[2].key + "=" + changes[2].value, "pusher.friction=0");  // not 2.7e-17
   EXPECT_EQ(changes[3].key + "=" + changes[3].value, "mount.kind=\"pinned\"");
   EXPECT_EQ(changes[4].key, "b.c[2]");
-  EXPECT_EQ(changes[1].value, "[0, 0, 1.5]");
+  EXPECT_EQ(changes[0].value, "[0, 0, 1.5]");
 }
 
 TEST_F(SweepFileTest, EveryMistakeAtOnceWithItsLine) {
