@@ -57,7 +57,8 @@ std::string heat_map(const HeatMap& map) {
   };
   const double size = map.high > map.low ? map.high - map.low : 1.0;
   std::string svg = fmt::format(
-      "<figure class=\"plot half\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
+      "<figure class=\"map\" style=\"display:inline-block;width:47%;min-width:340px;margin:0 1% 14px\"><svg "
+      "xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
       "style=\"width:100%;"
       "max-width:{0}px;font-family:sans-serif\" role=\"img\">\n",
       width, height);
