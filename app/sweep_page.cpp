@@ -55,6 +55,8 @@ void numbers(ReportPage& page, const SweepAnswers& answers) {
   }
   if (table.rows.empty()) return;
   page.heading("What the cases came to");
+  if (answers.subset)
+    page.paragraph("Most of these cases were drawn near the event: their shares are not those of the distribution.");
   page.table(table);
 }
 
