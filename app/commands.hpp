@@ -42,6 +42,9 @@ namespace snare::app {
 [[nodiscard]] ExitStatus run_ringdown(const std::filesystem::path& ringdown, const CommonOptions& options,
                                       Console& console);
 
+/// Many cases of one file: cases.csv, summary.json, report.html; goes on where it was killed.
+[[nodiscard]] ExitStatus run_sweep(const std::filesystem::path& sweep, const CommonOptions& options, Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

@@ -17,8 +17,9 @@ struct CommonOptions {
   int threads = 0;                     ///< 0: one a processor
   std::vector<std::string> overrides;  ///< "key=value"
   bool quiet = false;
-  bool json = false;    ///< the result on standard output
-  std::string command;  ///< the verb and its file, as a message names them: "snare push x.toml"
+  bool json = false;                 ///< the result on standard output
+  unsigned long long only_case = 0;  ///< of a sweep: this case alone, from 1; 0: all
+  std::string command;               ///< the verb and its file, as a message names them: "snare push x.toml"
 };
 
 /// What the command says to a person, on standard error: messages, and progress on a terminal.

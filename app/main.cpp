@@ -75,6 +75,8 @@ const Verb verbs[] = {
      snare::app::run_simulate},
     {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,
      "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown},
+    {"sweep", "many cases of a file at once; goes on where it was killed", "SWEEP.toml", "sweep file", true,
+     "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
@@ -121,6 +123,9 @@ int run(int argc, char** argv) {
     p.command = app.add_subcommand(verb.name, verb.what);
     if (verb.argument != nullptr) p.command->add_option(verb.argument, p.file, verb.meaning)->required(verb.needed);
     add_common(*p.command, p.options, std::string("out/") + verb.name);
+    if (verb.run == snare::app::run_sweep)
+      p.command->add_option("--case", p.options.only_case, "run this case alone, as its verb would")
+          ->check(CLI::PositiveNumber);
     p.command->footer(std::string("Example: ") + verb.example);
   }
 

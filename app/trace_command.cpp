@@ -111,14 +111,7 @@ void write_trace(const identification::Experiment& experiment, const Trace& trac
 
 void write_fit(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  const nlohmann::json whole = trace_json(experiment, trace);
-  nlohmann::json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
-  for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
-    result[key] = whole[key];
-  }
-  result["fit"] = whole["final"];
-  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
-                        {"tests", whole["residual"]["tests"]}};
+  nlohmann::json result = fit_json(experiment, trace);
   result["warnings"] = warnings_of(experiment, trace);
   write_result(options, "fit.json", result);
 }
@@ -158,11 +151,7 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "fit.json"});
-  identification::TraceOptions fitting;
-  fitting.most_effects = 0;
-  fitting.intervals = true;
-  fitting.attribute = false;
-  const Trace trace = trace_and_write(experiment, fitting, options, "snare-fit/1", write_fit, console);
+  const Trace trace = trace_and_write(experiment, fit_options(), options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",

@@ -27,6 +27,15 @@ json finite(const std::optional<double>& value) {
   return value ? finite(*value) : json();
 }
 
+/// Correlations of the fitted numbers by their keys; those without a standard error have none.
+json correlation_json(const std::vector<FittedNumber>& numbers) {
+  json result = json::object();
+  for (const FittedNumber& n : numbers)
+    for (std::size_t k = 0; k < n.correlation.size() && k < numbers.size(); ++k)
+      if (numbers[k].key != n.key && numbers[k].standard_error) result[n.key][numbers[k].key] = n.correlation[k];
+  return result;
+}
+
 json error_json(const Trace& trace, const ModelError& error) {
   json series = json::object();
   for (std::size_t k = 0; k < error.series_rmse.size(); ++k)
@@ -35,7 +44,8 @@ json error_json(const Trace& trace, const ModelError& error) {
           {"nrmse", finite(error.nrmse)},
           {"chi2_dof", finite(error.chi2_dof)},
           {"series_rmse_N", series},
-          {"parameters", numbers_json(error.numbers)}};
+          {"parameters", numbers_json(error.numbers)},
+          {"correlation", correlation_json(error.numbers)}};
 }
 
 json tests_json(const identification::ResidualTests& tests) {
@@ -230,6 +240,26 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
   }
   for (std::size_t k = 0; k < trace.series.size(); ++k) result["series"].push_back(series_json(trace, k));
   return result;
+}
+
+json fit_json(const identification::Experiment& experiment, const Trace& trace) {
+  const json whole = trace_json(experiment, trace);
+  json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
+  for (const char* key : {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N"}) {
+    result[key] = whole[key];
+  }
+  result["fit"] = whole["final"];
+  result["residual"] = {{"acceptable", trace.base_tests.acceptable(trace.tolerance)},
+                        {"tests", whole["residual"]["tests"]}};
+  return result;
+}
+
+identification::TraceOptions fit_options() {
+  identification::TraceOptions fitting;
+  fitting.most_effects = 0;
+  fitting.intervals = true;
+  fitting.attribute = false;
+  return fitting;
 }
 
 }  // namespace snare::app

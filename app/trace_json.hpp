@@ -12,6 +12,12 @@ namespace snare::app {
 [[nodiscard]] nlohmann::json trace_json(const identification::Experiment& experiment,
                                         const identification::Trace& trace);
 
+/// A fit of the declared model as fit.json.
+[[nodiscard]] nlohmann::json fit_json(const identification::Experiment& experiment, const identification::Trace& trace);
+
+/// How a trace is made a fit of the declared model alone.
+[[nodiscard]] identification::TraceOptions fit_options();
+
 /// "wire.length_mm": {"value", "stderr", "declared", "unit", "lower95", "upper95", "profiled"}, ... of fitted numbers.
 [[nodiscard]] nlohmann::json numbers_json(const std::vector<identification::FittedNumber>& numbers);
 

@@ -98,6 +98,11 @@ void ReportPage::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "</div>\n";
 }
 
+void ReportPage::drawing(std::string_view svg) {
+  close_plots();
+  body_ += svg;
+}
+
 void ReportPage::table(const Table& table) {
   for (const auto& row : table.rows) {
     if (row.size() != table.columns.size()) {

@@ -90,6 +90,9 @@ class ReportPage {
   /// Without frames it is left out.
   void animation(const AnimationSpecification& animation);
 
+  /// A drawing that is whole as it stands, e.g. of heat_map(); not escaped.
+  void drawing(std::string_view svg);
+
   /// The small print at the end, e.g. which version wrote the page.
   void footer(std::string_view text);
 

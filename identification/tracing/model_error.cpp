@@ -32,6 +32,20 @@ std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit) {
     }
     result.push_back(n);
   }
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    if (!result[k].standard_error) continue;
+    for (std::size_t j = 0; j < result.size(); ++j) {
+      const auto a = static_cast<Eigen::Index>(k), b = static_cast<Eigen::Index>(j);
+      const double scale = std::sqrt(fit.covariance(a, a) * fit.covariance(b, b));
+      const bool known = result[j].standard_error && scale > 0.0;
+      // A negative ratio falls where its coordinate, a logarithm, grows.
+      const auto falls = [&](std::size_t i) {
+        return fit.settings[i].parameter->parametrisation != Parametrisation::shift && result[i].value < 0.0;
+      };
+      const double sign = falls(k) == falls(j) ? 1.0 : -1.0;
+      result[k].correlation.push_back(j == k ? 1.0 : known ? sign * fit.covariance(a, b) / scale : 0.0);
+    }
+  }
   return result;
 }
 

@@ -18,6 +18,8 @@ struct FittedNumber {
   std::optional<double> lower;  ///< of the 95 % interval: profile likelihood, or 1.96 standard errors
   std::optional<double> upper;
   bool profiled = false;
+  /// With every fitted number, itself among them, in their order; empty where there is no standard error.
+  std::vector<double> correlation = {};
 };
 
 /// Errors of a model over the fitted series.

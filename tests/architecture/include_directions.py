@@ -15,6 +15,8 @@ import sys
 USES = {
     "base": [],
     "numerics": ["base"],
+    "study": ["base"],
+    "study/mpi": ["study"],
     "wire": ["numerics"],
     "multibody": ["numerics"],
     "multibody/arm": ["multibody"],
@@ -28,7 +30,7 @@ USES = {
     "identification/tracing": ["identification/effects"],
     "identification/ring_down": ["identification/fitting"],
     "validation": ["reduction", "identification/tracing", "identification/ring_down"],
-    "app/report": ["validation"],
+    "app/report": ["validation", "study"],
     "app": ["app/report"],
     "benchmarks": ["validation"],
     "examples": ["validation"],

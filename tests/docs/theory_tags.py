@@ -21,13 +21,13 @@ import pathlib
 import re
 import sys
 
-CODE_FOLDERS = ("base", "numerics", "wire", "multibody", "coupling", "scenario", "reduction",
+CODE_FOLDERS = ("base", "study", "numerics", "wire", "multibody", "coupling", "scenario", "reduction",
                 "identification", "validation", "app", "benchmarks", "examples", "tests", "python")
 CODE_SUFFIXES = {".hpp", ".cpp"}
 NOT_OURS = {"build", "out", ".git"}
 MOST_COLUMNS = 110
 LONGEST_RANGE = 11
-LETTERS = "NWCIRAMLG"  # of tags
+LETTERS = "NWCIRAMLGS"  # of tags
 
 TAG = re.compile(rf"\(([{LETTERS}])\.(\d+)\)")
 RANGE = re.compile(rf"\(([{LETTERS}])\.(\d+)\)-\(\1\.(\d+)\)")

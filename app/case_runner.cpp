@@ -1,0 +1,216 @@
+#include "app/case_runner.hpp"
+
+#include "app/law_json.hpp"
+#include "app/motion_summary.hpp"
+#include "app/push_json.hpp"
+#include "app/trace_json.hpp"
+#include "app/warnings.hpp"
+#include "base/archive.hpp"
+#include "base/errors.hpp"
+#include "base/files.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "identification/tracing/trace.hpp"
+#include "reduction/distil.hpp"
+#include "scenario/scenario.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <new>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+namespace snare::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Overrides = std::vector<base::Override>;
+using Stop = std::function<bool()>;
+using Status = CaseEnd::Status;
+
+/// How a solver ended.
+CaseEnd ending(bool usable, numerics::Termination termination, const std::string& message) {
+  if (usable) return {};
+  return {termination == numerics::Termination::interrupted ? Status::stopped : Status::failed, message};
+}
+
+CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& motions, const Stop& stop,
+                 json& result) {
+  std::vector<MotionRecord> records;
+  CaseEnd end;
+  for (const scenario::NamedMotion& one : motions.runs) {
+    coupling::MotionOptions options = one.options;
+    options.stop = stop;
+    MotionRecord record;
+    record.result = coupling::simulate(one.motion, options, [&](const coupling::MotionSample& sample) {
+      record.samples.push_back(sample);
+      return false;
+    });
+    end = ending(record.result.report.usable(), record.result.report.termination, record.result.report.message);
+    records.push_back(std::move(record));
+    if (end.status != Status::done) return end;
+  }
+  result = motion_summary(asked, motions, finished_motions(motions, records));
+  return end;
+}
+
+CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const Stop& stop, json& result) {
+  multibody::ArmScenario arm = motion.scenario;
+  arm.progress = [&](double) { return !stop(); };
+  ArmRecord record;
+  record.history = multibody::simulate(arm);
+  if (motion.joint >= 0) record.swings = scenario::swings(record.history, arm.arm, motion.joint);
+  const auto& report = record.history.report;
+  CaseEnd end = ending(report.usable(), report.termination, report.message);
+  if (end.status == Status::done) result = arm_summary(asked, motion, record);
+  return end;
+}
+
+CaseEnd push(const identification::Experiment& experiment, const Stop& stop, json& result) {
+  std::vector<identification::PredictionOptions> options(experiment.series.size());
+  for (identification::PredictionOptions& o : options) {
+    o.examine_out_of_plane = true;
+    o.stop = stop;
+    o.progress = [&](double) { return !stop(); };
+  }
+  const std::vector<identification::Prediction> predictions =
+      identification::predict_all(experiment.series, experiment.solver, {}, options);
+  for (std::size_t k = 0; k < predictions.size(); ++k) {
+    const numerics::SolveReport& report = predictions[k].curve.curve.report;
+    if (!report.usable())
+      return ending(false, report.termination, fmt::format("series {}: {}", experiment.series[k].name, report.message));
+  }
+  result = push_json(experiment, predictions);
+  return {};
+}
+
+CaseEnd trace(const identification::Experiment& experiment, bool whole, const Stop& stop, json& result) {
+  identification::TraceOptions options = whole ? identification::TraceOptions{} : fit_options();
+  options.progress = [&](const std::string&) { return !stop(); };
+  const identification::Trace traced = identification::trace(experiment, options);
+  if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
+  if (traced.interrupted) return {Status::stopped, "interrupted"};
+  result = whole ? trace_json(experiment, traced) : fit_json(experiment, traced);
+  return {};
+}
+
+CaseEnd distil(const reduction::WireFile& wire, const Stop& stop, json& result) {
+  const reduction::Distillation distilled =
+      reduction::distil(wire, {}, [&](std::size_t, std::size_t) { return !stop(); });
+  const numerics::SolveReport& report = distilled.report;
+  if (!report.usable()) return ending(false, report.termination, report.message);
+  result = law_json(wire, distilled);
+  return {};
+}
+
+/// One line of a message of several.
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', ';');
+  return text;
+}
+
+std::string schema_of(const fs::path& file) {
+  const base::TomlNode root = base::parse_toml(file.string(), base::read_text(file, std::size_t{1} << 20u));
+  const base::TomlNode* schema = root.find("schema");
+  return schema != nullptr && schema->kind == base::TomlNode::Kind::text ? schema->text : std::string();
+}
+
+/// The verbs that read files of a schema, the usual one first.
+std::vector<std::string> verbs_of(const std::string& schema) {
+  if (schema.starts_with("snare-scenario/")) return {"simulate"};
+  if (schema.starts_with("snare-experiment/")) return {"push", "fit", "trace"};
+  if (schema.starts_with("snare-wire/")) return {"distil"};
+  return {};
+}
+
+void add_contents(const fs::path& file, std::set<fs::path>& seen, std::string& all);
+
+/// Files that a tree names by its texts, beside `folder`.
+void add_named(const base::TomlNode& node, const fs::path& folder, std::set<fs::path>& seen, std::string& all) {
+  for (const base::TomlEntry& entry : node.entries) add_named(entry.node, folder, seen, all);
+  for (const base::TomlNode& item : node.items) add_named(item, folder, seen, all);
+  constexpr std::size_t longest = 4096;  // of a path
+  if (node.kind != base::TomlNode::Kind::text || node.text.empty() || node.text.size() > longest) return;
+  if (node.text.find_first_of(std::string("\0\n", 2)) != std::string::npos) return;
+  std::error_code code;
+  const fs::path named = fs::path(node.text).is_absolute() ? fs::path(node.text) : folder / node.text;
+  if (fs::is_regular_file(named, code)) add_contents(named, seen, all);
+}
+
+void add_contents(const fs::path& file, std::set<fs::path>& seen, std::string& all) {
+  std::error_code code;
+  const fs::path one = fs::weakly_canonical(file, code);
+  if (!seen.insert(code ? file : one).second) return;
+  try {
+    const std::string text = base::read_text(file, std::size_t{1} << 30u);
+    if (file.extension() == ".toml") {
+      const base::TomlNode root = base::parse_toml(file.string(), text);
+      all += fmt::format("{:016x}", base::fingerprint(base::canonical_text(root)));
+      add_named(root, file.parent_path(), seen, all);
+      return;
+    }
+    all += fmt::format("{:016x}", base::fingerprint(text));
+  } catch (const base::InputError&) {
+    return;
+  }
+}
+
+}  // namespace
+
+CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& asked_by) : file_(std::move(file)) {
+  const std::string schema = schema_of(file_);
+  const std::vector<std::string> verbs = verbs_of(schema);
+  if (verbs.empty()) {
+    throw base::InputError({file_.string(), 0, "schema", schema,
+                            "must be that of a scenario, an experiment or a wire file, to be a case of a sweep"});
+  }
+  verb_ = verb.empty() ? verbs.front() : verb;
+  if (std::ranges::find(verbs, verb_) == verbs.end()) {
+    throw base::InputError({asked_by.string(), 0, "verb", verb,
+                            fmt::format("must be one of {} for a file of {}", fmt::join(verbs, ", "), schema)});
+  }
+}
+
+void CaseRunner::check(const Overrides& overrides) const {
+  if (verb_ == "simulate") {
+    static_cast<void>(scenario::read_scenario(file_, overrides));
+  } else if (verb_ == "distil") {
+    static_cast<void>(reduction::read_wire_file(file_, overrides));
+  } else {
+    static_cast<void>(identification::read_experiment(file_, identification::parameters(), overrides));
+  }
+}
+
+CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& result) const {
+  try {
+    if (verb_ == "simulate") {
+      const scenario::Scenario asked = scenario::read_scenario(file_, overrides);
+      return std::visit([&](const auto& content) { return simulate(asked, content, stop, result); }, asked.content);
+    }
+    if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), stop, result);
+    const identification::Experiment experiment =
+        identification::read_experiment(file_, identification::parameters(), overrides);
+    if (verb_ == "push") return push(experiment, stop, result);
+    return trace(experiment, verb_ == "trace", stop, result);
+  } catch (const base::InputError& error) {
+    return {Status::refused, one_line(error.what())};
+  } catch (const std::bad_alloc&) {
+    return {Status::broken, "out of memory"};
+  } catch (const std::exception& error) {
+    return {Status::broken, one_line(error.what())};
+  }
+}
+
+std::string contents_of_files(const fs::path& file) {
+  std::set<fs::path> seen;
+  std::string all;
+  add_contents(file, seen, all);
+  return all;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "base/toml_tree.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// What a case of a study has come to.
+struct CaseEnd {
+  enum class Status {
+    done,
+    failed,   ///< the solver could not finish
+    refused,  ///< its input is wrong
+    stopped,  ///< it was told to stop
+    broken    ///< anything else: out of memory, a library that refused
+  };
+  Status status = Status::done;
+  std::string reason;  ///< where it is not done; one line
+};
+
+/// Runs a file with some keys overridden, by the code of a verb, and gives what the verb would write as JSON. Nothing is written
+/// and nothing printed; any number may run at a time.
+class CaseRunner {
+ public:
+  /// verb: "simulate", "push", "fit", "trace" or "distil"; empty: the first that reads files of this schema. `asked_by`: the file
+  /// that names both, for messages. Throws base::InputError.
+  CaseRunner(std::filesystem::path file, const std::string& verb, const std::filesystem::path& asked_by);
+
+  [[nodiscard]] const std::string& verb() const noexcept { return verb_; }
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+
+  /// Reads the file as a case would. Throws base::InputError with everything that is wrong.
+  void check(const std::vector<base::Override>& overrides) const;
+
+  /// Never throws but std::bad_alloc for the words of a failure. stop: asked often; true ends the case. result: set where it is done.
+  [[nodiscard]] CaseEnd run(const std::vector<base::Override>& overrides, const std::function<bool()>& stop,
+                            nlohmann::json& result) const;
+
+ private:
+  std::filesystem::path file_;
+  std::string verb_;
+};
+
+/// Text that is equal for equal contents of a file and of all files that it and these name, in TOML and in URDF.
+/// What is missing or cannot be read is passed over: readers complain of it.
+[[nodiscard]] std::string contents_of_files(const std::filesystem::path& file);
+
+}  // namespace snare::app

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/case_runner.hpp"
+#include "study/case_record.hpp"
+#include "study/journal.hpp"
+#include "study/subset.hpp"
+#include "study/sweep_file.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::app {
+
+/// The cases of a sweep file: what each is, and how it is run.
+class SweepStudy {
+ public:
+  /// Reads both files; throws base::InputError with everything that is wrong in them and in the values of some cases.
+  SweepStudy(const std::filesystem::path& file, const std::vector<base::Override>& overrides);
+
+  [[nodiscard]] const study::SweepFile& sweep() const noexcept { return sweep_; }
+  [[nodiscard]] const CaseRunner& runner() const noexcept { return runner_; }
+  /// Cases there are; 0: known at the end only.
+  [[nodiscard]] std::uint64_t count() const noexcept;
+  /// One line, equal where the sweep file, its case, the files that they name and the version are.
+  [[nodiscard]] const std::string& identity() const noexcept { return identity_; }
+
+  /// What a case changes in the file, its values given.
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<double>& values) const {
+    return study::overrides_of(sweep_, values);
+  }
+
+  /// Runs one case; never throws. stop: asked often.
+  [[nodiscard]] study::CaseRecord run(const std::vector<double>& values, const std::function<bool()>& stop) const;
+
+  /// The command that runs a case by itself.
+  [[nodiscard]] std::string command_of(const std::vector<double>& values) const;
+
+  /// Of a subset simulation: how far a case's field is beyond the bound.
+  [[nodiscard]] std::optional<double> margin_of(const study::CaseRecord& record) const;
+  [[nodiscard]] study::SubsetSimulation::Settings subset_settings() const;
+
+ private:
+  study::SweepFile sweep_;
+  CaseRunner runner_;
+  std::string identity_;
+};
+
+}  // namespace snare::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace snare::study {
+
+/// What is kept of a case that was run.
+struct CaseRecord {
+  std::string status;  ///< "done", or why there are no values: "failed", "refused", "stalled", "broken", "lost"
+  std::string reason;  ///< where it is not done
+  double seconds = 0.0;
+  std::vector<nlohmann::json> fields;  ///< one a collected field: number, boolean, text or null; none where it is not done
+  std::vector<double> values;          ///< of the variables, where the design does not say them
+
+  [[nodiscard]] bool done() const noexcept { return status == "done"; }
+  /// A field as a number, a boolean as 0 or 1; nothing where it is neither.
+  [[nodiscard]] std::optional<double> number(std::size_t field) const;
+};
+
+/// One line, and back; nothing where it is none of ours.
+[[nodiscard]] std::string line_of(const CaseRecord& record);
+[[nodiscard]] std::optional<CaseRecord> record_of(std::string_view line);
+
+}  // namespace snare::study

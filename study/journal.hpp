@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace snare::study {
+
+/// What is finished of a study, in a file to which one line a case is appended.                docs/decisions/0028-sweeps.md
+///
+/// A line has the case's number, its result, and a checksum. After a kill at any moment the lines that are whole count; a torn or
+/// damaged one is taken out or passed over, and its case is run again. 8 bytes a case are held in memory.
+class Journal {
+ public:
+  /// Opens or makes the file. identity: one line of text, equal for equal studies. count: cases there are; 0: not known.
+  /// Throws base::InputError when the file belongs to another study, std::system_error when the system refuses.
+  Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// Appends the result of a case: a text without line breaks. Thread-safe; a case that is there already is passed over. On failure
+  /// (std::system_error: a full disk) the file ends with its last whole line.
+  void append(std::uint64_t index, std::string_view result);
+  /// Waits until what was appended is on the disk.
+  void flush();
+
+  [[nodiscard]] bool has(std::uint64_t index) const;
+  /// Result of a case; nothing where there is none. Throws std::system_error.
+  [[nodiscard]] std::optional<std::string> result(std::uint64_t index) const;
+  [[nodiscard]] std::uint64_t finished() const;
+  /// Lines that were damaged when the file was opened.
+  [[nodiscard]] std::uint64_t damaged() const noexcept { return damaged_; }
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+
+ private:
+  void load(const std::string& identity);
+  void note(std::uint64_t index, std::uint64_t offset);
+  void write(std::string_view text);
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  mutable std::mutex mutex_;
+  std::vector<std::uint64_t> offsets_;  // 1 + where a case's line begins; 0: none
+  std::uint64_t limit_ = 0;             // cases there may be; 0: any
+  std::uint64_t size_ = 0;              // of the file's whole lines [byte]
+  std::uint64_t finished_ = 0;
+  std::uint64_t damaged_ = 0;
+  double flushed_ = 0.0;  // when [s]
+};
+
+}  // namespace snare::study

@@ -1,0 +1,223 @@
+#include "tests/app/command_fixture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace snare::app {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* one_push = R"(schema = "snare-experiment/1"
+title  = "push"
+source = "a test"
+[wire]
+construction       = "solid"
+diameter_mm        = 1.5
+length_mm          = 180.0
+youngs_modulus_GPa = 193.0
+poisson_ratio      = 0.29
+density_kg_m3      = 7930.0
+[mount]
+kind    = "clamped"
+span_mm = 175.0
+[pusher]
+shape     = "cylinder"
+radius_mm = 6.0
+friction  = 0.0
+direction = "outward"
+[[series]]
+name = "middle"
+contact_position_mm = 87.5
+travel_mm = 0.5
+points = 2
+[solver]
+elements = 16
+)";
+
+constexpr const char* sweep_of_pushes = R"(schema = "snare-sweep/1"
+title = "pushes"
+case = "one.toml"
+design = "latin_hypercube"
+cases = 60
+[[vary]]
+key = "wire.length_mm"
+uniform = [174.9, 181.0]
+[[vary]]
+key = "wire.diameter_mm"
+normal = { mean = 1.5, sigma = 0.01 }
+[collect]
+force = "series[middle].largest_force_N"
+touching = "series[middle].in_contact_at_end"
+[[limits]]
+of = "force"
+above = 50.0
+)";
+
+class SweepCommand : public CommandFixture {
+ protected:
+  SweepCommand() {
+    write("one.toml", one_push);
+    write("sweep.toml", sweep_of_pushes);
+  }
+  [[nodiscard]] std::string cases(const std::string& out) const {
+    return contents(std::filesystem::path(out) / "cases.csv");
+  }
+};
+
+TEST_F(SweepCommand, SameBytesForAnyNumberOfThreads) {
+  ASSERT_EQ(run("sweep sweep.toml --out a --threads 1"), 0) << contents("err.txt");
+  ASSERT_EQ(run("sweep sweep.toml --out b --threads 3"), 0);
+  EXPECT_EQ(cases("a"), cases("b"));
+  const std::string csv = cases("a");
+  EXPECT_THAT(csv, HasSubstr("case,status,reason,wire.length_mm,wire.diameter_mm,force,touching\n"));
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 61);
+  const nlohmann::json summary = parsed("a/summary.json");
+  EXPECT_EQ(summary["finished"], 60);
+  EXPECT_EQ(summary["interrupted"], false);
+  // A wire that is shorter than its span is a case of its own kind: whatever it comes to, it does so by itself.
+  EXPECT_EQ(summary["limits"]["force > 50"]["cases"], summary["statuses"]["done"]);
+  EXPECT_TRUE(std::filesystem::exists(path("a/report.html")));
+}
+
+// A line of cases.csv against the command that it stands for.
+TEST_F(SweepCommand, ACaseRunsAloneWithTheSameResult) {
+  ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
+  std::istringstream lines(cases("a"));
+  std::string line;
+  for (int k = 0; k <= 7; ++k) std::getline(lines, line);  // the header and seven cases
+  ASSERT_EQ(line.substr(0, 7), "7,done,");
+  ASSERT_EQ(run("sweep sweep.toml --out a --case 7 --json"), 0) << contents("err.txt");
+  const nlohmann::json alone = parsed("out.txt");
+  const std::string force = nlohmann::json(alone["series"][0]["largest_force_N"]).dump();
+  EXPECT_THAT(line, HasSubstr("," + force + ",1"));
+  EXPECT_TRUE(std::filesystem::exists(path("a/case_7/curves.csv")));
+  EXPECT_EQ(run("sweep sweep.toml --out a --case 61"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("must be from 1 to 60"));
+}
+
+TEST_F(SweepCommand, FailingCasesLoseOnlyThemselves) {
+  ASSERT_EQ(run("sweep sweep.toml --out a --set vary[2].normal.sigma=1.0"), 0) << contents("err.txt");
+  const nlohmann::json summary = parsed("a/summary.json");
+  const std::string csv = cases("a");
+  EXPECT_GT(summary["statuses"]["done"], 10);
+  EXPECT_GT(summary["statuses"]["refused"], 0);  // a diameter below zero
+  EXPECT_THAT(csv, HasSubstr(",refused,"));
+  EXPECT_THAT(csv, HasSubstr("wire.diameter_mm"));
+  EXPECT_EQ(csv.find("nan"), std::string::npos);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("have no result"));
+}
+
+TEST_F(SweepCommand, WrongFilesWriteNothing) {
+  EXPECT_EQ(run("sweep sweep.toml --out a --set collect.force=series[middle].largest_farce_N"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("there are: "));
+  EXPECT_EQ(run("sweep sweep.toml --out a --set vary[1].key=wire.lenght_mm"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("wire.lenght_mm"));
+  EXPECT_EQ(run("sweep sweep.toml --out a --set verb=simulate"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("push, fit, trace"));
+  EXPECT_EQ(run("sweep one.toml --out a"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("snare-sweep/1"));
+  EXPECT_FALSE(std::filesystem::exists(path("a")));
+}
+
+TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
+  write("sweep.toml",
+        std::string(sweep_of_pushes).replace(std::string(sweep_of_pushes).find("cases = 60"), 10, "cases = 600"));
+  ASSERT_EQ(run("sweep sweep.toml --out whole"), 0);
+  const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--threads", "1"});
+  const Ending ending = interrupt(child, 0.4);
+  if (ending.status == 0) GTEST_SKIP() << "the sweep was over before the signal";
+  EXPECT_EQ(ending.status, 3);
+  EXPECT_LT(ending.seconds, 1.0);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("the same command goes on"));
+  ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("goes on from a/cases.journal"));
+  EXPECT_EQ(cases("a"), cases("whole"));
+}
+
+TEST_F(SweepCommand, AChangedInputIsRefusedAndNothingIsLost) {
+  ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
+  const std::string before = cases("a"), journal = contents("a/cases.journal");
+  EXPECT_EQ(run("sweep sweep.toml --out a --set seed=2"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("belongs to another study"));
+  write("one.toml", std::string(one_push) + "instability = \"follow_path\"\n");
+  EXPECT_EQ(run("sweep sweep.toml --out a"), 2);
+  write("one.toml", std::string("# a comment\n") + one_push);
+  EXPECT_EQ(run("sweep sweep.toml --out a"), 0) << contents("err.txt");
+  EXPECT_EQ(cases("a"), before);
+  EXPECT_EQ(contents("a/cases.journal"), journal);
+}
+
+TEST_F(SweepCommand, TwoSweepsDoNotShareAFolder) {
+  const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--set", "cases=3000"});
+  for (int k = 0; k < 200 && !std::filesystem::exists(path("a/cases.journal")); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(shell("'" SNARE_COMMAND "' sweep sweep.toml --out a --set cases=3000 >o2 2>e2"), 2);
+  EXPECT_THAT(contents("e2"), HasSubstr("is writing into this one"));
+  static_cast<void>(interrupt(child, 0.0, SIGKILL));
+}
+
+// A limit of the file's size stands for a disk that is full: the journal ends with a whole line, and the sweep goes on with room.
+TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
+  ASSERT_EQ(run("sweep sweep.toml --out whole --set cases=300"), 0);
+  EXPECT_EQ(shell("ulimit -f 8; '" SNARE_COMMAND "' sweep sweep.toml --out a --set cases=300 >out.txt 2>err.txt"), 1);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("a/cases.journal: cannot be written"));
+  EXPECT_EQ(contents("a/cases.journal").back(), '\n');
+  ASSERT_EQ(run("sweep sweep.toml --out a --set cases=300"), 0);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("goes on from"));
+  EXPECT_EQ(contents("err.txt").find("damaged"), std::string::npos);
+  EXPECT_EQ(cases("a"), cases("whole"));
+}
+
+TEST_F(SweepCommand, ARareEventByLevels) {
+  ASSERT_EQ(run("sweep sweep.toml --out a --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
+                "--set limits[1].above=40"),
+            0)
+      << contents("err.txt");
+  const nlohmann::json failure = parsed("a/summary.json")["failure"];
+  EXPECT_GT(failure["levels"].size(), 0U);
+  EXPECT_GT(failure["probability"], 0.0);
+  const std::string before = cases("a");
+  ASSERT_EQ(
+      run("sweep sweep.toml --out b --threads 1 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
+          "--set limits[1].above=40"),
+      0);
+  EXPECT_EQ(cases("b"), before);
+  EXPECT_EQ(run("sweep sweep.toml --out a --case 3 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
+                "--set limits[1].above=40"),
+            0);
+}
+
+// A hundred kills at random moments, then an end in peace: same bytes, no case twice or lost.
+class SlowSweep : public SweepCommand {};
+
+TEST_F(SlowSweep, AHundredKillsLoseNothing) {
+  const std::string many = "cases=20000";
+  ASSERT_EQ(run("sweep sweep.toml --out whole --set " + many), 0);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> moment(0.02, 0.5);
+  int kills = 0;
+  for (; kills < 100; ++kills) {
+    const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--set", many});
+    if (interrupt(child, moment(random), SIGKILL).status != -SIGKILL) break;
+  }
+  ASSERT_EQ(run("sweep sweep.toml --out a --set " + many), 0) << contents("err.txt");
+  EXPECT_EQ(cases("a"), cases("whole"));
+  RecordProperty("kills", kills);
+  std::istringstream journal(contents("a/cases.journal"));
+  std::set<std::string> numbers;
+  std::string line;
+  std::getline(journal, line);
+  while (std::getline(journal, line)) EXPECT_TRUE(numbers.insert(line.substr(0, line.find(' '))).second) << line;
+  EXPECT_EQ(numbers.size(), 20000U);
+}
+
+}  // namespace
+}  // namespace snare::app

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Checks that a sweep by several ranks gives the bytes of one process, also after ranks were killed.
+
+usage: ranks.py SNARE [--kills N]
+
+Without mpirun, or where the command was built without MPI, it says so and ends well. N (8): how often all ranks are killed at
+a random moment and the same command is given again.
+"""
+
+import argparse
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+EXPERIMENT = """schema = "snare-experiment/1"
+title  = "push"
+source = "a test"
+[wire]
+construction       = "solid"
+diameter_mm        = 1.5
+length_mm          = 180.0
+youngs_modulus_GPa = 193.0
+poisson_ratio      = 0.29
+density_kg_m3      = 7930.0
+[mount]
+kind    = "clamped"
+span_mm = 175.0
+[pusher]
+shape     = "cylinder"
+radius_mm = 6.0
+friction  = 0.0
+direction = "outward"
+[[series]]
+name = "middle"
+contact_position_mm = 87.5
+travel_mm = 1.5
+points = 5
+"""
+SWEEP = """schema = "snare-sweep/1"
+case = "one.toml"
+design = "sobol"
+cases = 2000
+[[vary]]
+key = "wire.length_mm"
+uniform = [179.0, 181.0]
+[[vary]]
+key = "wire.diameter_mm"
+normal = { mean = 1.5, sigma = 0.01 }
+[collect]
+force = "series[middle].largest_force_N"
+"""
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+failures = []
+
+
+def check(condition: bool, what: str) -> None:
+    print(("  ok  " if condition else "WRONG ") + what, flush=True)
+    if not condition:
+        failures.append(what)
+
+
+def mpirun(snare: str, folder: pathlib.Path, ranks: int, out: str, *more: str) -> list[str]:
+    return ["mpirun", "--oversubscribe", *more, "-n", str(ranks), snare, "sweep", "sweep.toml", "--out", out, "--quiet"]
+
+
+def ranks_of(launcher: subprocess.Popen) -> list[int]:
+    """The processes that an mpirun has started."""
+    children = pathlib.Path(f"/proc/{launcher.pid}/task/{launcher.pid}/children")
+    return [int(pid) for pid in children.read_text().split()] if children.exists() else []
+
+
+def rank_of(pid: int) -> int:
+    for entry in pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0"):
+        if entry.startswith(b"OMPI_COMM_WORLD_RANK="):
+            return int(entry.split(b"=")[1])
+    return -1
+
+
+def journal_is_whole(file: pathlib.Path, cases: int) -> bool:
+    numbers = [line.split()[0] for line in file.read_text().splitlines()[1:]]
+    return len(numbers) == len(set(numbers)) == cases
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("snare")
+    parser.add_argument("--kills", type=int, default=8)
+    options = parser.parse_args()
+    snare = str(pathlib.Path(options.snare).resolve())
+    if shutil.which("mpirun") is None or not (pathlib.Path(snare).parent / "snare_mpi.so").exists():
+        print("no mpirun, or built without MPI: nothing to check")
+        return 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "one.toml").write_text(EXPERIMENT)
+        (folder / "sweep.toml").write_text(SWEEP)
+
+        def run(command: list[str]) -> int:
+            return subprocess.run(command, cwd=folder, env=ENVIRONMENT, timeout=600).returncode
+
+        check(run([snare, "sweep", "sweep.toml", "--out", "whole", "--quiet"]) == 0, "one process")
+        whole = (folder / "whole/cases.csv").read_bytes()
+
+        for ranks in (1, 2, 4):
+            begin = time.monotonic()
+            status = run(mpirun(snare, folder, ranks, f"r{ranks}"))
+            print(f"       {ranks} ranks: {time.monotonic() - begin:.1f} s")
+            check(status == 0 and (folder / f"r{ranks}/cases.csv").read_bytes() == whole, f"{ranks} ranks, same bytes")
+
+        # All ranks at once, at random moments.
+        chance = random.Random(1)
+        for _ in range(options.kills):
+            launcher = subprocess.Popen(mpirun(snare, folder, 2, "killed"), cwd=folder, env=ENVIRONMENT,
+                                        stderr=subprocess.DEVNULL)
+            time.sleep(chance.uniform(0.3, 2.0))
+            for pid in ranks_of(launcher):
+                os.kill(pid, signal.SIGKILL)
+            launcher.wait(timeout=120)
+        check(run(mpirun(snare, folder, 2, "killed")) == 0, "goes on after kills of all ranks")
+        check((folder / "killed/cases.csv").read_bytes() == whole, "same bytes after them")
+        check(journal_is_whole(folder / "killed/cases.journal", 2000), "no case twice or lost")
+
+        # One rank that is not the first: the others run its cases, where the launcher lets them.
+        launcher = subprocess.Popen(mpirun(snare, folder, 3, "lost", "--enable-recovery"), cwd=folder, env=ENVIRONMENT,
+                                    stderr=subprocess.DEVNULL)
+        time.sleep(1.5)
+        for pid in ranks_of(launcher):
+            if rank_of(pid) == 1:
+                os.kill(pid, signal.SIGKILL)
+        try:
+            launcher.wait(timeout=120)
+        except subprocess.TimeoutExpired:
+            launcher.kill()
+        there = (folder / "lost/cases.csv").exists()
+        print(f"       a rank killed: the others {'finished' if there else 'were ended by the launcher'}")
+        if not there:
+            check(run(mpirun(snare, folder, 2, "lost")) == 0, "goes on after a kill of one rank")
+        check((folder / "lost/cases.csv").read_bytes() == whole, "same bytes after a kill of one rank")
+        check(journal_is_whole(folder / "lost/cases.journal", 2000), "no case twice or lost")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

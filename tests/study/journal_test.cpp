@@ -1,0 +1,94 @@
+#include "study/journal.hpp"
+
+#include "base/errors.hpp"
+#include "base/files.hpp"
+#include "tests/support/folder_fixture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace snare::study {
+namespace {
+
+class JournalTest : public test::FolderFixture {
+ protected:
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "cases.journal"; }
+};
+
+TEST_F(JournalTest, KeepsResultsOverAnEnd) {
+  {
+    Journal journal(file(), "study 1", 10);
+    journal.append(7, "[1,2]");
+    journal.append(2, "x y");
+    journal.append(7, "another");  // is there already
+  }
+  const Journal journal(file(), "study 1", 10);
+  EXPECT_EQ(journal.finished(), 2U);
+  EXPECT_EQ(journal.result(7), "[1,2]");
+  EXPECT_EQ(journal.result(2), "x y");
+  EXPECT_FALSE(journal.has(3));
+  EXPECT_EQ(journal.result(3), std::nullopt);
+}
+
+TEST_F(JournalTest, RefusesAnotherStudy) {
+  { Journal journal(file(), "study 1", 10); }
+  try {
+    const Journal journal(file(), "study 2", 10);
+    FAIL() << "accepted";
+  } catch (const base::InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("belongs to another study"));
+  }
+  EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 0U);  // the file is as it was
+}
+
+// Whatever the length to which a kill leaves the file, the whole lines count and the journal goes on.
+TEST_F(JournalTest, AnyTornEndIsTakenOut) {
+  {
+    Journal journal(file(), "s", 3);
+    journal.append(0, "zero");
+    journal.append(1, "one");
+  }
+  const std::string whole = base::read_text(file());
+  const std::size_t head = whole.find('\n') + 1;
+  const std::size_t first = whole.find('\n', head) + 1;
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    std::ofstream(file(), std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    {
+      Journal journal(file(), "s", 3);
+      EXPECT_EQ(journal.finished(), length < first ? 0U : length < whole.size() ? 1U : 2U) << length;
+      journal.append(2, "two");
+    }
+    const Journal again(file(), "s", 3);
+    EXPECT_EQ(again.result(2), "two") << length;
+    EXPECT_EQ(again.damaged(), 0U) << length;
+  }
+}
+
+// A bit that has changed costs the case whose line it is in, no other.
+TEST_F(JournalTest, ADamagedLineIsPassedOver) {
+  {
+    Journal journal(file(), "s", 3);
+    for (std::uint64_t k = 0; k < 3; ++k) journal.append(k, "result " + std::to_string(k));
+  }
+  std::string text = base::read_text(file());
+  text[text.find("result 1") + 7] = '9';
+  std::ofstream(file(), std::ios::binary | std::ios::trunc) << text;
+  const Journal journal(file(), "s", 3);
+  EXPECT_EQ(journal.damaged(), 1U);
+  EXPECT_TRUE(journal.has(0));
+  EXPECT_FALSE(journal.has(1));
+  EXPECT_EQ(journal.result(2), "result 2");
+}
+
+TEST_F(JournalTest, AFileOfSomethingElseIsNotTouched) {
+  std::ofstream(file(), std::ios::binary) << "my own notes";
+  EXPECT_THROW(Journal(file(), "s", 3), base::InputError);
+  EXPECT_EQ(base::read_text(file()), "my own notes");
+}
+
+}  // namespace
+}  // namespace snare::study
