@@ -1,84 +1,45 @@
 #include "app/commands.hpp"
-#include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
 #include "app/result_folder.hpp"
-#include "app/warnings.hpp"
+#include "results/curves.hpp"
+#include "results/push_result.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
-
 namespace snare::app {
 
-namespace {
-
-nlohmann::json summary(const identification::Series& series, const identification::Prediction& prediction) {
-  nlohmann::json events = nlohmann::json::array();
-  for (const coupling::PushEvent& e : prediction.curve.curve.events) {
-    events.push_back({{"event", coupling::to_string(e.kind)}, {"travel_mm", 1e3 * e.travel}});
-  }
-  double largest = 0.0;
-  for (const double force : prediction.force) largest = std::max(largest, std::abs(force));
-  return {
-      {"series", series.name},
-      {"points", prediction.force.size()},
-      {"largest_force_N", largest},
-      {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
-      {"events", events},
-      {"in_contact_at_end", !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},
-      {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()
-                                                         : nlohmann::json(prediction.curve.curve.report.message)}};
-}
-
-}  // namespace
+using namespace results;
 
 ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv"});
   const KeepWhenInterrupted keeping({}, options.json ? "snare-push/1" : "");
 
-  std::vector<identification::PredictionOptions> prediction_options(experiment.series.size());
-  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
-    prediction_options[k].examine_out_of_plane = true;
-    prediction_options[k].stop = interrupted;
-    prediction_options[k].progress = [&console, &series = experiment.series[k]](double travel) {
-      console.progress(fmt::format("{}: {:.3f} of {:.3f} mm", series.name, 1e3 * travel,
-                                   1e3 * identification::measured_displacement(series).back()));
-      return !interrupted();
-    };
-  }
-  const std::vector<identification::Prediction> predictions =
-      identification::predict_all(experiment.series, experiment.solver, {}, prediction_options);
+  const PushResult pushed =
+      push(experiment, {[&console](const std::string& stage) { console.progress(stage); }, interrupted});
+  const std::vector<identification::Prediction>& predictions = pushed.predictions;
   console.end_progress();
   begin_writing();
 
   const std::filesystem::path csv = options.out / "curves.csv";
   write_curves(csv, experiment.series, predictions);
-  nlohmann::json result{{"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
   ExitStatus status = ExitStatus::done;
-  bool partial = false;
   for (std::size_t k = 0; k < predictions.size(); ++k) {
-    result["series"].push_back(summary(experiment.series[k], predictions[k]));
     const numerics::SolveReport& report = predictions[k].curve.curve.report;
     if (!report.usable()) {
       console.complain(fmt::format("series {}: {} ({} of {} points kept)", experiment.series[k].name, report.message,
                                    predictions[k].force.size(),
                                    identification::measured_displacement(experiment.series[k]).size()));
       status = ExitStatus::solver_stopped;
-      partial = partial || report.termination == numerics::Termination::interrupted;
     }
   }
-  result["interrupted"] = partial;
-  const std::vector<std::string> warnings = push_warnings(experiment.series, predictions);
-  result["warnings"] = warnings;
-  for (const std::string& warning : warnings) console.warn(warning);
+  for (const nlohmann::json& warning : pushed.document["warnings"]) console.warn(warning.get<std::string>());
   if (options.json) {
-    print(result.dump(1) + "\n");
+    print(pushed.document.dump(1) + "\n");
   } else {
-    for (const nlohmann::json& series : result["series"]) {
+    for (const nlohmann::json& series : pushed.document["series"]) {
       console.say(fmt::format("{}: {} points, largest force {:.4g} N", series["series"].get<std::string>(),
                               series["points"].get<std::size_t>(), series["largest_force_N"].get<double>()));
     }
