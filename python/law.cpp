@@ -1,7 +1,6 @@
 #include "python/law.hpp"
 
 #include "python/convert.hpp"
-#include "python/verbs.hpp"
 #include "scenario/distilled_law.hpp"
 
 #include <fmt/format.h>

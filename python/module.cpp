@@ -1,5 +1,6 @@
 // The extension module snare._core: what the package in python/snare/ stands on.
 #include "base/errors.hpp"
+#include "python/law.hpp"
 #include "python/verbs.hpp"
 #include "python/work.hpp"
 #include "results/version.hpp"

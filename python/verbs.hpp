@@ -7,7 +7,4 @@ namespace snare::python {
 /// The verbs: what the command of the same name writes, as dictionaries and columns.
 void add_verbs(pybind11::module_& module);
 
-/// Laws that were distilled.
-void add_laws(pybind11::module_& module);
-
 }  // namespace snare::python

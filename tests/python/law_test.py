@@ -10,16 +10,13 @@ import setting
 import snare
 import numpy as np
 
-WIRE = setting.SOURCE / "data/wires/traced_published.toml"
-
 
 class Laws(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.out = pathlib.Path(cls.folder.name)
-        setting.run_command("distil", str(WIRE), "--out", cls.folder.name, "--set", "table.points=[8, 3, 3]",
-                            "--set", "table.most_points=[8, 3, 3]")
+        setting.run_command("distil", str(setting.small_wire(cls.out)), "--out", cls.folder.name)
         cls.law = snare.Law(cls.out / "law.json")
 
     @classmethod

@@ -41,8 +41,8 @@ class Pictures(unittest.TestCase):
         self.assertGreater(len(snare.plot.history(result).get_lines()), 0)
 
     def test_a_law_is_drawn_at_its_positions_and_saved(self):
-        law = snare.distil(setting.SOURCE / "data/wires/traced_published.toml",
-                           set={"table.points": [8, 3, 3], "table.most_points": [8, 3, 3]})["laws"][0]
+        with tempfile.TemporaryDirectory() as folder:
+            law = snare.distil(setting.small_wire(folder))["laws"][0]
         axes = snare.plot.law(law)
         self.assertEqual(axes.get_legend_handles_labels()[1][0], "s = 40 mm")
         with tempfile.NamedTemporaryFile(suffix=".png") as file:

@@ -17,6 +17,14 @@ except ImportError as reason:
     sys.exit(SKIPPED)
 
 
+def small_wire(folder) -> pathlib.Path:
+    """A wire file with a small table and no runs in motion."""
+    text = (SOURCE / "data/wires/traced_published.toml").read_text().split("[damping]")[0]
+    path = pathlib.Path(folder) / "wire.toml"
+    path.write_text(text + "\n[table]\npoints = [8, 3, 3]\nmost_points = [8, 3, 3]\n")
+    return path
+
+
 def run_command(*arguments: str) -> None:
     """The command that was built beside the module."""
     subprocess.run([COMMAND, *arguments, "--quiet"], check=True)
