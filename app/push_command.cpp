@@ -1,7 +1,9 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
+#include "app/report/push_report.hpp"
 #include "app/result_folder.hpp"
+#include "base/files.hpp"
 #include "results/curves.hpp"
 #include "results/push_result.hpp"
 
@@ -14,7 +16,7 @@ using namespace results;
 
 ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
-  const ResultFolder folder(options, {"curves.csv"});
+  const ResultFolder folder(options, {"curves.csv", "report.html"});
   const KeepWhenInterrupted keeping({}, options.json ? "snare-push/1" : "");
 
   const PushResult pushed =
@@ -25,6 +27,9 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
 
   const std::filesystem::path csv = options.out / "curves.csv";
   write_curves(csv, experiment.series, predictions);
+  const auto warnings = pushed.document["warnings"].get<std::vector<std::string>>();
+  base::write_text(options.out / "report.html",
+                   push_report_html(experiment, predictions, warnings, pushed.document["interrupted"].get<bool>()));
   ExitStatus status = ExitStatus::done;
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     const numerics::SolveReport& report = predictions[k].curve.curve.report;
@@ -35,15 +40,19 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
       status = ExitStatus::solver_stopped;
     }
   }
-  for (const nlohmann::json& warning : pushed.document["warnings"]) console.warn(warning.get<std::string>());
+  for (const std::string& warning : warnings) console.warn(warning);
   if (options.json) {
     print(pushed.document.dump(1) + "\n");
   } else {
     for (const nlohmann::json& series : pushed.document["series"]) {
-      console.say(fmt::format("{}: {} points, largest force {:.4g} N", series["series"].get<std::string>(),
-                              series["points"].get<std::size_t>(), series["largest_force_N"].get<double>()));
+      const nlohmann::json& misfit = series["misfit"];
+      console.say(fmt::format(
+          "{}: {} points, largest force {:.4g} N{}", series["series"].get<std::string>(),
+          series["points"].get<std::size_t>(), series["largest_force_N"].get<double>(),
+          misfit.is_null() ? ""
+                           : fmt::format(", rms distance from the readings {:.3g} N", misfit["rmse_N"].get<double>())));
     }
-    console.say(fmt::format("wrote {}", csv.string()));
+    console.say(fmt::format("wrote {0}/curves.csv, {0}/report.html", options.out.string()));
   }
   return status;
 }

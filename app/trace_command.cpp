@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
+#include "app/report/push_report.hpp"
 #include "app/report/trace_report.hpp"
 #include "app/result_folder.hpp"
 #include "base/files.hpp"
@@ -97,6 +98,7 @@ void write_trace(const identification::Experiment& experiment, const Trace& trac
 
 void write_fit(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, curve_columns(trace));
+  base::write_text(options.out / "report.html", fit_report_html(experiment, trace, trace_warnings(experiment, trace)));
   write_result(options, "fit.json", fit_json(experiment, trace));
 }
 
@@ -134,14 +136,14 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
-  const ResultFolder folder(options, {"curves.csv", "fit.json"});
+  const ResultFolder folder(options, {"curves.csv", "fit.json", "report.html"});
   const Trace trace = trace_and_write(experiment, fitting_options(), options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",
                             trace.declared.rmse, trace.final.rmse, trace.final.chi2_dof));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
-    console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv", options.out.string()));
+    console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv, {0}/report.html", options.out.string()));
   }
   return status_of(experiment, trace, console);
 }

@@ -2,6 +2,7 @@
 
 #include "base/csv.hpp"
 #include "base/units.hpp"
+#include "results/in_mm.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -65,7 +66,7 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
     const std::vector<double>& displacement = identification::measured_displacement(series[k]);
     // A row of a point, or of a displacement before the touch.
     const auto write = [&](double at, const PushPoint* point, CsvCell error, std::size_t reading, bool asked) {
-      std::vector<CsvCell> row{std::string_view(series[k].name), at / mm};
+      std::vector<CsvCell> row{std::string_view(series[k].name), in_mm(at)};
       const auto cell = [&](const PointColumn& c) { return point != nullptr ? c.cell(*point) : c.before_touch; };
       for (const PointColumn& column : up_to_error) row.push_back(cell(column));
       row.push_back(error);

@@ -53,14 +53,14 @@ json law_entry(const FittedLaw& law) {
 json place_json(const DistilledPlace& place) {
   json laws = json::array();
   for (const FittedLaw& law : place.laws) laws.push_back(law_entry(law));
-  json result{{"position_mm", 1e3 * place.position},
+  json result{{"position_mm", in_mm(place.position)},
               {"laws", laws},
               {"spring_dashpot",
                {{"travel_mm", in_mm(place.stiffness.travel)},
                 {"secant_stiffness_N_m", place.stiffness.secant},
                 {"tangent_stiffness_N_m", place.stiffness.tangent}}}};
   if (place.recorded) {
-    result["recorded"] = {{"displacement_offset_mm", 1e3 * place.recorded->offset},
+    result["recorded"] = {{"displacement_offset_mm", in_mm(place.recorded->offset)},
                           {"quadratic", law_entry(place.recorded->quadratic)},
                           {"displacement_mm", in_mm(place.recorded->stiffness.travel)},
                           {"secant_stiffness_N_m", place.recorded->stiffness.secant}};
@@ -75,7 +75,7 @@ json place_json(const DistilledPlace& place) {
     const LoadUnloadFit& f = *place.load_unload;
     result["load_unload"] = {{"formula", "F = L(d) ((1 + r)/2 + z (1 - r)/2), dz = 2 dd/lambda, |z| <= 1"},
                              {"returned", f.law.returned()},
-                             {"turn_mm", 1e3 * f.law.turn()},
+                             {"turn_mm", in_mm(f.law.turn())},
                              {"largest_error_N", f.largest_error},
                              {"rms_error_N", f.rms_error},
                              {"loop_J", f.loop}};
@@ -88,7 +88,7 @@ json place_json(const DistilledPlace& place) {
                        {"restitution", i.restitution},
                        {"integrator_loss", i.integrator_loss},
                        {"peak_force_N", i.peak_force},
-                       {"largest_travel_mm", 1e3 * i.largest_travel},
+                       {"largest_travel_mm", in_mm(i.largest_travel)},
                        {"duration_s", i.duration},
                        {"damping_Ns_m", i.damping ? json(*i.damping) : json()},
                        {"law_peak_force_N", i.damping ? json(i.law_peak_force) : json()}});
@@ -109,9 +109,9 @@ json table_error_json(const TableError& e) {
           {"force_range_N", e.force_range},
           {"points", e.points},
           {"worst",
-           {{"travel_mm", 1e3 * e.worst_travel},
-            {"position_mm", 1e3 * e.worst.position},
-            {"slack_mm", 1e3 * e.worst.slack}}}};
+           {{"travel_mm", in_mm(e.worst_travel)},
+            {"position_mm", in_mm(e.worst.position)},
+            {"slack_mm", in_mm(e.worst.slack)}}}};
 }
 
 json table_json(const BuiltTable& built) {
@@ -141,7 +141,7 @@ json table_json(const BuiltTable& built) {
 json map_json(const LawMap& map) {
   json rows = json::array();
   for (const LawMapRow& row : map.rows) {
-    json entry{{"slack_mm", 1e3 * row.slack}};
+    json entry{{"slack_mm", in_mm(row.slack)}};
     const auto add = [&](const char* name, const std::vector<double> LawMapRow::*law) {
       const auto range = map.within(row, law, map_share);
       entry[name] = range ? interval(*range, 1e-3) : json();
@@ -151,7 +151,7 @@ json map_json(const LawMap& map) {
     rows.push_back(entry);
   }
   return {
-      {"position_mm", 1e3 * map.position}, {"to_mm", 1e3 * map.travel.back()}, {"within", map_share}, {"rows", rows}};
+      {"position_mm", in_mm(map.position)}, {"to_mm", in_mm(map.travel.back())}, {"within", map_share}, {"rows", rows}};
 }
 
 json case_json(const DistilledCase& one) {
@@ -163,9 +163,9 @@ json case_json(const DistilledCase& one) {
           {"wire",
            {{"bending_stiffness_Nm2", w.bending_stiffness()},
             {"axial_stiffness_N", w.axial_stiffness()},
-            {"length_mm", 1e3 * w.length},
-            {"span_mm", 1e3 * one.wire.test.mount.span},
-            {"radius_mm", 1e3 * one.wire.test.pusher.radius},
+            {"length_mm", in_mm(w.length)},
+            {"span_mm", in_mm(one.wire.test.mount.span)},
+            {"radius_mm", in_mm(one.wire.test.pusher.radius)},
             {"friction", one.wire.test.pusher.friction}}},
           {"ranges",
            {{"travel_mm", interval(one.wire.travel, 1e-3)},

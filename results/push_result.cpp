@@ -16,12 +16,19 @@ nlohmann::json summary(const identification::Series& series, const identificatio
   for (const coupling::PushEvent& e : prediction.curve.curve.events) {
     events.push_back({{"event", coupling::to_string(e.kind)}, {"travel_mm", 1e3 * e.travel}});
   }
+  const std::vector<double> readings = identification::measured_force(series);
+  nlohmann::json misfit;  // of as many readings as were reached
+  if (!readings.empty() && !prediction.force.empty()) {
+    const identification::Misfit m = identification::misfit(readings, prediction.force);
+    misfit = {{"rmse_N", m.rmse}, {"nrmse", m.nrmse}, {"largest_N", m.largest}};
+  }
   double largest = 0.0;
   for (const double force : prediction.force) largest = std::max(largest, std::abs(force));
   return {
       {"series", series.name},
       {"points", prediction.force.size()},
       {"largest_force_N", largest},
+      {"misfit", misfit},
       {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
       {"events", events},
       {"in_contact_at_end", !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},

@@ -98,8 +98,8 @@ json function_json(const identification::ChannelFunction& f) {
 json series_json(const Trace& trace, std::size_t k) {
   const identification::Series& s = trace.series[k];
   json result{{"name", s.name},
-              {"contact_position_mm", 1e3 * s.test.contact_position},
-              {"span_mm", 1e3 * s.test.mount.span},
+              {"contact_position_mm", in_mm(s.test.contact_position)},
+              {"span_mm", in_mm(s.test.mount.span)},
               {"heldout", static_cast<bool>(trace.heldout[k])},
               {"displacement_mm", in_mm(s.readings->displacement)},
               {"measured_N", s.readings->force},
@@ -189,7 +189,7 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
                 {"dof", finite(trace.noise.dof)},
                 {"source", trace.noise.source},
                 {"smooth_share", trace.noise.smooth},
-                {"correlation_length_mm", 1e3 * trace.noise.length},
+                {"correlation_length_mm", in_mm(trace.noise.length)},
                 {"drawn_about_published_laws", false}}},
               {"declared", error_json(trace, trace.declared)},
               {"base", error_json(trace, trace.base)},

@@ -17,11 +17,11 @@ except ImportError as reason:
     sys.exit(SKIPPED)
 
 
-def small_wire(folder) -> pathlib.Path:
-    """A wire file with a small table and no runs in motion."""
+def small_wire(folder, table="\n[table]\npoints = [8, 3, 3]\nmost_points = [8, 3, 3]\n") -> pathlib.Path:
+    """A wire file with a small table, good to some per cent, and no runs in motion. table: "" for the default one."""
     text = (SOURCE / "data/wires/traced_published.toml").read_text().split("[damping]")[0]
     path = pathlib.Path(folder) / "wire.toml"
-    path.write_text(text + "\n[table]\npoints = [8, 3, 3]\nmost_points = [8, 3, 3]\n")
+    path.write_text(text + table)
     return path
 
 
