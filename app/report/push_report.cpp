@@ -96,8 +96,8 @@ std::string fit_report_html(const identification::Experiment& experiment, const 
                             const std::vector<std::string>& warnings) {
   ReportPage page(experiment.title, experiment.source);
   page.doubts(warnings, trace.interrupted);
-  page.key_figures({{"rms error, declared", measured(trace.declared.rmse, "N"), ""},
-                    {"rms error, fitted", measured(trace.final.rmse, "N"), ""},
+  page.key_figures({{"rms error, declared", measured(trace.declared.rmse, " N"), ""},
+                    {"rms error, fitted", measured(trace.final.rmse, " N"), ""},
                     {"chi2 per degree of freedom", measured(trace.final.chi2_dof), "1: nothing but noise"}});
   page.heading("Fitted numbers");
   Table numbers{"", {"Number"_code, "Declared"_number, "Value"_number, "95 % interval"_number, "Unit"_text}};
@@ -109,7 +109,8 @@ std::string fit_report_html(const identification::Experiment& experiment, const 
   }
   page.table(numbers);
   if (!trace.base_tests.acceptable(trace.tolerance)) {
-    page.callout("What the fitted model leaves is more than noise: `snare trace` asks what it lacks.", Tone::bad);
+    page.callout("What the fitted model leaves is more than noise. What the model lacks is asked by snare trace.",
+                 Tone::bad);
   }
   page.heading("Series");
   const Model fitted{"fitted model", trace.final_predictions, CurveStyle::line};
