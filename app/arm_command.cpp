@@ -21,6 +21,8 @@ using base::degree;
 
 constexpr const char* drive_modes[] = {"locked", "servo", "limp"};  // names of multibody::DriveMode
 
+constexpr const char* joint_kinds[] = {"revolute", "prismatic", "free"};  // names of multibody::JointKind
+
 /// Angles of the elastic joints [rad].
 Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescription& arm) {
   const int count = arm.arm.motors();
@@ -113,11 +115,56 @@ std::string listed(const nlohmann::json& values) {
   return text.empty() ? "none" : text;
 }
 
+/// What a robot description says by itself; stiffness and drives, and so the frequencies, are in an arm file.
+ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& options) {
+  const multibody::RobotDescription robot = multibody::read_urdf(file);
+  double mass = 0.0;
+  for (const multibody::RobotLink& link : robot.links) mass += link.inertia.mass;
+  nlohmann::json result{{"schema", "snare-arm-show/1"},
+                        {"title", robot.name},
+                        {"mass_kg", mass},
+                        {"root", robot.root},
+                        {"joints", nlohmann::json::array()}};
+  for (std::size_t k = 0; k < robot.joints.size(); ++k) {
+    const multibody::RobotJoint& joint = robot.joints[k];
+    result["joints"].push_back({{"joint", joint.name},
+                                {"kind", joint.kind ? joint_kinds[static_cast<std::size_t>(*joint.kind)] : "fixed"},
+                                {"from", joint.parent},
+                                {"link", joint.child},
+                                {"length_m", joint.X_PJ.p.norm()},
+                                {"link_mass_kg", robot.links[k + 1].inertia.mass}});
+  }
+  if (options.json) {
+    print(result.dump(1) + "\n");
+    return ExitStatus::done;
+  }
+  std::string text = fmt::format(
+      "{}: a robot description of {} links, {:.6g} kg, root {}\n{:<18}{:<12}{:<22}{:<22}{:>11}{:>11}\n", robot.name,
+      robot.links.size(), mass, robot.root, "joint", "kind", "from", "link", "length [m]", "mass [kg]");
+  for (const nlohmann::json& joint : result["joints"]) {
+    text += fmt::format("{:<18}{:<12}{:<22}{:<22}{:>11.4g}{:>11.2f}\n", joint["joint"].get<std::string>(),
+                        joint["kind"].get<std::string>(), joint["from"].get<std::string>(),
+                        joint["link"].get<std::string>(), joint["length_m"].get<double>(),
+                        joint["link_mass_kg"].get<double>());
+  }
+  text +=
+      "Stiffness, drives and natural frequencies: `snare arm show` of an arm file that names this one, see "
+      "docs/arm_files.md\n";
+  print(text);
+  return ExitStatus::done;
+}
+
 }  // namespace
 
 ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options,
                         Console& console) {
   const std::vector<base::Override> overrides = overrides_of(options);
+  if (file.extension() == ".urdf") {
+    if (!pose.empty()) throw base::InputError({"", 0, "--pose", pose, "only with an arm file (TOML)"});
+    if (!overrides.empty())
+      throw base::InputError({"", 0, "--set", overrides.front().key, "only with an arm file (TOML)"});
+    return show_robot(file, options);
+  }
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const Eigen::VectorXd angles = angles_of(pose, arm);
   const KeepWhenInterrupted word({}, options.json ? "snare-arm-show/1" : "");

@@ -1,16 +1,15 @@
 #include "app/case_runner.hpp"
 
-#include "app/law_json.hpp"
-#include "app/motion_summary.hpp"
-#include "app/push_json.hpp"
-#include "app/trace_json.hpp"
-#include "app/warnings.hpp"
 #include "base/archive.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
 #include "reduction/distil.hpp"
+#include "results/law_json.hpp"
+#include "results/motion_summary.hpp"
+#include "results/push_result.hpp"
+#include "results/trace_json.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
@@ -24,6 +23,8 @@
 #include <variant>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 
@@ -72,25 +73,18 @@ CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& mot
 }
 
 CaseEnd push(const identification::Experiment& experiment, const Stop& stop, json& result) {
-  std::vector<identification::PredictionOptions> options(experiment.series.size());
-  for (identification::PredictionOptions& o : options) {
-    o.examine_out_of_plane = true;
-    o.stop = stop;
-    o.progress = [&](double) { return !stop(); };
-  }
-  const std::vector<identification::Prediction> predictions =
-      identification::predict_all(experiment.series, experiment.solver, {}, options);
-  for (std::size_t k = 0; k < predictions.size(); ++k) {
-    const numerics::SolveReport& report = predictions[k].curve.curve.report;
+  PushResult pushed = results::push(experiment, {{}, stop});
+  for (std::size_t k = 0; k < pushed.predictions.size(); ++k) {
+    const numerics::SolveReport& report = pushed.predictions[k].curve.curve.report;
     if (!report.usable())
       return ending(false, report.termination, fmt::format("series {}: {}", experiment.series[k].name, report.message));
   }
-  result = push_json(experiment, predictions);
+  result = std::move(pushed.document);
   return {};
 }
 
 CaseEnd trace(const identification::Experiment& experiment, bool whole, const Stop& stop, json& result) {
-  identification::TraceOptions options = whole ? identification::TraceOptions{} : fit_options();
+  identification::TraceOptions options = whole ? identification::TraceOptions{} : fitting_options();
   options.progress = [&](const std::string&) { return !stop(); };
   const identification::Trace traced = identification::trace(experiment, options);
   if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);

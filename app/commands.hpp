@@ -1,11 +1,13 @@
 #pragma once
 
 #include "app/console.hpp"
-#include "app/report/version.hpp"
+#include "results/version.hpp"
 
 #include <filesystem>
 
 namespace snare::app {
+
+using namespace results;
 
 /// The verbs. Each reads its input, computes, writes its files into options.out, and returns the exit status.
 /// Wrong input is thrown as base::InputError before anything is written.

@@ -42,8 +42,15 @@ void Console::complain(const std::string& text) {
 
 void Console::progress(const std::string& text) {
   set_stage(text);
-  if (quiet_ || !terminal_) return;
+  if (quiet_) return;
   const std::scoped_lock lock(mutex_);
+  if (!terminal_) {
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - told_).count() < told_every_s) return;
+    told_ = now;
+    fmt::print(stderr, "{}\n", text);
+    return;
+  }
   fmt::print(stderr, "\r\033[K{}", text);
   std::fflush(stderr);
   pending_ = true;

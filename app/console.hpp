@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -22,7 +23,9 @@ struct CommonOptions {
   std::string command;               ///< the verb and its file, as a message names them: "snare push x.toml"
 };
 
-/// What the command says to a person, on standard error: messages, and progress on a terminal.
+inline constexpr double told_every_s = 10.0;
+
+/// What the command says to a person, on standard error: messages and progress.
 class Console {
  public:
   explicit Console(bool quiet);
@@ -31,7 +34,8 @@ class Console {
   void complain(const std::string& text);
   /// What is doubtful about a result; it stands in the result, too.
   void warn(const std::string& text) { say("warning: " + text); }
-  /// Progress in one line that is overwritten; nothing where standard error is no terminal. Also the stage of an interruption.
+  /// Progress: in one line that is overwritten, or where standard error is no terminal in a line every `told_every_s`, for a log.
+  /// Also the stage of an interruption.
   void progress(const std::string& text);
   void end_progress();
 
@@ -40,6 +44,7 @@ class Console {
   bool quiet_;
   bool terminal_;
   bool pending_ = false;
+  std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();  ///< when progress was told to a log
 };
 
 /// Writes a result into its file in the folder of the results, and to standard output where that is asked for: the last thing that a

@@ -1,20 +1,20 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
-#include "app/law_json.hpp"
 #include "app/report/distil_report.hpp"
 #include "app/result_folder.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "reduction/law_export.hpp"
-#include "wire/physical_range.hpp"
+#include "results/law_json.hpp"
+#include "results/warnings.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 
@@ -56,16 +56,6 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
   base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
 }
 
-std::vector<std::string> doubts_of(const reduction::WireFile& file) {
-  std::vector<std::string> all;
-  for (const reduction::WireCase& wire : file.cases) {
-    for (std::string& doubt : wire::doubts(wire.test.wire)) {
-      if (std::find(all.begin(), all.end(), doubt) == all.end()) all.push_back(std::move(doubt));
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
@@ -98,7 +88,7 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
     }
     return ExitStatus::solver_stopped;
   }
-  const std::vector<std::string> warnings = doubts_of(wire);
+  const std::vector<std::string> warnings = wire_warnings(wire);
   for (const std::string& warning : warnings) console.warn(warning);
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {

@@ -5,6 +5,7 @@
 #include "app/result_folder.hpp"
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "base/toml_reader.hpp"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -106,6 +107,43 @@ ExitStatus guarded(const CommonOptions& options, const Run& run) {
   }
 }
 
+/// Words of the command line that are none of ours, with the nearest one: the library says only that they were not expected.
+void check_words(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* verb = &app;
+  const auto refuse = [&verb, &app](const char* kind, const std::string& word, const std::vector<std::string>& known) {
+    const std::string nearest = snare::base::nearest_word(word, known);
+    std::string all;
+    for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+    throw snare::base::InputError({"", 0, verb == &app ? "snare" : "snare " + verb->get_name(), word,
+                                   std::string("unknown ") + kind +
+                                       (nearest.empty() ? "; there are: " + all : "; did you mean " + nearest + "?")});
+  };
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    if (word.starts_with("--") && word.size() > 2) {
+      const std::string name = word.substr(0, word.find('='));
+      const CLI::Option* option = verb->get_option_no_throw(name);
+      if (option == nullptr) {
+        std::vector<std::string> known;
+        for (const CLI::Option* one : verb->get_options()) {
+          for (const std::string& long_name : one->get_lnames()) known.push_back("--" + long_name);
+        }
+        refuse("option", name, known);
+      }
+      if (word == name && option->get_expected_min() > 0) ++k;  // its value
+    } else if (!word.starts_with("-") && verb->get_require_subcommand_min() > 0) {
+      const CLI::App* found = nullptr;
+      std::vector<std::string> known;
+      for (const CLI::App* one : verb->get_subcommands(nullptr)) {
+        known.push_back(one->get_name());
+        if (one->get_name() == word) found = one;
+      }
+      if (found == nullptr) refuse("verb", word, known);
+      verb = found;
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"snare: the mechanics of loose wires under a pin"};
   app.require_subcommand(1);
@@ -151,7 +189,11 @@ int run(int argc, char** argv) {
 
   snare::app::catch_interrupts(snare::app::release_result_folder);
   try {
+    check_words(app, argc, argv);
     app.parse(argc, argv);
+  } catch (const snare::base::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return static_cast<int>(ExitStatus::wrong_input);
   } catch (const CLI::ParseError& error) {
     std::ostringstream out;
     const int code = app.exit(error, out, std::cerr);

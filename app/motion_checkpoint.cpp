@@ -94,11 +94,14 @@ void fields(auto& a, MotionResult& r) {
 }
 }  // namespace snare::coupling
 
-namespace snare::app {
-
+namespace snare::results {
 void fields(auto& a, MotionRecord& m) {
   a(m.samples)(m.result);
 }
+}  // namespace snare::results
+
+namespace snare::app {
+
 void fields(auto& a, MotionProgress& p) {
   bool begun = p.state.has_value();
   a(p.finished)(p.samples)(begun);

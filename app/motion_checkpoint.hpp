@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/report/motion_record.hpp"
+#include "results/motion_record.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace snare::app {
+
+using namespace results;
 
 /// How far some motions have come.                                                      theory.md (M.13)
 struct MotionProgress {

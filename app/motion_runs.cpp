@@ -132,12 +132,6 @@ std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& 
   return runs.all();
 }
 
-bool left_undone(const std::vector<scenario::NamedMotion>& motions, const std::vector<MotionRecord>& records) {
-  return records.size() < motions.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
-           return r.result.report.termination == numerics::Termination::interrupted;
-         });
-}
-
 ExitStatus status_of(const std::vector<MotionRecord>& records) {
   const bool fine =
       std::all_of(records.begin(), records.end(), [](const MotionRecord& r) { return r.result.report.usable(); });

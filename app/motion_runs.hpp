@@ -1,13 +1,15 @@
 #pragma once
 
 #include "app/console.hpp"
-#include "app/report/motion_record.hpp"
+#include "results/motion_record.hpp"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace snare::app {
+
+using namespace results;
 
 /// Where checkpoints go and to what they belong.
 struct CheckpointPolicy {
@@ -21,10 +23,6 @@ struct CheckpointPolicy {
 /// to the console.                                                    docs/decisions/0015-checkpoints-of-a-motion.md
 [[nodiscard]] std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions,
                                                     const CheckpointPolicy& policy, Console& console);
-
-/// Whether a signal has left a part of the motions undone.
-[[nodiscard]] bool left_undone(const std::vector<scenario::NamedMotion>& motions,
-                               const std::vector<MotionRecord>& records);
 
 /// Worst status of some records.
 [[nodiscard]] ExitStatus status_of(const std::vector<MotionRecord>& records);

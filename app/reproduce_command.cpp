@@ -1,15 +1,15 @@
 #include "app/commands.hpp"
-#include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
 #include "app/report/reproduce_report.hpp"
-#include "app/report/trace_findings.hpp"
 #include "app/reproduce_json.hpp"
 #include "app/result_folder.hpp"
-#include "app/warnings.hpp"
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
+#include "results/curves.hpp"
+#include "results/trace_findings.hpp"
+#include "results/warnings.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,6 +21,8 @@
 #include <optional>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

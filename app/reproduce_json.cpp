@@ -2,14 +2,17 @@
 
 #include "app/commands.hpp"
 #include "app/report/plot.hpp"
-#include "app/report/trace_findings.hpp"
-#include "app/trace_json.hpp"
+#include "results/in_mm.hpp"
+#include "results/trace_findings.hpp"
+#include "results/trace_json.hpp"
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

@@ -1,24 +1,26 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
-#include "app/motion_history.hpp"
 #include "app/motion_runs.hpp"
-#include "app/motion_summary.hpp"
 #include "app/report/motion_page.hpp"
 #include "app/report/motion_pictures.hpp"
 #include "app/report/paraview.hpp"
 #include "app/result_folder.hpp"
-#include "app/warnings.hpp"
 #include "base/files.hpp"
+#include "results/motion_history.hpp"
+#include "results/motion_summary.hpp"
+#include "results/simulation.hpp"
+#include "results/warnings.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <variant>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 
@@ -83,24 +85,11 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions
   return status_of(records);
 }
 
-ArmRecord run_arm(const scenario::ArmMotion& motion, Console& console) {
-  multibody::ArmScenario scenario = motion.scenario;
-  scenario.progress = [&console, end = scenario.end](double time) {
-    console.progress(fmt::format("{:.2f} of {:.2f} s", time, end));
-    return !interrupted();
-  };
-  ArmRecord record;
-  const auto begin = std::chrono::steady_clock::now();
-  record.history = multibody::simulate(scenario);
-  record.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  console.end_progress();
-  if (motion.joint >= 0) record.swings = scenario::swings(record.history, scenario.arm, motion.joint);
-  return record;
-}
-
 ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const CommonOptions& options,
                     Console& console) {
-  const ArmRecord record = run_arm(motion, console);
+  const ArmRecord record =
+      simulate_arm(motion, {[&console](const std::string& stage) { console.progress(stage); }, interrupted});
+  console.end_progress();
   begin_writing();
   const multibody::ArmHistory& history = record.history;
   write_history(options.out / "history.csv", motion.scenario.arm, history);

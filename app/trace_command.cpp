@@ -1,14 +1,15 @@
 #include "app/commands.hpp"
-#include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
-#include "app/report/trace_findings.hpp"
+#include "app/report/push_report.hpp"
 #include "app/report/trace_report.hpp"
 #include "app/result_folder.hpp"
-#include "app/trace_json.hpp"
-#include "app/warnings.hpp"
 #include "base/files.hpp"
 #include "identification/tracing/trace.hpp"
+#include "results/curves.hpp"
+#include "results/trace_findings.hpp"
+#include "results/trace_json.hpp"
+#include "results/warnings.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,19 +19,12 @@
 
 namespace snare::app {
 
+using namespace results;
+
 namespace {
 
 using identification::FittedNumber;
 using identification::Trace;
-
-std::vector<CurveColumn> columns_of(const Trace& trace) {
-  std::vector<CurveColumn> columns{{"base_N", {}}, {"final_N", {}}};
-  for (std::size_t k = 0; k < trace.series.size(); ++k) {
-    columns[0].values.push_back(trace.base_predictions[k].force);
-    columns[1].values.push_back(trace.final_predictions[k].force);
-  }
-  return columns;
-}
 
 /// What of a trace is whole, for an interruption that comes while the next part is under way.
 class Part {
@@ -95,29 +89,21 @@ Trace trace_and_write(const identification::Experiment& experiment, identificati
   return trace;
 }
 
-std::vector<std::string> warnings_of(const identification::Experiment& experiment, const Trace& trace) {
-  const identification::Model model(trace.series, experiment.solver, false);
-  return push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model");
-}
-
 void write_trace(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
-  const std::vector<std::string> warnings = warnings_of(experiment, trace);
-  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
+  const std::vector<std::string> warnings = trace_warnings(experiment, trace);
+  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, curve_columns(trace));
   base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version(), warnings));
-  nlohmann::json result = trace_json(experiment, trace);
-  result["warnings"] = warnings;
-  write_result(options, "trace.json", result);
+  write_result(options, "trace.json", trace_document(experiment, trace));
 }
 
 void write_fit(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
-  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, columns_of(trace));
-  nlohmann::json result = fit_json(experiment, trace);
-  result["warnings"] = warnings_of(experiment, trace);
-  write_result(options, "fit.json", result);
+  write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, curve_columns(trace));
+  base::write_text(options.out / "report.html", fit_report_html(experiment, trace, trace_warnings(experiment, trace)));
+  write_result(options, "fit.json", fit_json(experiment, trace));
 }
 
 ExitStatus status_of(const identification::Experiment& experiment, const Trace& trace, Console& console) {
-  for (const std::string& warning : warnings_of(experiment, trace)) console.warn(warning);
+  for (const std::string& warning : trace_warnings(experiment, trace)) console.warn(warning);
   if (!trace.interrupted) return ExitStatus::done;
   console.complain("interrupted: " + kept_words(trace));
   return ExitStatus::solver_stopped;
@@ -150,14 +136,14 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
-  const ResultFolder folder(options, {"curves.csv", "fit.json"});
-  const Trace trace = trace_and_write(experiment, fit_options(), options, "snare-fit/1", write_fit, console);
+  const ResultFolder folder(options, {"curves.csv", "fit.json", "report.html"});
+  const Trace trace = trace_and_write(experiment, fitting_options(), options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",
                             trace.declared.rmse, trace.final.rmse, trace.final.chi2_dof));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
-    console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv", options.out.string()));
+    console.say(fmt::format("wrote {0}/fit.json, {0}/curves.csv, {0}/report.html", options.out.string()));
   }
   return status_of(experiment, trace, console);
 }

@@ -23,6 +23,13 @@ endif()
 # time to compile. Without that it takes a quarter more memory, some 1.1 GB for the largest sources.
 add_compile_options("$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=800000>")
 
+# The Python module is a shared library of the static ones. Nobody replaces one of their functions when it is loaded, so that
+# they may be inlined as in a program.
+if(SNARE_BUILD_PYTHON)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  add_compile_options(-fno-semantic-interposition)
+endif()
+
 # Private settings of our own targets; never exported.
 add_library(snare_build_settings INTERFACE)
 target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)

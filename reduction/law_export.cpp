@@ -1,8 +1,11 @@
 #include "reduction/law_export.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Core>
+#include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
 
 namespace snare::reduction {
 
@@ -323,27 +326,73 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
                    .end = ""});
 }
 
+namespace {
+
+/// F = k0 d + k1 d^2 + k2 d^3, the form of MuJoCo's joint springs, by least squares over even travels.
+struct JointPolynomial {
+  Eigen::Vector3d stiffness;   ///< k0, k1, k2 [N/m, N/m^2, N/m^3]
+  double largest_error = 0.0;  ///< against the full wire, at four travels for every one of the fit [N]
+};
+
+JointPolynomial joint_polynomial(const DistilledPlace& place, double end) {
+  constexpr int points = 200;
+  Eigen::MatrixX3d powers(points, 3);
+  Eigen::VectorXd force(points);
+  for (int i = 0; i < points; ++i) {
+    const double share = (i + 1.0) / points;
+    powers.row(i) << share, share * share, share * share * share;
+    force[i] = place.full.value(share * end);
+  }
+  const Eigen::Vector3d scaled = powers.colPivHouseholderQr().solve(force);
+  JointPolynomial result{{scaled[0] / end, scaled[1] / (end * end), scaled[2] / (end * end * end)}, 0.0};
+  for (int i = 0; i <= 4 * points; ++i) {
+    const double x = i / (4.0 * points);
+    const double off = x * (scaled[0] + x * (scaled[1] + x * scaled[2])) - place.full.value(x * end);
+    result.largest_error = std::max(result.largest_error, std::abs(off));
+  }
+  return result;
+}
+
+}  // namespace
+
 std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
-  const DistilledPlace& place = one.places.front();
-  const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
-  const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
-  const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
   // A double hyphen may not stand in a comment of XML.
   std::string words = title;
   for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--")) words.replace(at, 2, "-");
-  return fmt::format(
-      "<!-- {}\n     Linear spring of the snare wire at s = {:.6g} mm, travel 0 to {:.6g} mm from first "
-      "touch: off the full wire by up to"
-      "\n     {:.3g} N of {:.3g} N. The damping is {}; friction and strands add {:.4g} N/m over the angular rate. -->\n"
-      "<mujoco model=\"snare_wire\">\n  <worldbody>\n    <body name=\"wire_contact\">\n"
-      "      <joint name=\"wire_travel\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{}\" springref=\"0\" "
-      "damping=\"{}\"\n"
-      "             limited=\"true\" range=\"0 {}\"/>\n"
-      "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\"/>\n    </body>\n  </worldbody>\n</mujoco>\n",
-      words, 1e3 * place.position, 1e3 * linear->range.high, linear->error.largest_force, linear->error.force_range,
-      impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed)
-             : "not known: no impacts were asked",
-      loss, linear->values[0], impact ? *place.impacts.front().damping : 0.0, linear->range.high);
+  std::string text = fmt::format(
+      "<!-- {}\n     Springs of the snare wire, one slide joint a position, travel from first touch: the force of a "
+      "joint is\n"
+      "     -q (k0 + k1 q + k2 q^2), stiffness=\"k0 k1 k2\". MuJoCo before its polynomial stiffness takes one number: "
+      "the\n"
+      "     linear law that is named for each. Friction and strands dissipate at any rate alike, which a joint cannot. "
+      "-->\n"
+      "<mujoco model=\"snare_wire\">\n  <worldbody>\n",
+      words);
+  for (const DistilledPlace& place : one.places) {
+    const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
+    const double end = linear->range.high;
+    const JointPolynomial spring = joint_polynomial(place, end);
+    const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
+    const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
+    const std::string name = position_name(place.position);
+    text += fmt::format(
+        "    <!-- s = {:.6g} mm, travel 0 to {:.6g} mm: off the full wire by up to {:.3g} N of {:.4g} N; the linear "
+        "law,\n"
+        "         stiffness=\"{:.6g}\", by up to {:.3g} N. The damping is {}; friction and strands add {:.4g} N/m\n"
+        "         over the angular rate. -->\n"
+        "    <body name=\"wire_contact_{}\">\n"
+        "      <joint name=\"wire_travel_{}\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{} {} {}\" springref=\"0\" "
+        "damping=\"{}\"\n"
+        "             limited=\"true\" range=\"0 {}\"/>\n"
+        "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\" contype=\"0\" conaffinity=\"0\"/>\n    </body>\n",
+        1e3 * place.position, 1e3 * end, spring.largest_error, linear->error.force_range, linear->values[0],
+        linear->error.largest_force,
+        impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed)
+               : "not known: no impacts were asked",
+        loss, name, name, spring.stiffness[0], spring.stiffness[1], spring.stiffness[2],
+        impact ? *place.impacts.front().damping : 0.0, end);
+  }
+  return text + "  </worldbody>\n</mujoco>\n";
 }
 
 std::string adams_splines(const DistilledCase& one, const std::string& title) {

@@ -17,8 +17,8 @@ namespace snare::reduction {
 [[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title);
 [[nodiscard]] std::string python_module(const DistilledCase& one, const std::string& title);
 
-/// A slide joint with the linear spring-dashpot law of the first position, and how far that is from the full wire.
-/// MuJoCo's joint springs are linear: nothing else fits one.
+/// A slide joint for every law position with a polynomial of three numbers, F = k0 d + k1 d^2 + k2 d^3, through the full wire, and how
+/// far that and the linear law are from it; the damping of the first impact. Newer versions of MuJoCo have such springs.
 [[nodiscard]] std::string mujoco_snippet(const DistilledCase& one, const std::string& title);
 
 /// ADAMS solver splines: one of force over travel for every law position, and one of force over travel and position.

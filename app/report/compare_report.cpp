@@ -1,13 +1,16 @@
 #include "app/report/compare_report.hpp"
 
 #include "app/report/report_page.hpp"
-#include "app/report/version.hpp"
+#include "results/in_mm.hpp"
+#include "results/version.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

@@ -1,11 +1,14 @@
 #include "app/report/distil_report.hpp"
 
 #include "app/report/report_page.hpp"
-#include "app/report/version.hpp"
+#include "results/in_mm.hpp"
+#include "results/version.hpp"
 
 #include <fmt/format.h>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

@@ -1,12 +1,14 @@
 #pragma once
 
-#include "app/report/motion_record.hpp"
+#include "results/motion_record.hpp"
 #include "scenario/world.hpp"
 
 #include <string>
 #include <vector>
 
 namespace snare::app {
+
+using namespace results;
 
 /// The report on motions with wires, as HTML. version: of the command.
 [[nodiscard]] std::string motion_page(const scenario::Scenario& asked, const scenario::WireMotions& motions,

@@ -5,11 +5,6 @@
 
 namespace snare::app {
 
-Values in_mm(Values metres) {
-  for (double& v : metres) v *= 1e3;
-  return metres;
-}
-
 Curve make_curve(std::string name, Values x, Values y, CurveStyle style, int colour) {
   const std::size_t size = std::min(x.size(), y.size());
   x.resize(size);

@@ -42,7 +42,6 @@ struct Curve {
 
 using Values = std::vector<double>;
 
-[[nodiscard]] Values in_mm(Values metres);
 /// A curve of pairs; the shorter array ends it.
 [[nodiscard]] Curve make_curve(std::string name, Values x, Values y, CurveStyle style, int colour);
 

@@ -1,6 +1,7 @@
 #include "app/report/reproduce_plots.hpp"
 
 #include "app/report/report_words.hpp"
+#include "results/in_mm.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,8 @@
 #include <fmt/ranges.h>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include "app/report/reproduce_verdicts.hpp"
 
 #include "app/report/report_words.hpp"
-#include "app/report/trace_findings.hpp"
+#include "results/trace_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,8 @@
 #include <map>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

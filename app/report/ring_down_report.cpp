@@ -1,11 +1,13 @@
 #include "app/report/ring_down_report.hpp"
 
 #include "app/report/report_page.hpp"
-#include "app/report/version.hpp"
+#include "results/version.hpp"
 
 #include <fmt/format.h>
 
 namespace snare::app {
+
+using namespace results;
 
 using identification::DampingSplit;
 using identification::RingDownFile;

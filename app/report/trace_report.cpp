@@ -2,8 +2,9 @@
 
 #include "app/report/report_page.hpp"
 #include "app/report/report_words.hpp"
-#include "app/report/trace_findings.hpp"
 #include "app/report/trace_rounds.hpp"
+#include "results/in_mm.hpp"
+#include "results/trace_findings.hpp"
 
 #include <algorithm>
 #include <map>
@@ -16,6 +17,8 @@
 #include <fmt/ranges.h>
 
 namespace snare::app {
+
+using namespace results;
 
 namespace {
 

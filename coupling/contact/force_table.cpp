@@ -43,18 +43,8 @@ std::array<double, 4> bernstein(const double* v, double h) {
 
 }  // namespace
 
-ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
-                       double bending_stiffness, bool mirrored)
-    : axes_(std::move(axes)), span_(span), force_scale_(bending_stiffness / (span * span)), mirrored_(mirrored) {
-  const std::size_t nd = axes_[0].size();
-  const std::size_t ns = axes_[1].size();
-  const std::size_t ne = axes_[2].size();
-  assert(nd >= 2 && values.size() == nd * ns * ne && slopes.size() == values.size());
-  nodes_.assign(numbers_a_node * values.size(), 0.0);
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    nodes_[numbers_a_node * n + value] = values[n] / force_scale_;
-    nodes_[numbers_a_node * n + by_d] = slopes[n] * span_ / force_scale_;
-  }
+ForceTable::ForceTable(Axes axes, double span, double force_scale, bool mirrored)
+    : axes_(std::move(axes)), span_(span), force_scale_(force_scale), mirrored_(mirrored) {
   for (std::size_t a = 0; a < 3; ++a) {
     const std::vector<double>& knots = axes_[a];
     if (knots.size() < 2) continue;
@@ -67,6 +57,20 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
           knots.data(), knots.size(), lookup.low + static_cast<double>(i) / lookup.steps_per_unit)));
     }
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) lookup.inverse_widths.push_back(1.0 / (knots[i + 1] - knots[i]));
+  }
+}
+
+ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
+                       double bending_stiffness, bool mirrored)
+    : ForceTable(std::move(axes), span, bending_stiffness / (span * span), mirrored) {
+  const std::size_t nd = axes_[0].size();
+  const std::size_t ns = axes_[1].size();
+  const std::size_t ne = axes_[2].size();
+  assert(nd >= 2 && values.size() == nd * ns * ne && slopes.size() == values.size());
+  nodes_.assign(numbers_a_node * values.size(), 0.0);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    nodes_[numbers_a_node * n + value] = values[n] / force_scale_;
+    nodes_[numbers_a_node * n + by_d] = slopes[n] * span_ / force_scale_;
   }
   // Slopes of the C2 spline along the position, D_s of (value, d), then along the slack, D_e of all four.
   const bool level = mirrored_ && std::abs(axes_[1].back() - 0.5) < 1e-12;

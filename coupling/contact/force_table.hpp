@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace snare::coupling {
@@ -35,6 +36,14 @@ class ForceTable {
   /// nearer mount, and has no slope at mid-span.
   ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
              double bending_stiffness, bool mirrored);
+  /// The table that has these nodes (see `nodes`) and this `force_scale`, as a file holds it: the same to the last bit.
+  /// As many nodes as the axes have knots, every axis ascending, travel of two knots at least.
+  [[nodiscard]] static ForceTable from_nodes(Axes axes, std::vector<double> nodes, double span, double force_scale,
+                                             bool mirrored) {
+    ForceTable table(std::move(axes), span, force_scale, mirrored);
+    table.nodes_ = std::move(nodes);
+    return table;
+  }
 
   /// travel, position, slack [m]. Throws std::domain_error outside with Outside::refuse.
   [[nodiscard]] LawValue at(double travel, double position, double slack, Outside outside) const;
@@ -68,6 +77,8 @@ class ForceTable {
     std::array<std::size_t, 3> index{};
     std::array<std::array<double, 4>, 3> basis{};  // value and slope at the lower, then at the upper knot
   };
+  /// A table without nodes.
+  ForceTable(Axes axes, double span, double force_scale, bool mirrored);
   /// Where the numbers of the node (travel k, position i, slack j) begin.
   [[nodiscard]] std::size_t node(std::size_t k, std::size_t i, std::size_t j) const noexcept {
     return numbers_a_node * (k + axes_[0].size() * (i + axes_[1].size() * j));

@@ -86,6 +86,46 @@ TEST_F(Command, WrongUseIsStatusTwo) {
   EXPECT_EQ(run("push x.toml --threads -1").status, 2);
 }
 
+TEST_F(Command, UnknownVerbsAndOptionsAreNamedWithTheNearest) {
+  EXPECT_NE(run("pus x.toml").err.find("snare = pus, unknown verb; did you mean push?"), std::string::npos);
+  EXPECT_NE(run("jump").err.find("there are: reproduce, push, fit"), std::string::npos);
+  const Result option = run("push --thread 2 x.toml");
+  EXPECT_EQ(option.status, 2);
+  EXPECT_NE(option.err.find("snare push = --thread, unknown option; did you mean --threads?"), std::string::npos)
+      << option.err;
+  EXPECT_NE(run("arm sho x.toml").err.find("did you mean show?"), std::string::npos);
+  EXPECT_EQ(run("push x.toml --set=wire.diameter_mm=1.4 --out=here").status, 0) << "values may stand behind a sign";
+}
+
+TEST_F(Command, PushAndFitTellTheDistanceFromTheReadings) {
+  const std::string file = SNARE_SOURCE_DIR "/examples/push.toml";
+  const Result pushed = run("push " + file + " --out p");
+  EXPECT_NE(pushed.err.find("rms distance from the readings"), std::string::npos) << pushed.err;
+  EXPECT_EQ(run("push " + file + " --out p --json").status, 0);
+  const double rmse = parsed("out.txt")["series"][1]["misfit"]["rmse_N"];
+  ASSERT_EQ(run("trace " + file + " --out t").status, 0);
+  // By another way: that of the declared model of a trace.
+  EXPECT_NEAR(rmse, parsed("t/trace.json")["declared"]["series_rmse_N"]["middle"].get<double>(), 1e-9);
+  ASSERT_EQ(run("fit " + file + " --out f").status, 0);
+  for (const char* page : {"p/report.html", "f/report.html"}) {
+    EXPECT_NE(contents(page).find("What is left: middle"), std::string::npos) << page;
+  }
+}
+
+TEST_F(Command, DecimalLengthsComeBackAsTheyWereWritten) {
+  ASSERT_EQ(run("push " SNARE_SOURCE_DIR "/examples/push.toml --out p").status, 0);
+  // The readings are at 0.25, 0.4, ... 3.1 mm.
+  EXPECT_NE(contents("p/curves.csv").find("middle,3.1,"), std::string::npos);
+  EXPECT_EQ(contents("p/curves.csv").find("middle,3.09"), std::string::npos);
+}
+
+TEST_F(Command, ArmShowDescribesARobotDescription) {
+  const Result shown = run("arm show " SNARE_SOURCE_DIR "/data/arms/jemrms_like.urdf");
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  EXPECT_NE(shown.out.find("revolute"), std::string::npos) << shown.out;
+  EXPECT_EQ(run("arm show " SNARE_SOURCE_DIR "/data/arms/jemrms_like.urdf --pose bent").status, 2);
+}
+
 TEST_F(Command, WrongInputNamesFileLineKeyAndWritesNothing) {
   std::string text = experiment_text;
   text.replace(text.find("diameter_mm = 1.5"), 17, "diameter_mm = -15");

@@ -1,4 +1,4 @@
-#include "app/trace_json.hpp"
+#include "results/trace_json.hpp"
 
 #include "tests/app/report/trace_fixture.hpp"
 
@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 
 namespace snare::app {
+
+using namespace results;
+
 namespace {
 
 using nlohmann::json;

@@ -30,11 +30,12 @@ USES = {
     "identification/tracing": ["identification/effects"],
     "identification/ring_down": ["identification/fitting"],
     "validation": ["reduction", "identification/tracing", "identification/ring_down"],
-    "app/report": ["validation", "study"],
+    "results": ["validation"],
+    "app/report": ["results", "study"],
     "app": ["app/report"],
-    "benchmarks": ["validation"],
-    "examples": ["validation"],
-    "python": ["validation"],
+    "benchmarks": ["results"],
+    "examples": ["results"],
+    "python": ["results"],
 }
 # Folders that hold rooms and no files of their own.
 FOLDERS = {path.split("/")[0] for path in USES} | {"tests"}  # what an include of ours may begin with

@@ -1,9 +1,0 @@
-#include "app/report/version.hpp"
-
-namespace snare::app {
-
-std::string version() {
-  return SNARE_VERSION;
-}
-
-}  // namespace snare::app

@@ -1,0 +1,159 @@
+"""The verbs."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any, Callable, List, Mapping, Optional, Tuple, Union
+
+from snare import _core
+from snare._results import Result, table
+
+File = Union[str, os.PathLike]
+Progress = Union[None, bool, Callable[[str], Any]]
+
+
+class SolverError(RuntimeError):
+    """The solver could not go on to the end. ``result`` is what was reached, or None."""
+
+    def __init__(self, message: str, result: Optional[Result] = None) -> None:
+        super().__init__(message)
+        self.result = result
+
+
+def _literal(value: Any) -> str:
+    """A Python value as a TOML literal."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(key)} = {_literal(one)}" for key, one in value.items()) + "}"
+    if hasattr(value, "tolist"):  # NumPy's numbers and arrays
+        return _literal(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_literal(one) for one in value) + "]"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    raise TypeError(f"a value of `set` is {value!r}, must be a number, text, bool, list or dictionary")
+
+
+def _pairs(given: Optional[Mapping[str, Any]]) -> List[Tuple[str, str]]:
+    return [(key, _literal(value)) for key, value in (given or {}).items()]
+
+
+def _print(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _watcher(progress: Progress) -> Optional[Callable[[str], Any]]:
+    if progress is True:
+        return _print
+    return progress or None
+
+
+def _with_curves(answer: Tuple[Optional[Result], Any]) -> Result:
+    """The document with its curves; raises where there is none."""
+    document, curves = answer
+    if document is None:
+        raise SolverError(curves)
+    document["curves"] = table(curves)
+    return document
+
+
+def push(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+         progress: Progress = None) -> Result:
+    """Predict the force-displacement curves of the declared model.
+
+    experiment: experiment file (docs/experiment_file.md). set: keys of the file to override, as ``--set`` does:
+    ``{"wire.length_mm": 181.0, "series[s40].points": 50}``, in the units of the file. threads: 0, one a processor; the result
+    does not depend on it. progress: True prints to standard error, a function is called with a line of text.
+
+    Returns ``series`` (a summary of each), ``warnings``, and ``curves``: by series, columns of one length: ``displacement_m``,
+    ``force_N``, ``tension_left_N``, ``contact_arc_m``, ... (docs/curves_csv.md), ``measured_N`` and ``residual_N`` where there are
+    readings.
+    Raises InputError for a wrong file, SolverError where a curve did not reach its end; its ``result`` has what was reached.
+    """
+    result = _with_curves(_core.push(experiment, _pairs(set), threads, _watcher(progress)))
+    stopped = [f"series {one['series']}: {one['stopped']}" for one in result["series"] if one["stopped"]]
+    if stopped:
+        raise SolverError("\n".join(stopped), result)
+    return result
+
+
+def fit(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+        progress: Progress = None) -> Result:
+    """Calibrate the free numbers of the declared model. Arguments as of ``push``.
+
+    Returns fit.json (docs/trace_json.md) with ``curves``, which have ``measured_N``, ``base_N`` and ``final_N``. The numbers are
+    in ``fit["parameters"]``, by key: value, stderr, lower95, upper95 and unit.
+    Raises InputError, and SolverError where the model cannot be fitted.
+    """
+    return _with_curves(_core.fit(experiment, _pairs(set), threads, _watcher(progress)))
+
+
+def trace(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+          progress: Progress = None) -> Result:
+    """Find what the declared model lacks. Arguments as of ``push``.
+
+    Returns trace.json (docs/trace_json.md) with ``curves`` as of ``fit``: ``verdict``, ``selected``, ``candidates``, ``classes``,
+    ``base`` and ``final`` (``rmse_N``, ``parameters``), ``next_experiment``, ...
+    Raises InputError, and SolverError where the base model cannot be fitted.
+    """
+    return _with_curves(_core.trace(experiment, _pairs(set), threads, _watcher(progress)))
+
+
+def distil(wire: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+           progress: Progress = None) -> Result:
+    """Reduce a wire to a table of its force and to simple laws, with their errors.
+
+    wire: wire file (docs/wire_file.md); the other arguments as of ``push``.
+    Returns law.json (docs/law_json.md) with ``laws``, a list of Law, one a case.
+    Raises InputError, and SolverError where a curve of the full wire could not be computed.
+    """
+    document, laws = _core.distil(wire, _pairs(set), threads, _watcher(progress))
+    if document is None:
+        raise SolverError(laws)
+    document["laws"] = laws
+    return document
+
+
+def simulate(scenario: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+             progress: Progress = None) -> Result:
+    """Run a scenario in motion.
+
+    scenario: scenario file (docs/scenario_file.md); the other arguments as of ``push``.
+    Returns summary.json (docs/summary_json.md) with ``history``: columns of one length, ``time_s`` first (by model where the
+    scenario runs several), and ``telemetry`` where there are sensors: NaN at times at which one does not read.
+    Raises InputError, and SolverError where a run did not reach its end; its ``result`` has what was reached.
+    """
+    document, history, telemetry = _core.simulate(scenario, _pairs(set), threads, _watcher(progress))
+    document["history"] = table(history)
+    if telemetry:
+        document["telemetry"] = table(telemetry)
+    stopped = _unfinished(document)
+    if stopped:
+        raise SolverError("\n".join(stopped), document)
+    return document
+
+
+def _unfinished(value: Any) -> List[str]:
+    """Messages of the runs of a summary that have not finished."""
+    if isinstance(value, dict):
+        if value.get("finished") is False:
+            return [str(value.get("message"))]
+        return [message for one in value.values() for message in _unfinished(one)]
+    if isinstance(value, list):
+        return [message for one in value for message in _unfinished(one)]
+    return []
+
+
+def compare(case: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
+            progress: Progress = None) -> Result:
+    """Run the same case with every model of the wire: accuracy and cost side by side.
+
+    case: experiment, wire or scenario file; the other arguments as of ``push``.
+    Returns compare.json (docs/law_json.md). Raises InputError; what a model could not do stands in the result.
+    """
+    return _core.compare(case, _pairs(set), threads, _watcher(progress))

@@ -1,0 +1,92 @@
+"""The usual pictures in a line each, with matplotlib, which nothing else needs.
+
+Every function draws into ``axes``, or into new ones, and returns the axes::
+
+    import snare, snare.plot
+    snare.plot.curves(snare.push("my_push.toml")).figure.savefig("push.png")
+"""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from snare._core import Law
+from snare._results import Result
+
+
+def _axes(axes: Optional[Any]) -> Any:
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    return pyplot.subplots(layout="constrained")[1]
+
+
+def curves(result: Result, axes: Optional[Any] = None) -> Any:
+    """Force [N] against travel [mm] of every series of ``push``, ``fit`` or ``trace``: the last model as a line, the declared or
+    base model dashed where there is one, readings as points."""
+    axes = _axes(axes)
+    for k, (name, columns) in enumerate(result["curves"].items()):
+        travel, colour = 1e3 * columns["displacement_m"], f"C{k}"
+        final = columns.get("final_N", columns["force_N"])
+        axes.plot(travel, final, color=colour, label=name)
+        if "base_N" in columns:
+            axes.plot(travel, columns["base_N"], "--", color=colour)
+        if "measured_N" in columns:
+            axes.plot(travel, columns["measured_N"], ".", color=colour)
+    axes.set_xlabel("travel [mm]")
+    axes.set_ylabel("force [N]")
+    axes.legend()
+    return axes
+
+
+def residuals(result: Result, axes: Optional[Any] = None) -> Any:
+    """Measured less computed force [N] against travel [mm] of every series with readings."""
+    axes = _axes(axes)
+    for name, columns in result["curves"].items():
+        if "measured_N" in columns:
+            final = columns.get("final_N", columns["force_N"])
+            axes.plot(1e3 * columns["displacement_m"], columns["measured_N"] - final, ".-", label=name)
+    axes.axhline(0.0, color="0.7", zorder=0)
+    axes.set_xlabel("travel [mm]")
+    axes.set_ylabel("measured less computed [N]")
+    axes.legend()
+    return axes
+
+
+def law(one: Law, positions: Optional[Sequence[float]] = None, axes: Optional[Any] = None) -> Any:
+    """The table's force [N] against travel [mm] at some positions [m], at the nominal slack: with the band of its stated error, and
+    the simple laws dashed. positions: those of the simple laws, where None."""
+    axes = _axes(axes)
+    if positions is None:
+        positions = sorted({simple.position for simple in one.simple})
+    travel = np.linspace(*one.travel, 201)
+    for k, position in enumerate(positions):
+        force = one.force(travel, position)
+        axes.plot(1e3 * travel, force, color=f"C{k}", label=f"s = {1e3 * position:.4g} mm")
+        axes.fill_between(1e3 * travel, force - one.bound, force + one.bound, color=f"C{k}", alpha=0.2, linewidth=0)
+        for simple in one.simple:
+            if simple.position == position:
+                inside = travel[(travel >= simple.travel[0]) & (travel <= simple.travel[1])]
+                axes.plot(1e3 * inside, simple.force(inside), "--", color=f"C{k}", linewidth=0.7)
+    axes.set_xlabel("travel [mm]")
+    axes.set_ylabel("force [N]")
+    axes.legend()
+    return axes
+
+
+def history(result: Result, *columns: str, axes: Optional[Any] = None) -> Any:
+    """Columns of a history [SI units] against time [s]; all forces of contact where none are named. Of several models each is a
+    line."""
+    axes = _axes(axes)
+    runs = result["history"]
+    if "time_s" in runs:
+        runs = {"": runs}
+    for model, run in runs.items():
+        for column in columns or [name for name in run if name == "force_N" or name.endswith("normal_N")]:
+            axes.plot(run["time_s"], run[column], label=f"{model} {column}".strip())
+    axes.set_xlabel("time [s]")
+    axes.legend()
+    return axes

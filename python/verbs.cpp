@@ -1,0 +1,198 @@
+#include "python/verbs.hpp"
+
+#include "base/files.hpp"
+#include "base/toml_tree.hpp"
+#include "identification/effects/catalogue.hpp"
+#include "python/convert.hpp"
+#include "python/law.hpp"
+#include "python/work.hpp"
+#include "reduction/distil.hpp"
+#include "results/curves.hpp"
+#include "results/law_json.hpp"
+#include "results/motion_comparison.hpp"
+#include "results/motion_history.hpp"
+#include "results/motion_summary.hpp"
+#include "results/push_result.hpp"
+#include "results/simulation.hpp"
+#include "results/static_comparison.hpp"
+#include "results/trace_json.hpp"
+#include "results/warnings.hpp"
+#include "scenario/scenario.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace snare::python {
+
+namespace py = pybind11;
+using nlohmann::json;
+
+namespace {
+
+using Path = std::filesystem::path;
+/// Keys and TOML values.
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<base::Override> overrides_of(const Pairs& pairs) {
+  std::vector<base::Override> overrides;
+  for (const auto& [key, value] : pairs) overrides.push_back({key, value});
+  return overrides;
+}
+
+std::shared_ptr<const identification::Experiment> experiment_of(const Path& file, const Pairs& set) {
+  return std::make_shared<const identification::Experiment>(
+      identification::read_experiment(file, identification::parameters(), overrides_of(set)));
+}
+
+py::tuple push(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const auto experiment = experiment_of(file, set);
+  const auto pushed =
+      made([experiment](const results::Watch& watch) { return results::push(*experiment, watch); }, threads, progress);
+  ColumnSink curves;
+  results::give_curves(curves, experiment->series, pushed->predictions);
+  return py::make_tuple(to_python(pushed->document), curves.take());
+}
+
+/// The document and the curves of a trace; None and why for one without a base fit.
+py::tuple traced(const Path& file, const Pairs& set, int threads, const py::object& progress,
+                 const identification::TraceOptions& options,
+                 json (*document)(const identification::Experiment&, const identification::Trace&)) {
+  struct Traced {
+    identification::Trace trace;
+    json document;
+  };
+  const auto experiment = experiment_of(file, set);
+  const auto result = made(
+      [experiment, options, document](const results::Watch& watch) {
+        identification::TraceOptions watched = options;
+        watched.progress = [&watch](const std::string& stage) {
+          watch.say(stage);
+          return !watch.stopped();
+        };
+        Traced one{identification::trace(*experiment, watched), {}};
+        if (one.trace.report.usable()) one.document = document(*experiment, one.trace);
+        return one;
+      },
+      threads, progress);
+  const identification::Trace& trace = result->trace;
+  if (!trace.report.usable()) return py::make_tuple(py::none(), trace.report.message);
+  ColumnSink curves;
+  results::give_curves(curves, trace.series, trace.final_predictions, results::curve_columns(trace));
+  return py::make_tuple(to_python(result->document), curves.take());
+}
+
+py::tuple trace(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  return traced(file, set, threads, progress, {}, results::trace_document);
+}
+
+py::tuple fit(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  return traced(file, set, threads, progress, results::fitting_options(), results::fit_json);
+}
+
+py::tuple distil(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const auto wire =
+      std::make_shared<const reduction::WireFile>(reduction::read_wire_file(file, overrides_of(set)));
+  const auto distilled = made(
+      [wire](const results::Watch& watch) {
+        return reduction::distil(*wire, {}, [&watch](std::size_t finished, std::size_t wanted) {
+          watch.say(fmt::format("curve {} of {}", finished, wanted));
+          return !watch.stopped();
+        });
+      },
+      threads, progress);
+  if (!distilled->report.usable()) return py::make_tuple(py::none(), distilled->report.message);
+  json document = results::law_json(*wire, *distilled);
+  document["warnings"] = results::wire_warnings(*wire);
+  return py::make_tuple(to_python(document), laws_of(document));
+}
+
+py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const auto asked =
+      std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
+  ColumnSink history, telemetry;
+  json document;
+  if (const auto* motions = std::get_if<scenario::WireMotions>(&asked->content)) {
+    const auto records = made(
+        [asked, motions](const results::Watch& watch) { return results::simulate_all(motions->runs, watch); }, threads,
+        progress);
+    const std::vector<results::FinishedMotion> finished = results::finished_motions(*motions, *records);
+    document = results::motion_summary(*asked, *motions, finished);
+    document["interrupted"] = results::left_undone(motions->runs, *records);
+    document["warnings"] = results::motion_warnings(finished);
+    results::give_history(history, *motions, finished);
+    if (!motions->sensors.empty()) results::give_telemetry(telemetry, *motions, finished.front().samples);
+  } else {
+    const auto& motion = std::get<scenario::ArmMotion>(asked->content);
+    const auto record = made(
+        [asked, &motion](const results::Watch& watch) { return results::simulate_arm(motion, watch); }, threads,
+        progress);
+    document = results::arm_summary(*asked, motion, *record);
+    document["interrupted"] = record->history.report.termination == numerics::Termination::interrupted;
+    results::give_history(history, motion.scenario.arm, record->history);
+  }
+  return py::make_tuple(to_python(document), history.take(), telemetry.take());
+}
+
+std::string schema_of(const Path& file) {
+  const base::TomlNode root = base::parse_toml(file.string(), base::read_text(file));
+  const base::TomlNode* schema = root.find("schema");
+  return schema != nullptr ? schema->text : "";
+}
+
+json compared_pushes(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const auto comparison = std::make_shared<const results::StaticComparison>(
+      results::read_static_comparison(file, overrides_of(set)));
+  const auto compared = made(
+      [comparison](const results::Watch& watch) {
+        std::vector<reduction::CaseComparison> done;
+        for (const reduction::StaticCase& one : comparison->cases) {
+          if (watch.stopped()) break;
+          watch.say("case " + one.name);
+          done.push_back(reduction::compare_static(one, comparison->settings));
+        }
+        return done;
+      },
+      threads, progress);
+  return results::comparison_json(*comparison, *compared);
+}
+
+json compared_motions(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(set));
+  const auto comparison = std::make_shared<const results::MotionComparison>(
+      results::with_every_model(file, overrides_of(set), results::composed_motions(file, asked)));
+  const auto records = made(
+      [comparison](const results::Watch& watch) { return results::simulate_all(comparison->motions.runs, watch); },
+      threads, progress);
+  return results::comparison_json(asked, *comparison, *records);
+}
+
+py::object compare(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  const bool motion = schema_of(file).starts_with("snare-scenario/");
+  return to_python(motion ? compared_motions(file, set, threads, progress)
+                          : compared_pushes(file, set, threads, progress));
+}
+
+}  // namespace
+
+void add_verbs(py::module_& module) {
+  const auto add = [&module](const char* name, auto function, const char* what) {
+    module.def(name, function, what, py::arg("file"), py::arg("set"), py::arg("threads"), py::arg("progress"));
+  };
+  add("push", push, "Document of `snare push` and the columns of curves.csv.");
+  add("fit", fit, "fit.json and the columns of curves.csv; None and a message where the base model cannot be fitted.");
+  add("trace", trace, "trace.json and the columns of curves.csv; None and a message as of fit.");
+  add("distil", distil, "law.json and its laws; None and a message where a curve could not be computed.");
+  add("simulate", simulate, "summary.json and the columns of history.csv and telemetry.csv.");
+  add("compare", compare, "compare.json.");
+}
+
+}  // namespace snare::python

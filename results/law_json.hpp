@@ -1,0 +1,12 @@
+#pragma once
+
+#include "reduction/distil.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace snare::results {
+
+/// law.json: ranges, table, simple laws with their errors, the map of the closed forms. Fields: docs/law_json.md.
+[[nodiscard]] nlohmann::json law_json(const reduction::WireFile& file, const reduction::Distillation& distillation);
+
+}  // namespace snare::results

@@ -1,0 +1,313 @@
+#include "results/motion_summary.hpp"
+
+#include "results/version.hpp"
+#include "base/index.hpp"
+#include "base/units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace snare::results {
+
+using nlohmann::json;
+
+namespace {
+
+using base::at;
+using base::degree;
+using coupling::MotionEvent;
+using coupling::MotionResult;
+using coupling::MotionSample;
+using multibody::RigidBodyState;
+
+json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json time_json(const std::optional<double>& time) {
+  return time ? json(*time) : json();
+}
+
+json ending(const numerics::IdaReport& report, const numerics::IdaStatistics& n) {
+  return {{"finished", report.usable()},
+          {"message", report.usable() ? json() : json(report.message)},
+          {"steps", n.steps},
+          {"residuals", n.residuals},
+          {"jacobians", n.jacobians},
+          {"factorizations", n.factorizations},
+          {"restarts", n.restarts}};
+}
+
+/// Ending, energies, errors of the balances, drifts and cost of a motion.
+json result_json(const MotionResult& r) {
+  json object = ending(r.report, r.statistics);
+  object.update({{"time_s", r.report.time},
+                 {"momentum_error_Ns", vector_json(r.momentum_error)},
+                 {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
+                 {"largest_penetration_m", r.largest_penetration},
+                 {"largest_drift", r.largest_drift},
+                 {"analyses", r.statistics.analyses},
+                 {"wall_s", r.wall_seconds},
+                 {"real_time_factor", real_time_factor(r)}});
+  for (const auto& [name, energy] : energies) object["energy_J"][name] = r.energy.*energy;
+  return object;
+}
+
+/// What wires with a declared strength had to bear at most; none where none has.
+json strength_json(const FinishedMotion& run) {
+  json list = json::array();
+  const std::vector<coupling::WireFacts> wires = run.asked.motion.wire_facts();
+  for (std::size_t k = 0; k < run.result.strength.size(); ++k) {
+    const coupling::WireFacts& wire = wires[k];
+    const coupling::StrengthUse& use = run.result.strength[k];
+    if (!std::isfinite(wire.strength.breaking_tension)) continue;
+    list.push_back({{"wire", wire.name},
+                    {"strength_N", wire.strength.breaking_tension},
+                    {"largest_share", use.share},
+                    {"tension_N", use.tension},
+                    {"bending_N", use.bending},
+                    {"arc_mm", 1e3 * use.arc},
+                    {"time_s", use.time}});
+  }
+  return list.empty() ? json::object() : json{{"strength", list}};
+}
+
+/// What quasi-static wires leave out: energies beside those above, forces beside those of the contacts.
+json left_out_json(const FinishedMotion& run) {
+  json list = json::array();
+  for (std::size_t k = 0; k < run.result.left_out.size(); ++k) {
+    const coupling::MotionWire& wire = run.asked.motion.wires[k];
+    if (!wire.rod.quasi_static) continue;
+    const coupling::LeftOutInertia& left_out = run.result.left_out[k];
+    list.push_back(
+        {{"wire", wire.name}, {"left_out_kinetic_J", left_out.kinetic}, {"left_out_force_N", left_out.force}});
+  }
+  return list.empty() ? json::object() : json{{"quasi_static", list}};
+}
+
+/// Velocities of a body before and after.
+json velocities_json(const RigidBodyState& before, const RigidBodyState& after) {
+  return {{"velocity_before_m_s", vector_json(before.velocity)},
+          {"velocity_after_m_s", vector_json(after.velocity)},
+          {"spin_before_rad_s", vector_json(before.spin)},
+          {"spin_after_rad_s", vector_json(after.spin)}};
+}
+
+/// What a contact has seen, whatever the kind of scenario.
+json contact_json(const FinishedMotion& run, std::size_t contact) {
+  return {{"peak_force_N", run.result.peak_force[contact]},
+          {"impulse_Ns", vector_json(run.result.impulse[contact])},
+          {"touches", touches_of(run.result, contact).count},
+          {"in_contact_at_the_end", run.samples.back().contacts[contact].closed}};
+}
+
+json contact_times_json(const FinishedMotion& run, std::size_t contact) {
+  const Touches touches = touches_of(run.result, contact);
+  return {{"first_touch_s", time_json(touches.first)}, {"last_lift_off_s", time_json(touches.last_lift_off)}};
+}
+
+/// Largest travel of the probe from where it would touch [m].
+double deepest(const FinishedMotion& run, const scenario::Probe& probe) {
+  const auto y = [&probe](const MotionSample& s) {
+    const RigidBodyState& b = s.bodies.front();
+    return (b.position + b.orientation * probe.place).y();
+  };
+  const double touch = y(run.samples.front()) + probe.side * probe.distance;
+  double deepest = 0.0;
+  for (const MotionSample& s : run.samples) deepest = std::max(deepest, probe.side * (y(s) - touch));
+  return deepest;
+}
+
+json largest_deflections(const FinishedMotion& run) {
+  const multibody::ElasticArm& arm = run.asked.motion.arms.front().arm;
+  json deflections = json::object();
+  for (int j = 0; j < arm.motors(); ++j) {
+    double largest = 0.0;
+    for (const MotionSample& s : run.samples)
+      largest = std::max(largest, std::abs(joint_deflection(run.asked.motion, s, j)));
+    deflections[arm.joints[at(j)].name] = largest / degree;
+  }
+  return deflections;
+}
+
+/// One body that meets one wire, with one of the wire's models.
+json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
+  json summary{{"model", run.asked.name}, {"events", json::array()}};
+  for (const MotionEvent& e : run.result.events)
+    summary["events"].push_back({{"time_s", e.time}, {"what", coupling::to_string(e.kind)}});
+  summary.update(contact_json(run, 0));
+  summary.update(velocities_json(run.samples.front().bodies.front(), run.samples.back().bodies.front()));
+  summary.update(result_json(run.result));
+  summary.update(strength_json(run));
+  summary.update(left_out_json(run));
+  if (!run.asked.motion.arms.empty()) {
+    summary["largest_deflection_deg"] = largest_deflections(run);
+    return summary;
+  }
+  summary["kind"] = run.asked.model;
+  summary["deepest_mm"] = 1e3 * deepest(run, probe);
+  summary.update(contact_times_json(run, 0));
+  return summary;
+}
+
+/// contact: index as results count; with what is said of it beside.
+json listed_contact_json(const FinishedMotion& run, std::size_t contact, const json& parts) {
+  json object = contact_json(run, contact);
+  object.update(contact_times_json(run, contact));
+  object["contact"] = run.asked.motion.contact_names()[contact];
+  object["most_points"] = most_points(run, contact);
+  object.update(parts);
+  return object;
+}
+
+json listed_contacts_json(const FinishedMotion& run) {
+  const coupling::Motion& motion = run.asked.motion;
+  json list = json::array();
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    const coupling::MotionContact& c = motion.contacts[k];
+    list.push_back(listed_contact_json(
+        run, k, {{"body", motion.bodies[at(c.body)].name}, {"wire", motion.wires[at(c.wire)].name}}));
+  }
+  const std::size_t first = motion.contacts.size() + motion.springs.size();
+  for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
+    const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
+    list.push_back(listed_contact_json(
+        run, first + k, {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
+  }
+  const std::size_t laws = first + motion.wire_pairs.size(), bodies = laws + motion.law_wires.size();
+  for (std::size_t k = 0; k < motion.law_wires.size(); ++k)
+    list.push_back(listed_contact_json(run, laws + k, {{"wire", motion.law_wires[k].name}}));
+  for (std::size_t k = 0; k < motion.body_contacts.size(); ++k)
+    list.push_back(listed_contact_json(run, bodies + k, json::object()));
+  return list;
+}
+
+/// When a wire was touched first by any shape or other wire.
+std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
+  const coupling::Motion& motion = run.asked.motion;
+  std::optional<double> first;
+  const auto consider = [&](std::size_t contact) {
+    const Touches touches = touches_of(run.result, contact);
+    if (touches.first && (!first || *touches.first < *first)) first = touches.first;
+  };
+  for (std::size_t k = 0; k < motion.contacts.size(); ++k) {
+    if (at(motion.contacts[k].wire) == wire) consider(k);
+  }
+  for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
+    const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
+    if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.springs.size() + k);
+  }
+  if (wire >= motion.wires.size())
+    consider(motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size() + wire - motion.wires.size());
+  return first;
+}
+
+json finite_json(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+/// Lists of bodies and contacts.
+json lists_json(const FinishedMotion& run) {
+  const coupling::Motion& motion = run.asked.motion;
+  json summary = result_json(run.result);
+  summary.update(strength_json(run));
+  summary.update(left_out_json(run));
+  summary.update({{"bodies", json::array()}, {"contacts", listed_contacts_json(run)}, {"events", json::array()}});
+  for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
+    const RigidBodyState& after = run.samples.back().bodies[k];
+    json body = velocities_json(run.samples.front().bodies[k], after);
+    body["body"] = motion.bodies[k].name;
+    body["position_after_mm"] = vector_json(1e3 * after.position);
+    summary["bodies"].push_back(body);
+  }
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (const MotionEvent& e : run.result.events) {
+    json event{{"time_s", e.time},
+               {"what", coupling::to_string(e.kind)},
+               {"contact", contacts[at(e.contact)]},
+               {"point", e.point + 1},
+               {"arc_mm", 1e3 * e.arc}};
+    if (e.kind == MotionEvent::Kind::touch) event["approach_m_s"] = e.approach_speed;
+    summary["events"].push_back(event);
+  }
+  return summary;
+}
+
+json head(const scenario::Scenario& asked) {
+  return {{"schema", "snare-summary/1"},
+          {"kind", asked.kind},
+          {"title", asked.title},
+          {"source", asked.source},
+          {"version", version()}};
+}
+
+}  // namespace
+
+json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& run) {
+  const coupling::Motion& motion = run.asked.motion;
+  json outcome{{"caught", nullptr}, {"events", json::array()}};
+  for (const char* key : {"first_touch_s", "tight_s", "peak_tension_N", "strength_N", "peak_force_N", "impulse_Ns"})
+    outcome[key] = json::object();
+  const std::vector<coupling::WireFacts> wires = motion.wire_facts();
+  for (std::size_t w = 0; w < wires.size(); ++w) {
+    const coupling::WireFacts& wire = wires[w];
+    outcome["first_touch_s"][wire.name] = time_json(first_touch(run, w));
+    outcome["strength_N"][wire.name] = finite_json(wire.strength.breaking_tension);
+    const bool watched = w < run.result.wires.size();
+    outcome["tight_s"][wire.name] = watched ? finite_json(run.result.wires[w].tight_at) : json();
+    outcome["peak_tension_N"][wire.name] = watched ? json(run.result.wires[w].peak_tension) : json();
+  }
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    outcome["peak_force_N"][contacts[k]] = run.result.peak_force[k];
+    outcome["impulse_Ns"][contacts[k]] = vector_json(run.result.impulse[k]);
+  }
+  for (const coupling::PhaseBeginning& p : run.result.phases)
+    outcome["events"].push_back({{"time_s", p.time}, {"what", "phase"}, {"phase", motion.phases[at(p.phase)].name}});
+  if (!motions.capture) return outcome;
+  const scenario::CaptureOutcome capture = scenario::outcome_of(*motions.capture, motion, run.samples);
+  outcome["caught"] = capture.caught;
+  outcome["enclosed"] = capture.enclosed;
+  outcome["caught_since_s"] = time_json(capture.caught_since);
+  outcome["shaft_speed_m_s"] = capture.speed;
+  outcome["shaft_place_mm"] = vector_json(1e3 * capture.place);
+  return outcome;
+}
+
+json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions& motions,
+                    const std::vector<FinishedMotion>& finished) {
+  json summary = head(asked);
+  summary["duration_s"] = motions.duration;
+  if (!motions.probe) {
+    summary.update(lists_json(finished.front()));
+    if (motions.composed) summary["outcome"] = outcome_json(motions, finished.front());
+    return summary;
+  }
+  summary["models"] = json::array();
+  for (const FinishedMotion& run : finished) summary["models"].push_back(model_json(run, *motions.probe));
+  return summary;
+}
+
+json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const ArmRecord& record) {
+  const multibody::ArmHistory& history = record.history;
+  json summary = head(asked);
+  summary.update(ending(history.report, history.statistics));
+  summary.update({{"time_s", record.time()},
+                  {"energy_error", history.energy_error},
+                  {"wall_s", record.wall_seconds},
+                  {"real_time_factor", record.real_time_factor()},
+                  {"events", json::array()},
+                  {"swings", json::array()}});
+  for (const multibody::ArmEvent& e : history.events) {
+    const json joint = e.joint < 0 ? json() : json(motion.scenario.arm.joints[at(e.joint)].name);
+    summary["events"].push_back({{"time_s", e.time}, {"joint", joint}, {"what", e.what}});
+  }
+  for (const scenario::Swing& s : record.swings) {
+    summary["swings"].push_back(
+        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", s.peak / degree}, {"frequency_Hz", s.frequency()}});
+  }
+  return summary;
+}
+
+}  // namespace snare::results

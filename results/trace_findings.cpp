@@ -1,0 +1,194 @@
+#include "results/trace_findings.hpp"
+
+#include "identification/effects/catalogue.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace snare::results {
+
+using identification::Prediction;
+using identification::Series;
+using identification::Trace;
+
+namespace {
+
+/// One selected effect, or the alternatives that these readings leave.
+std::string explanation(const Trace& t, std::size_t k) {
+  const std::vector<std::string>& members = t.selected_classes[k];
+  const identification::Effect& e = *identification::find_effect(t.selected[k]);
+  if (members.size() == 1) return fmt::format("{}: {}. ", e.name, e.meaning);
+  std::vector<std::string> inside;
+  for (const std::string& m : members) {
+    if (!m.starts_with("outside:")) inside.push_back(m);
+  }
+  const bool outside = inside.size() < members.size();
+  std::string text = inside.size() == 1
+                         ? fmt::format("{} ({}), ", e.name, e.meaning)
+                         : fmt::format("One of {}, carried on as {}, {}", fmt::join(inside, ", "), e.name,
+                                       outside ? "" : "which these readings cannot tell apart. ");
+  if (!outside) return text;
+  const identification::ChannelFunction& f = t.alternatives.front();
+  return text + fmt::format(
+                    "or a cause outside the catalogue: something in the {} that {}, as a function of {}. "
+                    "These readings cannot tell them apart. ",
+                    to_string(f.channel), f.effect, f.argument);
+}
+
+/// Where an unexplained residual comes from.
+std::string nearest_channel(const identification::ChannelFunction& f) {
+  if (f.accepted) {
+    return fmt::format(
+        " The residual comes through the {}: a function of {} that {} carries over from series to series "
+        "({:.0f} % of the excess); it is {}.",
+        to_string(f.channel), f.argument, f.effect, 100.0 * f.carried_over, f.shape);
+  }
+  return fmt::format(
+      " No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} %).",
+      to_string(f.channel), 100.0 * std::max(0.0, f.carried_over));
+}
+
+/// 0.31 %, of the largest force.
+std::string share_of_peak(const Trace& t, double force) {
+  return t.peak_force > 0.0 ? fmt::format("{:.2g} % of the largest force", 100.0 * force / t.peak_force)
+                            : std::string("of no force");
+}
+
+/// What more to measure where the readings bear no more.
+std::string take_more(const Trace& t) {
+  const auto fitted = t.base.numbers.size();
+  if (t.from_laws) {
+    return fmt::format(" {} published numbers cannot tell more: {} are fitted, and one more would leave too few.",
+                       t.rows, fitted);
+  }
+  const double enough = static_cast<double>(fitted + 1) + identification::fewest_dof(fitted + 1);
+  return fmt::format(
+      " These {} readings cannot tell more: one number beside the {} fitted ones would leave too few. Take at least "
+      "{:g}, better twenty a series, on loading and back, at two positions.",
+      t.rows, fitted, enough);
+}
+
+std::string nothing_missing(const Trace& t) {
+  std::string text;
+  if (t.from_laws) {
+    text = fmt::format(
+        "Nothing missing: the base model agrees with the published fits (chi2 {:.3g} at {} numbers, {} "
+        "of them fitted; p = {:.2g}); no effect is missing.",
+        t.base.chi2_dof * static_cast<double>(t.rows - t.base.numbers.size()), t.rows, t.base.numbers.size(),
+        t.base_tests.lack_of_fit);
+  } else if (t.base_tests.like_noise() || t.base.rmse <= t.base_tests.noise) {
+    text = fmt::format(
+        "Nothing missing: the base model explains the readings to the noise (rmse {:.3g} N); no effect "
+        "is missing. Hidden in the noise could be up to {:.2g} N rms, {}.",
+        t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper));
+  } else {
+    text = fmt::format(
+        "Nothing missing worth a name: the base model leaves {:.3g} N rms, at most {:.2g} N of it not "
+        "noise ({}), within the tolerance of {:.3g} N; no effect is missing beyond that.",
+        t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), t.tolerance);
+  }
+  return t.few_readings ? text + take_more(t) : text;
+}
+
+/// The selected effects, and by how much the error falls.
+std::string effects_of(const Trace& t) {
+  std::string text;
+  for (std::size_t k = 0; k < t.selected.size(); ++k) text += explanation(t, k);
+  return text + fmt::format("The error falls from {:.3g} N to {:.3g} N.", t.base.rmse, t.final.rmse);
+}
+
+/// Why an answer is not the only one.
+std::string reservation(const Trace& t) {
+  if (t.decided || !t.alternatives.empty()) return "";
+  const bool alone = std::ranges::all_of(t.selected_classes, [](const auto& c) { return c.size() == 1; });
+  if (t.one_condition) {
+    return " All readings are of one position and one slack: a cause outside the catalogue that acts on the travel "
+           "would "
+           "look the same. Push at another position to settle it.";
+  }
+  return alone ? " Conditions left out are not predicted better for every effect: take it as likely, not as settled."
+               : "";
+}
+
+std::string partly_explained(const Trace& t) {
+  std::string text = "Partly explained. " + effects_of(t);
+  text += fmt::format(
+      " Left is {:.2g} N rms that is not noise, at most {:.2g} N ({}), {:.2g} % of what the base model "
+      "leaves",
+      t.remaining.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), 100.0 * t.remaining.share_of_excess);
+  if (!t.remaining.channel.empty()) text += fmt::format("; it comes nearest to the {}", t.remaining.channel);
+  return text + ". The forces may be relied on to that; the intervals of the numbers do not hold what is left." +
+         reservation(t);
+}
+
+std::string not_explained(const Trace& t) {
+  std::string text;
+  if (t.rival_explanation) {
+    text = fmt::format(
+        "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
+        "does not have does so more simply.",
+        fmt::join(t.partial, " and "), t.base.rmse);
+  } else if (std::ranges::any_of(t.findings, [](const identification::Finding& f) { return f.sure; })) {
+    text =
+        fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
+  } else if (t.few_readings) {
+    text = fmt::format("Not explained: the base model leaves {:.3g} N rms.", t.base.rmse);
+  } else {
+    text = fmt::format(
+        "Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
+  }
+  if (t.few_readings) text += take_more(t);
+  if (t.functions.empty()) return text;
+  if (t.one_condition) return text + " All readings are of one position and one slack: its channel cannot be told.";
+  return text + nearest_channel(t.functions.front());
+}
+
+}  // namespace
+
+std::string finding_words(const identification::Finding& f) {
+  return fmt::format("{} = {:.4g} {} is {:.3g} times that of a solid section of the declared diameter and modulus{}",
+                     f.key, f.value, f.unit, f.value / f.limit,
+                     f.sure ? ": no such wire has it, so the fit stands in for something else" : "");
+}
+
+std::string verdict(const Trace& t) {
+  using identification::VerdictKind;
+  std::string text;
+  switch (t.kind) {
+    case VerdictKind::nothing_missing:
+      text = nothing_missing(t);
+      break;
+    case VerdictKind::explained:
+      text = (t.decided ? "Explained. " : "Explained, but not decided. ") + effects_of(t) + reservation(t);
+      break;
+    case VerdictKind::partly_explained:
+      text = partly_explained(t);
+      break;
+    case VerdictKind::not_explained:
+      text = not_explained(t);
+      break;
+  }
+  for (const identification::Finding& f : t.findings) text += fmt::format(" Note: {}.", finding_words(f));
+  return text;
+}
+
+std::optional<double> reading_noise(const Trace& trace) {
+  if (trace.noise.sigma.empty()) return std::nullopt;
+  std::vector<Series> fitted;
+  for (std::size_t k = 0; k < trace.series.size(); ++k) {
+    if (!trace.heldout[k]) fitted.push_back(trace.series[k]);
+  }
+  return trace.noise.mean_sigma(fitted);
+}
+
+std::optional<double> law_distance(const Trace& trace, std::size_t k, const std::vector<Prediction>& model) {
+  const Series& series = trace.series[k];
+  if (!series.law || model.size() <= k) return std::nullopt;
+  std::vector<double> law;
+  for (const double d : series.readings->displacement) law.push_back(series.law->force(d));
+  return identification::misfit(law, model[k].force).rmse;
+}
+
+}  // namespace snare::results

@@ -1,0 +1,9 @@
+#include "results/version.hpp"
+
+namespace snare::results {
+
+std::string version() {
+  return SNARE_VERSION;
+}
+
+}  // namespace snare::results

@@ -1,0 +1,119 @@
+#include "results/warnings.hpp"
+
+#include "identification/fitting/model.hpp"
+#include "wire/physical_range.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace snare::results {
+
+namespace {
+
+using coupling::PushPoint;
+
+/// Sentences, each once: wires of several series are the same wire.
+class Sentences {
+ public:
+  void add(const std::string& of, const std::vector<std::string>& found) {
+    for (const std::string& text : found) {
+      const std::string sentence = of.empty() ? text : of + ": " + text;
+      if (std::find(all_.begin(), all_.end(), sentence) == all_.end()) all_.push_back(sentence);
+    }
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+/// Where the pusher has no wire before it any more at the end of a push.
+std::vector<std::string> left_behind(const std::vector<PushPoint>& points) {
+  if (points.empty() || points.back().in_contact) return {};
+  auto last = points.rbegin();
+  while (last != points.rend() && !last->in_contact) ++last;
+  if (last == points.rend()) return {"the pusher never touches the wire: every force is zero"};
+  return {fmt::format(
+      "the wire has left the pusher behind a travel of {:.4g} mm and does not come back: no force from there on",
+      1e3 * last->travel)};
+}
+
+}  // namespace
+
+std::vector<std::string> push_warnings(const std::vector<identification::Series>& series,
+                                       const std::vector<identification::Prediction>& predictions,
+                                       const std::string& of) {
+  Sentences sentences;
+  for (const identification::Series& s : series) sentences.add(of, wire::doubts(s.test.wire));
+  for (std::size_t k = 0; k < std::min(series.size(), predictions.size()); ++k) {
+    const wire::WireSpecification& wire = series[k].test.wire;
+    const std::vector<PushPoint>& points = predictions[k].curve.curve.points;
+    double stress = 0.0;
+    for (const PushPoint& p : points)
+      stress =
+          std::max(stress, wire::largest_stress(wire, std::max(p.tension_left, p.tension_right), p.bending_moment));
+    const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
+    sentences.add(whose, wire::overload(wire, stress));
+    sentences.add(whose, left_behind(points));
+  }
+  return sentences.take();
+}
+
+std::vector<std::string> trace_warnings(const identification::Experiment& experiment,
+                                        const identification::Trace& trace) {
+  const identification::Model model(trace.series, experiment.solver, false);
+  return push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model");
+}
+
+std::vector<std::string> wire_warnings(const reduction::WireFile& file) {
+  Sentences sentences;
+  for (const reduction::WireCase& one : file.cases) sentences.add("", wire::doubts(one.test.wire));
+  return sentences.take();
+}
+
+std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& finished) {
+  Sentences sentences;
+  for (const FinishedMotion& run : finished) {
+    const coupling::Motion& motion = run.asked.motion;
+    const std::string of = finished.size() > 1 ? run.asked.name + ", " : "";
+    for (std::size_t k = 0; k < motion.wires.size(); ++k) {
+      // Its diameter is known from what touches it.
+      const auto touching = std::find_if(motion.contacts.begin(), motion.contacts.end(), [k](const auto& c) {
+        return c.wire == static_cast<int>(k) && c.wire_radius > 0.0;
+      });
+      if (touching == motion.contacts.end()) continue;
+      const double diameter = 2.0 * touching->wire_radius;
+      const double area = std::numbers::pi * diameter * diameter / 4.0;
+      const double strength = wire::strongest_wire(diameter) * area;
+      double tension = 0.0;
+      for (const coupling::MotionSample& s : run.samples) {
+        for (std::size_t end = 2 * k; end < std::min(2 * k + 2, s.mount_forces.size()); ++end)
+          tension = std::max(tension, s.mount_forces[end].norm());
+      }
+      const std::string wire = of + (motion.wires[k].name == "wire" ? "the wire" : "wire " + motion.wires[k].name);
+      if (tension > strength) {
+        sentences.add(
+            wire,
+            {fmt::format("a mount holds it with {:.4g} N; the strongest wire of steel of {:.4g} mm breaks at {:.4g} N",
+                         tension, 1e3 * diameter, strength)});
+      }
+      const wire::RodInMotion& rod = motion.wires[k].rod;
+      const double limit = wire::breaking_speed(rod.properties.axial_stiffness, rod.mass_per_length, strength);
+      for (const coupling::MotionEvent& e : run.result.events) {
+        const auto contact = static_cast<std::size_t>(e.contact);
+        if (contact >= motion.contacts.size() || motion.contacts[contact].wire != static_cast<int>(k) ||
+            e.kind != coupling::MotionEvent::Kind::touch || e.approach_speed <= limit)
+          continue;
+        sentences.add(wire, {fmt::format("is struck at {:.4g} m/s; a wire of steel breaks at once at {:.4g} m/s",
+                                         e.approach_speed, limit)});
+        break;
+      }
+    }
+  }
+  return sentences.take();
+}
+
+}  // namespace snare::results
