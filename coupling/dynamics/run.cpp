@@ -165,6 +165,18 @@ void MotionRun::resume(const MotionState& from) {
   ida_->start(time_, y_, rate_);
 }
 
+// Two times at which something changes that differ by round-off: 0.1 + 0.2 beside 0.3. The integrator cannot step from one to the
+// other.
+void MotionRun::pass(double time) {
+  time_ = time;
+  static_cast<void>(constraints_->follow({time_, y_, rate_}, {}, y_));
+  for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
+  if (look_for_phase())
+    over_ = begin_phases();
+  else
+    settle();
+}
+
 MotionResult MotionRun::go(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
@@ -176,6 +188,10 @@ MotionResult MotionRun::go(double limit) {
   while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
     double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
     for (const LoadPart& l : loads_) stop = std::min(stop, l.next_break(time_));
+    if (reached(time_, stop)) {
+      pass(stop);
+      continue;
+    }
     const numerics::IdaAdvance advance = ida_->advance(stop, longest_step());
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;

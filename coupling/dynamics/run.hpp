@@ -58,6 +58,7 @@ class MotionRun {
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
   void require_apart();
   [[nodiscard]] bool write_until(double time);
+  void pass(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
   // Starts (start_rates.cpp).

@@ -189,5 +189,27 @@ TEST(FrameLoad, ThrusterTurnsWithItsBody) {
   EXPECT_LT(r.momentum_error.norm(), 1e-7);
 }
 
+// Times that differ by round-off alone, as of two loads of which one counts 0.1 + 0.2, do not stop the run.
+TEST(FrameLoad, TimesMayDifferByRoundOff) {
+  Motion motion;
+  motion.bodies = {block("visitor", 2.0, {0.3, 0.3, 0.3})};
+  FrameLoad load;
+  load.carrier = body_of(0);
+  load.in_frame = false;
+  load.forces = load.moments = Eigen::Matrix3Xd::Zero(3, 2);
+  load.forces.row(0).setConstant(4.0);
+  load.times = {0.1, 0.3};
+  motion.loads.push_back(load);
+  load.times = {0.1 + 0.2, 0.5};
+  motion.loads.push_back(load);
+  Vector3d velocity;
+  const MotionResult r = simulate(motion, fine(0.6), [&](const MotionSample& s) {
+    velocity = s.bodies[0].velocity;
+    return false;
+  });
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  EXPECT_NEAR(velocity.x(), 0.4 * 4.0 / 2.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace snare::coupling
