@@ -2,12 +2,14 @@
 #include "app/curves_csv.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
+#include "app/record_commands.hpp"
 #include "app/report/trace_findings.hpp"
 #include "app/report/trace_report.hpp"
 #include "app/result_folder.hpp"
 #include "app/trace_json.hpp"
 #include "app/warnings.hpp"
 #include "base/files.hpp"
+#include "identification/records/record_file.hpp"
 #include "identification/tracing/trace.hpp"
 
 #include <fmt/format.h>
@@ -139,6 +141,7 @@ std::string number_line(const FittedNumber& n) {
 }  // namespace
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  if (identification::is_record_file(file, overrides_of(options))) return trace_record_file(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});
   const Trace trace = trace_and_write(experiment, {}, options, "snare-trace/1", write_trace, console);
@@ -156,6 +159,7 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 }
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  if (identification::is_record_file(file, overrides_of(options))) return fit_records(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "fit.json"});
   identification::TraceOptions fitting;

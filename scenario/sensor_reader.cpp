@@ -16,7 +16,7 @@ std::vector<Sensor> read_sensors(const Composition& c, double output_interval) {
                                            {"velocity", Kind::velocity},           {"rate", Kind::rate},
                                            {"joint_angle", Kind::joint_angle},     {"motor_angle", Kind::motor_angle},
                                            {"motor_rate", Kind::motor_rate},       {"joint_torque", Kind::joint_torque},
-                                           {"contact_force", Kind::contact_force}, {"tension", Kind::tension},
+                                           {"drive_torque", Kind::drive_torque}, {"contact_force", Kind::contact_force}, {"tension", Kind::tension},
                                            {"mount_force", Kind::mount_force}};
   std::vector<Sensor> sensors;
   Names names("sensor");
@@ -37,7 +37,7 @@ std::vector<Sensor> read_sensors(const Composition& c, double output_interval) {
       if (const MotorJoint* joint = c.joint(table, "joint")) {
         s.index = joint->arm;
         s.joint = joint->joint;
-        if (joint->slides) table.fail("joint", "must turn: the readings are angles");
+        s.slides = joint->slides;
       }
     }
     const double rate = table.number_or("rate_Hz", 1.0 / output_interval, Range::above(0.0, 1e6));

@@ -27,21 +27,24 @@ struct Unit {
   double size;
 };
 
-Unit unit_of(Sensor::Kind kind) {
-  switch (kind) {
+Unit unit_of(const Sensor& sensor) {
+  switch (sensor.kind) {
     case Sensor::Kind::position:
       return {"mm", base::mm};
     case Sensor::Kind::attitude:
+      return {"deg", base::degree};
     case Sensor::Kind::joint_angle:
     case Sensor::Kind::motor_angle:
-      return {"deg", base::degree};
+      return sensor.slides ? Unit{"mm", base::mm} : Unit{"deg", base::degree};
     case Sensor::Kind::velocity:
       return {"m_s", 1.0};
     case Sensor::Kind::rate:
-    case Sensor::Kind::motor_rate:
       return {"deg_s", base::degree};
+    case Sensor::Kind::motor_rate:
+      return sensor.slides ? Unit{"mm_s", base::mm} : Unit{"deg_s", base::degree};
     case Sensor::Kind::joint_torque:
-      return {"Nm", 1.0};
+    case Sensor::Kind::drive_torque:
+      return {sensor.slides ? "N" : "Nm", 1.0};
     case Sensor::Kind::contact_force:
     case Sensor::Kind::tension:
     case Sensor::Kind::mount_force:
@@ -76,6 +79,8 @@ class Sight {
         return one(arm().state.motor_rate[sensor_.joint]);
       case Sensor::Kind::joint_torque:
         return one(arm().joint_torque[sensor_.joint]);
+      case Sensor::Kind::drive_torque:
+        return one(arm().drive_torque[sensor_.joint]);
       case Sensor::Kind::contact_force:
         return one(s.contacts[at(sensor_.index)].normal_force);
       case Sensor::Kind::tension:
@@ -116,7 +121,7 @@ int Sensor::components() const {
 }
 
 std::vector<std::string> Sensor::columns() const {
-  const Unit unit = unit_of(kind);
+  const Unit unit = unit_of(*this);
   if (components() == 1) return {fmt::format("{}_{}", name, unit.suffix)};
   std::vector<std::string> names;
   for (const char axis : {'x', 'y', 'z'}) names.push_back(fmt::format("{}_{}_{}", name, axis, unit.suffix));
@@ -128,7 +133,7 @@ Readings read_off(const Sensor& sensor, const coupling::Motion& motion, const st
   readings.values.resize(at(sensor.components()));
   if (samples.empty()) return readings;
   const Sight sight(sensor, motion);
-  const Unit unit = unit_of(sensor.kind);
+  const Unit unit = unit_of(sensor);
   // One stream a sensor: what others there are makes no difference to its noise.
   boost::random::mt19937_64 engine(sensor.seed);
   boost::random::normal_distribution<double> noise(0.0, 1.0);

@@ -54,7 +54,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
   constraints_->add_energy(at.y, e, into);
-  if (into != nullptr) constraints_->fill(at.y, *into);
+  if (into != nullptr) constraints_->fill(at.time, at.y, *into);
   return e;
 }
 
