@@ -58,7 +58,9 @@ Course smooth_course(double from, double begin, const std::vector<double>& times
   for (double& value : rise) value -= values.front();
   Course course(from, from + rise.back(), begin, times.back());
   course.kind = multibody::CourseKind::table;
-  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise);
+  std::vector<double> slopes = numerics::HermiteCurve(times, rise).slopes();
+  slopes.front() = slopes.back() = 0.0;  // at rest at both ends
+  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise, slopes);
   return course;
 }
 

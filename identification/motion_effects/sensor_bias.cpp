@@ -2,7 +2,7 @@
 
 namespace snare::identification {
 
-/// Zero of a sensor: (I.13).
+/// Zero of a sensor: (I.23).
 std::vector<MotionEffect> sensor_bias_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {

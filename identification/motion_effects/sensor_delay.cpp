@@ -2,7 +2,7 @@
 
 namespace snare::identification {
 
-/// Delay of a sensor: (I.13).
+/// Delay of a sensor: (I.23).
 std::vector<MotionEffect> sensor_delay_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {

@@ -2,7 +2,7 @@
 
 namespace snare::identification {
 
-/// Drift of a sensor: (I.13).
+/// Drift of a sensor: (I.23).
 std::vector<MotionEffect> sensor_drift_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {

@@ -2,7 +2,7 @@
 
 namespace snare::identification {
 
-/// Gain of a sensor: (I.13).
+/// Gain of a sensor: (I.23).
 std::vector<MotionEffect> sensor_gain_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {

@@ -2,7 +2,7 @@
 
 namespace snare::identification {
 
-/// Low-pass filter of a sensor: (I.13).
+/// Low-pass filter of a sensor: (I.23).
 std::vector<MotionEffect> sensor_lag_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {

@@ -29,7 +29,7 @@ struct RoundResult {
   MotionFit better;
 };
 
-/// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any.    theory.md (I.12)
+/// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any.    theory.md (I.22)
 [[nodiscard]] RoundResult motion_round(const RoundInput& input);
 
 }  // namespace snare::identification

@@ -10,7 +10,7 @@
 
 namespace snare::identification {
 
-/// Score test of one effect beside a fitted scenario.                                              theory.md (I.12)
+/// Score test of one effect beside a fitted scenario.                                              theory.md (I.22)
 struct MotionScore {
   std::size_t effect = 0;     ///< index in the list
   std::string unobservable;   ///< why the records cannot show it; empty: they can

@@ -190,6 +190,33 @@ class Tracer {
     return one ? 1.0 : scale;
   }
 
+  struct Reached {
+    MotionFit fit;
+    MotionStage stage;
+  };
+  /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
+  /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes.
+  void keep_what_carries_over(std::vector<Reached>& kept) {
+    if (heldout_.empty() || kept.size() < 2 || stop_) return;
+    const auto best = std::min_element(kept.begin(), kept.end(), [](const Reached& a, const Reached& b) {
+      return a.stage.heldout_rmse < b.stage.heldout_rmse;
+    });
+    const auto count = static_cast<std::size_t>(best - kept.begin());
+    for (std::size_t k = count; k + 1 < kept.size() && k < trace_.rounds.size(); ++k) {
+      trace_.rounds[k].reason = "taken back: the records held out are not predicted better with it";
+      trace_.rounds[k].added.clear();
+    }
+    trace_.selected.resize(count);
+    trace_.selected_effects.resize(count);
+    if (count == 0) trace_.channel.clear();
+    current_ = best->fit;
+    trace_.final = best->stage;
+    trace_.kind = VerdictKind::not_explained;
+    trace_.share_left = 1.0;
+    if (count > 0) judge();
+    reached();
+  }
+
   void look_for_effects() {
     trace_.effects = motion_effects(model_);
     // Numbers that are fitted already are no effects.
@@ -197,18 +224,13 @@ class Tracer {
       return std::any_of(set_.free.begin(), set_.free.end(),
                          [&](const FreeNumber& f) { return f.key.starts_with(e.numbers.front().key); });
     });
+    std::vector<Reached> kept{{current_, trace_.base}};
     for (int number = 1; number <= set_.most_effects; ++number) {
       if (!go_on(fmt::format("round {}: {} effects", number, trace_.effects.size()))) return;
       RoundInput input{model_, data_, current_, trace_.effects, trace_.selected_effects, options_.significance};
       for (const ChannelError& e : trace_.base.errors)
         if (e.fitted) input.tolerance[e.sensor] = tolerance(e.sensor);
       input.progress = asked();
-      const double before = trace_.final.heldout_rmse;
-      input.heldout_improves = [&](const MotionFit& fit) -> std::optional<bool> {
-        const auto heldout = on_heldout(fit, {});
-        if (!heldout || heldout->residual.size() == 0) return std::nullopt;
-        return motion_stage(model_, data_, fit, &*heldout, heldout_data_).heldout_rmse < before;
-      };
       RoundResult round = motion_round(input);
       if (stop_) return;
       trace_.rounds.push_back(round.round);
@@ -219,9 +241,11 @@ class Tracer {
       if (trace_.channel.empty()) trace_.channel = trace_.effects[*round.added].channel;
       trace_.final = stage(current_, {});
       judge();
-      reached();
+      kept.push_back({current_, trace_.final});
+      if (heldout_.empty()) reached();
       if (trace_.kind == VerdictKind::explained) break;
     }
+    keep_what_carries_over(kept);
     if (trace_.kind != VerdictKind::explained) trace_.leftovers = leftovers(model_, data_, current_);
     if (trace_.selected.empty() && !trace_.leftovers.empty()) trace_.channel = trace_.leftovers.front().sensor;
     propose();

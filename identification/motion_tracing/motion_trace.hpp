@@ -91,7 +91,7 @@ struct MotionTraceOptions {
   std::function<void(const MotionTrace& part)> reached;    ///< whenever more of it is whole
 };
 
-/// Closes the loop of a scenario and its records.                                        theory.md (I.10)-(I.14)
+/// Closes the loop of a scenario and its records.                                        theory.md (I.20)-(I.24)
 /// Throws base::InputError for records that cannot be compared with the scenario.
 [[nodiscard]] MotionTrace trace_records(const RecordSet& set, const MotionTraceOptions& options = {});
 

@@ -63,7 +63,7 @@ struct MotionFitOptions {
 /// Settings that are fitted with those that are not.
 [[nodiscard]] std::vector<MotionSetting> together(std::vector<MotionSetting> settings, const std::vector<MotionSetting>& fixed);
 
-/// Least squares of the free simulation: (I.10). Gauss-Newton by Ceres (Levenberg-Marquardt, bounds) with central differences in parallel;
+/// Least squares of the free simulation: (I.20). Gauss-Newton by Ceres (Levenberg-Marquardt, bounds) with central differences in parallel;
 /// or Nelder and Mead's simplex by NLopt, without derivatives on its way.
 [[nodiscard]] MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vector<MotionSetting> start,
                                    const MotionFitOptions& options = {});

@@ -40,7 +40,7 @@ struct JointUse {
   bool slides = false;
 };
 
-/// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.10)
+/// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.20)
 class MotionModel {
  public:
   /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or that lacks one of the channels,

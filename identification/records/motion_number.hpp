@@ -11,7 +11,7 @@
 
 namespace snare::identification {
 
-/// How a sensor's reading differs from what the scenario's sensor tells s:                       theory.md (I.13)
+/// How a sensor's reading differs from what the scenario's sensor tells s:                       theory.md (I.23)
 ///   y(t) = gain (s * h)(t - delay) + bias + drift t,   h the low-pass filter of the first order of time `lag`.
 struct SignalChange {
   double gain = 1.0;   ///< [-]
