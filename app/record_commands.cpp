@@ -7,6 +7,8 @@
 #include "app/result_folder.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
+#include "identification/motion_tracing/trace_records.hpp"
+#include "identification/records/record_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -35,8 +37,9 @@ void write_record_curves(const std::filesystem::path& file, const RecordSet& set
         return stage.predictions[r].channels[c][i];
       };
       for (Eigen::Index i = 0; i < record.times.size(); ++i)
-        csv.row({std::string_view(record.name), std::string_view(record.channels[c].sensor), std::string_view(unit), record.times[i],
-                 record.channels[c].values[i], cell(trace.declared, i), cell(trace.base, i), cell(trace.final, i)});
+        csv.row({std::string_view(record.name), std::string_view(record.channels[c].sensor), std::string_view(unit),
+                 record.times[i], record.channels[c].values[i], cell(trace.declared, i), cell(trace.base, i),
+                 cell(trace.final, i)});
     }
   }
   csv.commit();
@@ -66,7 +69,8 @@ std::string kept_words(const MotionTrace& trace) {
                      trace.selected.empty() ? "" : fmt::format(" and {} effects", trace.selected.size()));
 }
 
-MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema, Write write, Console& console) {
+MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema, Write write,
+                Console& console) {
   identification::MotionTraceOptions tracing;
   tracing.effects = effects;
   tracing.progress = [&console](const std::string& stage) {
@@ -98,14 +102,17 @@ MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options
   } else {
     console.complain(trace.report.message);
     if (options.json)
-      print(nlohmann::json{{"schema", schema}, {"interrupted", trace.interrupted}, {"stopped", trace.report.message}}.dump(1) + "\n");
+      print(nlohmann::json{{"schema", schema}, {"interrupted", trace.interrupted}, {"stopped", trace.report.message}}
+                .dump(1) +
+            "\n");
   }
   return trace;
 }
 
 void tell(const MotionStage& stage, const char* name, Console& console) {
   for (const identification::ChannelError& e : stage.errors)
-    console.say(fmt::format("{}: {} within {:.4g} {} ({:.2f} % of the readings)", name, e.sensor, e.rmse, e.unit, 100.0 * e.relative));
+    console.say(fmt::format("{}: {} within {:.4g} {} ({:.2f} % of the readings)", name, e.sensor, e.rmse, e.unit,
+                            100.0 * e.relative));
   for (const identification::ChannelError& e : stage.heldout)
     console.say(fmt::format("{}, held out: {} within {:.4g} {}", name, e.sensor, e.rmse, e.unit));
 }
@@ -133,7 +140,8 @@ ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& o
     tell(trace.declared, "declared", console);
     tell(trace.base, "fitted", console);
     tell_numbers(trace.base, console);
-    console.say(fmt::format("{0} simulations of the fit; wrote {1}/fit.json, {1}/curves.csv", trace.fit_simulations, options.out.string()));
+    console.say(fmt::format("{0} simulations of the fit; wrote {1}/fit.json, {1}/curves.csv", trace.fit_simulations,
+                            options.out.string()));
   }
   return status_of(trace);
 }

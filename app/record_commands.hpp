@@ -10,6 +10,7 @@ namespace snare::app {
 [[nodiscard]] ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& options, Console& console);
 
 /// `snare trace` of one: trace.json, curves.csv, report.html.
-[[nodiscard]] ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOptions& options,
+                                           Console& console);
 
 }  // namespace snare::app

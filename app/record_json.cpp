@@ -43,21 +43,32 @@ std::string with_unit(const char* name, const MotionTrace& trace) {
 json errors_json(const std::vector<ChannelError>& errors) {
   json list = json::array();
   for (const ChannelError& e : errors)
-    list.push_back({{"sensor", e.sensor}, {"unit", e.unit}, {"fitted", e.fitted}, {"rmse", finite(e.rmse)}, {"nrmse", finite(e.nrmse)},
-                    {"relative", finite(e.relative)}, {"sigma", finite(e.sigma)}});
+    list.push_back({{"sensor", e.sensor},
+                    {"unit", e.unit},
+                    {"fitted", e.fitted},
+                    {"rmse", finite(e.rmse)},
+                    {"nrmse", finite(e.nrmse)},
+                    {"relative", finite(e.relative)},
+                    {"sigma", finite(e.sigma)}});
   return list;
 }
 
 json number_json(const TracedNumber& n) {
-  return {{"value", finite(n.value)}, {"stderr", n.lower ? finite(n.stderr_) : json()}, {"unit", n.unit},
-          {"lower", finite(n.lower)}, {"upper", finite(n.upper)}};
+  return {{"value", finite(n.value)},
+          {"stderr", n.lower ? finite(n.stderr_) : json()},
+          {"unit", n.unit},
+          {"lower", finite(n.lower)},
+          {"upper", finite(n.upper)}};
 }
 
 json stage_json(const MotionTrace& trace, const MotionStage& stage) {
   json numbers = json::object();
   for (const TracedNumber& n : stage.numbers) numbers[n.key] = number_json(n);
-  return {{with_unit("rmse", trace), finite(stage.rmse)}, {"nrmse", finite(stage.nrmse)}, {"chi2_dof", finite(stage.chi2_dof)},
-          {"parameters", numbers}, {"channels", errors_json(stage.errors)}};
+  return {{with_unit("rmse", trace), finite(stage.rmse)},
+          {"nrmse", finite(stage.nrmse)},
+          {"chi2_dof", finite(stage.chi2_dof)},
+          {"parameters", numbers},
+          {"channels", errors_json(stage.errors)}};
 }
 
 json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
@@ -90,11 +101,14 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"version", version()},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
-          {"simulations", {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
+          {"simulations",
+           {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
 }
 
 json tests_json(const MotionTrace& trace) {
-  return {{"runs_p", finite(trace.runs)}, {"ljung_box_p", finite(trace.ljung_box)}, {"lack_of_fit_p", finite(trace.lack_of_fit)}};
+  return {{"runs_p", finite(trace.runs)},
+          {"ljung_box_p", finite(trace.ljung_box)},
+          {"lack_of_fit_p", finite(trace.lack_of_fit)}};
 }
 
 }  // namespace
@@ -113,25 +127,33 @@ json record_trace_json(const RecordSet& set, const MotionTrace& trace) {
       result["candidates"] = candidates;
       result["classes"] = round.classes;
     }
-    result["rounds"].push_back({{"candidates", candidates}, {"classes", round.classes}, {"added", round.added}, {"reason", round.reason}});
+    result["rounds"].push_back(
+        {{"candidates", candidates}, {"classes", round.classes}, {"added", round.added}, {"reason", round.reason}});
   }
   json names = json::array();
   for (const std::size_t e : trace.selected_effects) names.push_back(trace.effects[e].name);
   result["selected"] = names;
   result["selected_places"] = trace.selected;
   result["final"] = stage_json(trace, trace.final);
-  result["heldout"] = {{with_unit("rmse_base", trace), trace.base.heldout.empty() ? json() : finite(trace.base.heldout_rmse)},
-                       {with_unit("rmse_final", trace), trace.final.heldout.empty() ? json() : finite(trace.final.heldout_rmse)},
-                       {with_unit("rmse_declared", trace), trace.declared.heldout.empty() ? json() : finite(trace.declared.heldout_rmse)},
-                       {"base", errors_json(trace.base.heldout)},
-                       {"final", errors_json(trace.final.heldout)}};
-  result["explained"] = trace.kind == identification::VerdictKind::nothing_missing || trace.kind == identification::VerdictKind::explained;
+  result["heldout"] = {
+      {with_unit("rmse_base", trace), trace.base.heldout.empty() ? json() : finite(trace.base.heldout_rmse)},
+      {with_unit("rmse_final", trace), trace.final.heldout.empty() ? json() : finite(trace.final.heldout_rmse)},
+      {with_unit("rmse_declared", trace),
+       trace.declared.heldout.empty() ? json() : finite(trace.declared.heldout_rmse)},
+      {"base", errors_json(trace.base.heldout)},
+      {"final", errors_json(trace.final.heldout)}};
+  result["explained"] = trace.kind == identification::VerdictKind::nothing_missing ||
+                        trace.kind == identification::VerdictKind::explained;
   result["verdict_kind"] = to_string(trace.kind);
   json left = json::array();
   for (std::size_t k = 0; k < std::min<std::size_t>(trace.leftovers.size(), 10); ++k)
-    left.push_back({{"sensor", trace.leftovers[k].sensor}, {"on", trace.leftovers[k].on}, {"share", finite(trace.leftovers[k].share)}});
-  result["remaining"] = {{with_unit("rmse", trace), finite(trace.final.rmse)}, {"share_of_excess", finite(trace.share_left)},
-                         {"channel", trace.leftovers.empty() ? "" : trace.leftovers.front().sensor}, {"hangs_on", left}};
+    left.push_back({{"sensor", trace.leftovers[k].sensor},
+                    {"on", trace.leftovers[k].on},
+                    {"share", finite(trace.leftovers[k].share)}});
+  result["remaining"] = {{with_unit("rmse", trace), finite(trace.final.rmse)},
+                         {"share_of_excess", finite(trace.share_left)},
+                         {"channel", trace.leftovers.empty() ? "" : trace.leftovers.front().sensor},
+                         {"hangs_on", left}};
   result["channel"] = trace.channel;
   result["next_experiment"] = {{"what", trace.next_measurement}, {"separates", trace.next_separates}};
   return result;

@@ -97,7 +97,9 @@ void read_arms(Composition& c) {
     const Hold how = table.has("hold") ? table.choice("hold", holds).value_or(Hold::as_described) : Hold::as_described;
     const Stand stand = read_stand(table);
     std::optional<multibody::ArmDescription> described;
-    if (!file.empty()) described = base::read_beside(c.document, [&] { return multibody::read_arm(c.folder / file, c.arm_overrides[name]); });
+    if (!file.empty())
+      described =
+          base::read_beside(c.document, [&] { return multibody::read_arm(c.folder / file, c.arm_overrides[name]); });
     const int index = static_cast<int>(c.motion.arms.size());
     coupling::MotionArm& arm = c.motion.arms.emplace_back();
     arm.name = name;

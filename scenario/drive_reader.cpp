@@ -38,7 +38,8 @@ constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proport
 using CourseMaker = std::function<Course(double time, double from)>;
 
 /// Mean about one row with the weights of a raised cosine that ends a half width of time away, and no farther than the rows go on both sides.
-double smoothed(const std::vector<double>& times, const std::vector<double>& values, std::size_t row, double half_width) {
+double smoothed(const std::vector<double>& times, const std::vector<double>& values, std::size_t row,
+                double half_width) {
   const double width = std::min({half_width, times[row] - times.front(), times.back() - times[row]});
   if (!(width > 0.0)) return values[row];
   double sum = 0.0, weights = 0.0;

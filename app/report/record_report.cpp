@@ -24,14 +24,16 @@ std::string probability(double p) {
 }
 
 void errors(ReportPage& page, const MotionTrace& trace) {
-  Table table{"Error of the simulation", {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number, "Final"_number, "Final, of the readings"_number}};
-  const auto rows = [&](const char* which, const std::vector<ChannelError>& declared, const std::vector<ChannelError>& base,
-                        const std::vector<ChannelError>& last) {
+  Table table{"Error of the simulation",
+              {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number, "Final"_number,
+               "Final, of the readings"_number}};
+  const auto rows = [&](const char* which, const std::vector<ChannelError>& declared,
+                        const std::vector<ChannelError>& base, const std::vector<ChannelError>& last) {
     for (std::size_t k = 0; k < last.size(); ++k)
       table.rows.push_back({std::string(which) + (last[k].fitted ? "" : ", watched"), last[k].sensor, last[k].unit,
                             k < declared.size() ? format_significant(declared[k].rmse) : std::string(),
-                            k < base.size() ? format_significant(base[k].rmse) : std::string(), format_significant(last[k].rmse),
-                            fmt::format("{:.2f} %", 100.0 * last[k].relative)});
+                            k < base.size() ? format_significant(base[k].rmse) : std::string(),
+                            format_significant(last[k].rmse), fmt::format("{:.2f} %", 100.0 * last[k].relative)});
   };
   rows("fitted", trace.declared.errors, trace.base.errors, trace.final.errors);
   rows("held out", trace.declared.heldout, trace.base.heldout, trace.final.heldout);
@@ -41,26 +43,33 @@ void errors(ReportPage& page, const MotionTrace& trace) {
 void numbers(ReportPage& page, const MotionStage& stage) {
   Table table{"Numbers of the final model", {"Key"_code, "Value"_number, "95 %"_number, "Unit"_text}};
   for (const TracedNumber& n : stage.numbers)
-    table.rows.push_back({n.key, format_number(n.value),
-                          n.lower && n.upper ? fmt::format("{:.5g} to {:.5g}", *n.lower, *n.upper) : std::string("not seen"), n.unit});
+    table.rows.push_back(
+        {n.key, format_number(n.value),
+         n.lower && n.upper ? fmt::format("{:.5g} to {:.5g}", *n.lower, *n.upper) : std::string("not seen"), n.unit});
   page.table(table);
 }
 
 void rounds(ReportPage& page, const MotionTrace& trace) {
   for (std::size_t k = 0; k < trace.rounds.size(); ++k) {
     const identification::MotionRound& round = trace.rounds[k];
-    Table table{fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added", round.reason.empty() ? "" : "; " + round.reason),
-                {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number, "Would be seen from"_number, "Remark"_text}};
+    Table table{fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added",
+                            round.reason.empty() ? "" : "; " + round.reason),
+                {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number,
+                 "Would be seen from"_number, "Remark"_text}};
     for (const identification::MotionCandidate& c : round.candidates)
-      table.rows.push_back({trace.effects[c.score.effect].label(), c.score.unobservable.empty() ? format_number(c.score.z, 3) : std::string(),
+      table.rows.push_back({trace.effects[c.score.effect].label(),
+                            c.score.unobservable.empty() ? format_number(c.score.z, 3) : std::string(),
                             c.score.unobservable.empty() ? probability(c.score.adjusted_p) : std::string(),
                             c.refitted ? format_significant(c.rmse) : std::string(),
                             c.numbers.empty() ? std::string() : format_number(c.numbers.front().value, 4),
-                            c.score.detectable && std::isfinite(*c.score.detectable) ? format_number(*c.score.detectable, 3) : std::string(),
+                            c.score.detectable && std::isfinite(*c.score.detectable)
+                                ? format_number(*c.score.detectable, 3)
+                                : std::string(),
                             c.score.unobservable + c.why_not});
     page.table(table);
     for (const auto& members : round.classes)
-      if (members.size() > 1) page.callout(fmt::format("These records cannot tell apart: {}", fmt::join(members, ", ")), Tone::plain);
+      if (members.size() > 1)
+        page.callout(fmt::format("These records cannot tell apart: {}", fmt::join(members, ", ")), Tone::plain);
   }
 }
 
@@ -105,16 +114,20 @@ std::string record_verdict(const MotionTrace& trace) {
     case VerdictKind::nothing_missing:
       return "Nothing is missing: what the declared scenario leaves is noise, or too small to be worth a name.";
     case VerdictKind::explained:
-      return fmt::format("Explained: the scenario lacks {}; with it what is left is noise, or too small to be worth a name.", names);
+      return fmt::format(
+          "Explained: the scenario lacks {}; with it what is left is noise, or too small to be worth a name.", names);
     case VerdictKind::partly_explained:
-      return fmt::format("Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest stays open.", names,
-                         100.0 * (1.0 - trace.share_left));
+      return fmt::format(
+          "Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest stays open.",
+          names, 100.0 * (1.0 - trace.share_left));
     case VerdictKind::not_explained:
       break;
   }
   if (trace.selected.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
-  return fmt::format("Not explained: {} are needed, and carry {:.1f} % of what the base model leaves beside the noise, but something else is missing.",
-                     names, 100.0 * (1.0 - trace.share_left));
+  return fmt::format(
+      "Not explained: {} are needed, and carry {:.1f} % of what the base model leaves beside the noise, but something "
+      "else is missing.",
+      names, 100.0 * (1.0 - trace.share_left));
 }
 
 std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
@@ -123,7 +136,8 @@ std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
   page.heading("Verdict");
   const bool good = trace.kind == VerdictKind::nothing_missing || trace.kind == VerdictKind::explained;
   page.callout(record_verdict(trace), good ? Tone::good : Tone::plain);
-  for (const std::size_t e : trace.selected_effects) page.paragraph(trace.effects[e].label() + ": " + trace.effects[e].meaning + ".");
+  for (const std::size_t e : trace.selected_effects)
+    page.paragraph(trace.effects[e].label() + ": " + trace.effects[e].meaning + ".");
   errors(page, trace);
   numbers(page, trace.final);
   if (!trace.leftovers.empty() && trace.leftovers.front().share > 0.05) {
@@ -131,8 +145,9 @@ std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
     std::vector<std::string> items;
     for (const identification::Leftover& l : trace.leftovers)
       if (l.share > 0.05 && items.size() < 5)
-        items.push_back(fmt::format("{:.0f} % of the residual of {} is a function of {} (found on one half of the time, tried on the other)",
-                                    100.0 * l.share, l.sensor, l.on));
+        items.push_back(fmt::format(
+            "{:.0f} % of the residual of {} is a function of {} (found on one half of the time, tried on the other)",
+            100.0 * l.share, l.sensor, l.on));
     page.list(items);
   }
   if (!trace.next_measurement.empty()) {

@@ -10,6 +10,7 @@ namespace snare::app {
 [[nodiscard]] std::string record_verdict(const identification::MotionTrace& trace);
 
 /// report.html of records in time: verdict, numbers, effects, every channel measured, declared and traced over time with what is left.
-[[nodiscard]] std::string record_report_html(const identification::RecordSet& set, const identification::MotionTrace& trace);
+[[nodiscard]] std::string record_report_html(const identification::RecordSet& set,
+                                             const identification::MotionTrace& trace);
 
 }  // namespace snare::app

@@ -8,9 +8,9 @@ std::vector<MotionEffect> bushing_damping_effects(const MotionModel& model) {
   for (const char* key : {"rotational_damping_Nms_rad", "translational_damping_Ns_m"}) {
     for (MotionEffect& e : other_number(model, "bushings", key,
                                         {.name = "bushing_damping",
-                                         .channel = "bushing",
-                                         .meaning = "the attachment damps more or less",
-                                         .independent_check = "let the attachment ring down"})) {
+                                        .channel = "bushing",
+                                        .meaning = "the attachment damps more or less",
+                                        .independent_check = "let the attachment ring down"})) {
       e.place += std::string(".") + key;
       effects.push_back(std::move(e));
     }

@@ -17,7 +17,8 @@ std::vector<MotionEffect> joint_quadratic_drag_effects(const MotionModel& model)
                        .meaning = "drag grows with the square of the speed",
                        .numbers = {number},
                        .one_sided = declared == 0.0,
-                       .independent_check = "turn the joint at several constant speeds: curvature of the torque; or repeat in vacuum"});
+                       .independent_check =
+                           "turn the joint at several constant speeds: curvature of the torque; or repeat in vacuum"});
   }
   return effects;
 }

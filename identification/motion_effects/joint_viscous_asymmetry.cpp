@@ -18,7 +18,8 @@ std::vector<MotionEffect> joint_viscous_asymmetry_effects(const MotionModel& mod
                        .meaning = "viscous friction differs with the direction",
                        .numbers = {number},
                        .one_sided = false,
-                       .independent_check = "turn the joint at several constant speeds in both directions: difference of the slopes"});
+                       .independent_check =
+                           "turn the joint at several constant speeds in both directions: difference of the slopes"});
   }
   return effects;
 }

@@ -9,7 +9,8 @@ std::vector<MotionEffect> joint_viscous_friction_effects(const MotionModel& mode
     const std::string key = joint.prefix + "viscous_Nms_rad";
     const double declared = model.declared().number(key).value_or(0.0);
     if (!(joint.use.rate > 0.0) || !(joint.use.torque > 0.0)) continue;
-    MotionNumber number = number_at(key, declared, declared > 0.0 ? 0.02 * declared : 0.02 * joint.use.torque / joint.use.rate);
+    MotionNumber number =
+        number_at(key, declared, declared > 0.0 ? 0.02 * declared : 0.02 * joint.use.torque / joint.use.rate);
     number.lower = 0.0;
     effects.push_back({.name = "joint_viscous_friction",
                        .place = joint.name,

@@ -51,7 +51,8 @@ std::vector<MotionEffect> other_number(const MotionModel& model, const std::stri
   return effects;
 }
 
-std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key, const MotionEffect& what) {
+std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
+                                             const MotionEffect& what) {
   std::vector<MotionEffect> effects;
   for (const JointPlace& joint : joint_places(model)) {
     const std::optional<double> declared = model.declared().number(joint.prefix + key);
@@ -71,10 +72,12 @@ std::vector<ChannelPlace> channel_places(const MotionModel& model) {
     const MotionRecord& record = set.records[r];
     for (const RecordChannel& c : record.channels) {
       const std::string& column = model.column(c);
-      if (!c.fitted || std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; })) continue;
+      if (!c.fitted || std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; }))
+        continue;
       const auto n = static_cast<double>(c.values.size());
       const double way = record.times[record.times.size() - 1] - record.times[0];
-      places.push_back({column, std::sqrt((c.values.array() - c.values.mean()).square().sum() / n), way / (n - 1.0), way});
+      places.push_back(
+          {column, std::sqrt((c.values.array() - c.values.mean()).square().sum() / n), way / (n - 1.0), way});
     }
   }
   return places;

@@ -13,13 +13,13 @@ namespace snare::identification {
 /// what it is, where in a scenario it may sit, which numbers it has and how they enter: a key of the files, or a change of what a sensor tells.
 struct MotionEffect {
   std::string name{};
-  std::string place{};    ///< "drive::screw", a wire, a sensor; empty: the whole
-  std::string channel{};  ///< joint, body, bushing, ring, wire, contact, sensor, record
-  std::string meaning{};  ///< what happens, for a test engineer
+  std::string place{};                  ///< "drive::screw", a wire, a sensor; empty: the whole
+  std::string channel{};                ///< joint, body, bushing, ring, wire, contact, sensor, record
+  std::string meaning{};                ///< what happens, for a test engineer
   std::vector<MotionNumber> numbers{};  ///< at null: MotionNumber::declared
   double plausible_lower = -1e300, plausible_upper = 1e300;  ///< of the first number
-  bool one_sided = false;               ///< the first number can only grow from null
-  std::string independent_check{};      ///< a measurement that settles it by itself
+  bool one_sided = false;                                    ///< the first number can only grow from null
+  std::string independent_check{};                           ///< a measurement that settles it by itself
 
   /// "joint_coulomb_friction (drive::screw)".
   [[nodiscard]] std::string label() const { return place.empty() ? name : name + " (" + place + ")"; }
@@ -39,10 +39,11 @@ struct JointPlace {
 
 /// The effect of a declared number > 0 being another, for every element of a list of the scenario that declares it: `LIST[NAME].KEY`, plausible
 /// between a fifth and five times what is declared.
-[[nodiscard]] std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list, const std::string& key,
-                                                     const MotionEffect& what);
+[[nodiscard]] std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list,
+                                                     const std::string& key, const MotionEffect& what);
 /// The same of a number of every joint's file.
-[[nodiscard]] std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key, const MotionEffect& what);
+[[nodiscard]] std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
+                                                           const MotionEffect& what);
 
 /// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less their mean.
 struct ChannelPlace {

@@ -13,14 +13,15 @@ std::vector<MotionEffect> sensor_lag_effects(const MotionModel& model) {
     number.lower = 0.0;
     number.scale = channel.interval;
     number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].lag = value; };
-    effects.push_back({.name = "sensor_lag",
-                       .place = channel.column,
-                       .channel = "sensor",
-                       .meaning = "the sensor filters",
-                       .numbers = {number},
-                       .plausible_upper = 0.5,
-                       .one_sided = true,
-                       .independent_check = "look into the settings of the amplifier; compare with a faster sensor on a step"});
+    effects.push_back(
+        {.name = "sensor_lag",
+         .place = channel.column,
+         .channel = "sensor",
+         .meaning = "the sensor filters",
+         .numbers = {number},
+         .plausible_upper = 0.5,
+         .one_sided = true,
+         .independent_check = "look into the settings of the amplifier; compare with a faster sensor on a step"});
   }
   return effects;
 }

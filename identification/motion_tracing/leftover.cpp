@@ -16,7 +16,8 @@ struct Tally {
   double tried = 0.0, left = 0.0;  // squares
 };
 
-void tally(const std::vector<double>& abscissa, const std::vector<double>& residual, const std::vector<int>& block, Tally& sum) {
+void tally(const std::vector<double>& abscissa, const std::vector<double>& residual, const std::vector<int>& block,
+           Tally& sum) {
   const auto [low, high] = std::minmax_element(abscissa.begin(), abscissa.end());
   const double width = (*high - *low) / steps;
   if (!(width > 0.0)) return;
@@ -47,7 +48,8 @@ std::vector<Leftover> leftovers(const MotionModel& model, const MotionData& data
   for (const ResidualPiece& piece : data.pieces) {
     const MotionRecord& record = set.records[piece.record];
     const std::string& sensor = record.channels[piece.channel].sensor;
-    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) - data.records.begin());
+    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) -
+                                             data.records.begin());
     const RecordPrediction& prediction = fit.predictions[at];
     const Eigen::VectorXd& own = prediction.channels[piece.channel];
     const Eigen::Index n = piece.size;
@@ -60,7 +62,9 @@ std::vector<Leftover> leftovers(const MotionModel& model, const MotionData& data
       };
       add("time", record.times[i]);
       const Eigen::Index before = std::max<Eigen::Index>(0, i - 1), after = std::min(n - 1, i + 1);
-      const auto rate = [&](const Eigen::VectorXd& v) { return (v[after] - v[before]) / (record.times[after] - record.times[before]); };
+      const auto rate = [&](const Eigen::VectorXd& v) {
+        return (v[after] - v[before]) / (record.times[after] - record.times[before]);
+      };
       add("value", own[i]);
       add("rate", rate(own));
       for (std::size_t c = 0; c < record.channels.size(); ++c) {

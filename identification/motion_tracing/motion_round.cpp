@@ -32,8 +32,9 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
   // The first order led too far: begin beside null.
   for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
     MotionSetting& s = start[in.current.settings.size() + k];
-    s.value = std::clamp(effect.numbers[k].declared + std::copysign(0.1 * s.number.scale, score.start[k] - effect.numbers[k].declared),
-                         s.number.lower, s.number.upper);
+    s.value = std::clamp(
+        effect.numbers[k].declared + std::copysign(0.1 * s.number.scale, score.start[k] - effect.numbers[k].declared),
+        s.number.lower, s.number.upper);
   }
   MotionFit again = fit_motion(in.model, in.data, start, options);
   return again.chi2 < fit.chi2 ? again : fit;
@@ -58,12 +59,13 @@ std::string objection(const RoundInput& in, const MotionCandidate& c, const Moti
   const MotionEffect& effect = in.effects[c.score.effect];
   const double value = c.numbers.front().value;
   if (!c.plausible)
-    return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value, c.numbers.front().unit,
-                       effect.plausible_lower, effect.plausible_upper);
+    return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
+                       c.numbers.front().unit, effect.plausible_lower, effect.plausible_upper);
   bool large = false;
   for (const ResidualPiece& p : in.data.pieces) {
     const std::string& sensor = in.data.set->records[p.record].channels[p.channel].sensor;
-    const double fall = in.current.residual.segment(p.begin, p.size).squaredNorm() - fit.residual.segment(p.begin, p.size).squaredNorm();
+    const double fall = in.current.residual.segment(p.begin, p.size).squaredNorm() -
+                        fit.residual.segment(p.begin, p.size).squaredNorm();
     const double error = std::sqrt(std::max(0.0, fall) / static_cast<double>(p.size)) * p.scale;
     large = large || error > in.tolerance.at(sensor);
   }
@@ -115,7 +117,8 @@ RoundResult motion_round(const RoundInput& in) {
     c.rmse = motion_stage(in.model, in.data, fits[k], nullptr, {}).rmse;
     c.delta_bic = bic(in.data, scores.noise, fits[k]) - present;
     const MotionEffect& effect = in.effects[c.score.effect];
-    c.plausible = c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
+    c.plausible =
+        c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
     if (in.heldout_improves) c.heldout_improves = in.heldout_improves(fits[k]);
     c.why_not = objection(in, c, fits[k]);
   }
@@ -153,7 +156,8 @@ RoundResult motion_round(const RoundInput& in) {
   }
   result.round.classes.insert(result.round.classes.begin(), alike);
   result.round.added = alike.front();
-  result.round.reason = alike.size() > 1 ? "best of a class that these records cannot tell apart" : "explains most, and nothing else does as well";
+  result.round.reason = alike.size() > 1 ? "best of a class that these records cannot tell apart"
+                                         : "explains most, and nothing else does as well";
   result.added = best.score.effect;
   result.better = std::move(fits.front());
   return result;

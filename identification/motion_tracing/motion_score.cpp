@@ -15,7 +15,7 @@ namespace {
 /// Changes of the signal at trial sizes.
 struct Trial {
   std::size_t effect = 0, number = 0;
-  double scale = 0.0;      // of the number; the trial is a tenth of it
+  double scale = 0.0;  // of the number; the trial is a tenth of it
   bool settled = false;
   Eigen::VectorXd column;  // derivative times scale; empty: it could not be simulated
 };
@@ -25,8 +25,9 @@ constexpr double least_change = 0.02, most_change = 1.0, wanted_change = 0.2;  /
 constexpr int most_passes = 3;
 
 /// One pass over the trials that are not settled.
-void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit& fit, const std::vector<MotionSetting>& all,
-               const std::vector<MotionEffect>& effects, std::vector<Trial>& trials) {
+void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+               const std::vector<MotionSetting>& all, const std::vector<MotionEffect>& effects,
+               std::vector<Trial>& trials) {
   std::vector<std::vector<MotionSetting>> points;
   std::vector<std::pair<std::size_t, double>> of;  // trial, step
   for (std::size_t t = 0; t < trials.size(); ++t) {
@@ -72,8 +73,8 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
 }
 
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
-void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual, const MotionEffect& effect,
-           MotionScore& score) {
+void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual,
+           const MotionEffect& effect, MotionScore& score) {
   const Eigen::MatrixXd& g = score.columns;
   const Eigen::VectorXd u = g.transpose() * residual;
   const Eigen::MatrixXd through = coloured(data, noise, g);
@@ -115,8 +116,7 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   for (std::size_t e = 0; e < effects.size(); ++e)
     for (std::size_t n = 0; n < effects[e].numbers.size(); ++n)
       trials.push_back({e, n, effects[e].numbers[n].scale, false, {}});
-  for (int pass = 0; pass < most_passes && !model.stopped(); ++pass)
-    try_sizes(model, data, fit, all, effects, trials);
+  for (int pass = 0; pass < most_passes && !model.stopped(); ++pass) try_sizes(model, data, fit, all, effects, trials);
 
   MotionScores result;
   const Projection projection(fit.jacobian);
@@ -139,8 +139,10 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
       for (std::size_t k = 0; k < columns.size(); ++k) matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
       score.columns = projection.without(matrix);
       constexpr double absorbed = 1e-3;  // of the change: below it the fitted numbers do the same
-      if (!(before > 0.0)) score.unobservable = "it changes nothing in these records";
-      else if (score.columns.colwise().norm().maxCoeff() < absorbed * before) score.unobservable = "the fitted numbers change the records in the same way";
+      if (!(before > 0.0))
+        score.unobservable = "it changes nothing in these records";
+      else if (score.columns.colwise().norm().maxCoeff() < absorbed * before)
+        score.unobservable = "the fitted numbers change the records in the same way";
     }
     if (score.unobservable.empty())
       for (Eigen::Index k = 0; k < score.columns.cols(); ++k) usable.emplace_back(score.columns.col(k));
@@ -149,7 +151,8 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   // Noise of what no effect can take away.
   Eigen::MatrixXd everything(data.rows, fit.jacobian.cols() + static_cast<Eigen::Index>(usable.size()));
   if (fit.jacobian.cols() > 0) everything.leftCols(fit.jacobian.cols()) = fit.jacobian;
-  for (std::size_t k = 0; k < usable.size(); ++k) everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
+  for (std::size_t k = 0; k < usable.size(); ++k)
+    everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
   result.noise = coloured_noise(data, Projection(everything).without(fit.residual));
 
   std::vector<double> p;
@@ -158,7 +161,8 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
     if (score.unobservable.empty()) p.push_back(score.p);
   }
   const std::vector<double> adjusted = holm(p);
-  const double needed = normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) + 1.2816;  // nine of ten
+  const double needed =
+      normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) + 1.2816;  // nine of ten
   std::size_t next = 0;
   for (MotionScore& score : result.scores) {
     if (!score.unobservable.empty()) continue;

@@ -24,7 +24,8 @@ std::vector<ChannelError> errors_of(const MotionModel& model, const std::vector<
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
       const RecordChannel& channel = record.channels[c];
       if (!sums.contains(channel.sensor))
-        errors.push_back({channel.sensor, model.unit(channel), channel.fitted, 0.0, 0.0, 0.0, reading_sigma(model.records(), channel.sensor)});
+        errors.push_back({channel.sensor, model.unit(channel), channel.fitted, 0.0, 0.0, 0.0,
+                          reading_sigma(model.records(), channel.sensor)});
       Sums& s = sums[channel.sensor];
       s.squares += (channel.values - predictions[k].channels[c]).squaredNorm();
       s.measured += channel.values.squaredNorm();
@@ -77,7 +78,8 @@ std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
     const auto i = static_cast<Eigen::Index>(k);
     const MotionSetting& s = fit.settings[k];
     TracedNumber n{s.number.key, s.number.unit, s.value, 0.0, {}, {}};
-    const bool seen = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() && fit.jacobian.col(i).norm() > 0.0;
+    const bool seen = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() &&
+                      fit.jacobian.col(i).norm() > 0.0;
     if (seen) {
       n.stderr_ = std::sqrt(fit.covariance(i, i));
       n.lower = std::max(s.number.lower, s.value - 1.96 * n.stderr_);
@@ -88,8 +90,8 @@ std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
   return numbers;
 }
 
-MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit, const MotionFit* heldout,
-                         const MotionData& heldout_data) {
+MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+                         const MotionFit* heldout, const MotionData& heldout_data) {
   MotionStage stage;
   stage.numbers = traced_numbers(fit);
   stage.errors = errors_of(model, data.records, fit.predictions);

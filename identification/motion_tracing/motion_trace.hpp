@@ -34,10 +34,11 @@ struct ChannelError {
 /// One model of a trace with what it leaves.
 struct MotionStage {
   std::vector<TracedNumber> numbers;
-  std::vector<ChannelError> errors;   ///< of the fitted records
-  std::vector<ChannelError> heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
-  double rmse = 0.0, nrmse = 0.0;     ///< over the fitted channels: in the unit of the only one, else over their scales
-  double chi2_dof = 0.0;              ///< against the noise
+  std::vector<ChannelError> errors;  ///< of the fitted records
+  std::vector<ChannelError>
+      heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
+  double rmse = 0.0, nrmse = 0.0;  ///< over the fitted channels: in the unit of the only one, else over their scales
+  double chi2_dof = 0.0;           ///< against the noise
   double heldout_rmse = 0.0;
   std::vector<RecordPrediction> predictions;  ///< of all records of the set, in its order
 };
@@ -46,8 +47,8 @@ struct MotionStage {
 struct MotionCandidate {
   MotionScore score;
   bool refitted = false;
-  double rmse = 0.0;                 ///< after the refit
-  double delta_bic = 0.0;            ///< of the refit, of prewhitened residuals
+  double rmse = 0.0;                  ///< after the refit
+  double delta_bic = 0.0;             ///< of the refit, of prewhitened residuals
   std::vector<TracedNumber> numbers;  ///< of the effect after the refit
   bool plausible = true;
   std::string why_not;  ///< it is not named although it is significant
@@ -64,16 +65,16 @@ struct MotionRound {
 struct MotionTrace {
   std::vector<MotionEffect> effects;
   MotionStage declared, base, final;
-  std::string noise_source;  ///< "declared", "second_differences"
-  double sigma = 0.0;        ///< of the fitted channels together, as MotionStage::rmse
-  bool significant = false;  ///< what the base leaves
+  std::string noise_source;                               ///< "declared", "second_differences"
+  double sigma = 0.0;                                     ///< of the fitted channels together, as MotionStage::rmse
+  bool significant = false;                               ///< what the base leaves
   double ljung_box = 1.0, runs = 1.0, lack_of_fit = 1.0;  ///< p of the base's residual
   std::vector<MotionRound> rounds;
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
   VerdictKind kind = VerdictKind::nothing_missing;
-  double share_left = 0.0;      ///< of what the base leaves beside the noise, as mean squares
-  std::string channel;          ///< of the first effect selected
+  double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares
+  std::string channel;      ///< of the first effect selected
   std::vector<Leftover> leftovers;
   std::string next_measurement;
   std::vector<std::string> next_separates;
@@ -83,16 +84,5 @@ struct MotionTrace {
   bool interrupted = false;
   numerics::SolveReport report;
 };
-
-struct MotionTraceOptions {
-  bool effects = true;  ///< false: the base fit only
-  double significance = 0.01;
-  std::function<bool(const std::string& stage)> progress;  ///< false stops
-  std::function<void(const MotionTrace& part)> reached;    ///< whenever more of it is whole
-};
-
-/// Closes the loop of a scenario and its records.                                        theory.md (I.20)-(I.24)
-/// Throws base::InputError for records that cannot be compared with the scenario.
-[[nodiscard]] MotionTrace trace_records(const RecordSet& set, const MotionTraceOptions& options = {});
 
 }  // namespace snare::identification

@@ -70,7 +70,8 @@ ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& resi
   std::map<std::string, Autoregression> fitted;
   for (const auto& [sensor, stretches] : by_sensor) fitted[sensor] = burg(stretches);
   ColouredNoise noise;
-  for (const ResidualPiece& p : data.pieces) noise.pieces.push_back(fitted[data.set->records[p.record].channels[p.channel].sensor]);
+  for (const ResidualPiece& p : data.pieces)
+    noise.pieces.push_back(fitted[data.set->records[p.record].channels[p.channel].sensor]);
   return noise;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/toml_tree.hpp"
-#include "identification/records/record_file.hpp"
+#include "identification/records/record_set.hpp"
 
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/motion_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,15 @@ namespace {
 Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
   Eigen::VectorXd all(data.rows);
   for (const ResidualPiece& piece : data.pieces) {
-    const auto at = static_cast<std::size_t>(
-        std::find(data.records.begin(), data.records.end(), piece.record) - data.records.begin());
+    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) -
+                                             data.records.begin());
     const RecordPrediction& p = predictions[at];
     if (!p.usable()) return {};
     all.segment(piece.begin, piece.size) = p.channels[piece.channel] / piece.scale;
     if (residual)
       all.segment(piece.begin, piece.size) =
-          data.set->records[piece.record].channels[piece.channel].values / piece.scale - all.segment(piece.begin, piece.size);
+          data.set->records[piece.record].channels[piece.channel].values / piece.scale -
+          all.segment(piece.begin, piece.size);
   }
   return all;
 }
@@ -30,6 +31,11 @@ Eigen::VectorXd MotionData::residual(const std::vector<RecordPrediction>& predic
 
 Eigen::VectorXd MotionData::signal(const std::vector<RecordPrediction>& predictions) const {
   return stacked(*this, predictions, false);
+}
+
+std::vector<MotionSetting> together(std::vector<MotionSetting> settings, const std::vector<MotionSetting>& fixed) {
+  settings.insert(settings.end(), fixed.begin(), fixed.end());
+  return settings;
 }
 
 MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records, const ChannelScales& scales) {
@@ -60,7 +66,8 @@ ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>&
     }
   }
   ChannelScales scales;
-  for (const auto& [sensor, sum] : sums) scales[sensor] = std::max(1e-300, std::sqrt(sum.squares / std::max(1.0, sum.count)));
+  for (const auto& [sensor, sum] : sums)
+    scales[sensor] = std::max(1e-300, std::sqrt(sum.squares / std::max(1.0, sum.count)));
   return scales;
 }
 

@@ -106,19 +106,15 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
   else if (summary.termination_type == ceres::FAILURE)
     static_cast<void>(fit.report.end(numerics::Termination::step_too_small, "the fit failed: " + summary.message));
   else if (summary.termination_type == ceres::NO_CONVERGENCE)
-    static_cast<void>(fit.report.end(numerics::Termination::iteration_limit, "the fit did not converge: " + summary.message));
+    static_cast<void>(
+        fit.report.end(numerics::Termination::iteration_limit, "the fit did not converge: " + summary.message));
 }
 
 }  // namespace
 
-std::vector<MotionSetting> together(std::vector<MotionSetting> settings, const std::vector<MotionSetting>& fixed) {
-  settings.insert(settings.end(), fixed.begin(), fixed.end());
-  return settings;
-}
-
 Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
-                                   const std::vector<MotionSetting>& settings, const std::vector<RecordPrediction>& base,
-                                   const std::vector<MotionSetting>& fixed) {
+                                   const std::vector<MotionSetting>& settings,
+                                   const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed) {
   std::vector<std::vector<MotionSetting>> points;
   std::vector<std::optional<std::size_t>> only;
   std::vector<std::pair<double, double>> steps;  // down, up
@@ -175,8 +171,9 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
     std::string why;
     for (const RecordPrediction& p : fit.predictions)
       if (!p.usable()) why = p.failure;
-    static_cast<void>(fit.report.end(model.stopped() ? numerics::Termination::interrupted : numerics::Termination::step_too_small,
-                                     model.stopped() ? "interrupted" : "the scenario cannot be simulated: " + why));
+    static_cast<void>(
+        fit.report.end(model.stopped() ? numerics::Termination::interrupted : numerics::Termination::step_too_small,
+                       model.stopped() ? "interrupted" : "the scenario cannot be simulated: " + why));
     fit.chi2 = std::numeric_limits<double>::max();
     return fit;
   }
@@ -187,7 +184,8 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
     fit.covariance = sandwich(data, noise, fit.jacobian);
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)
       for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j)
-        fit.covariance(i, j) *= fit.settings[static_cast<std::size_t>(i)].number.scale * fit.settings[static_cast<std::size_t>(j)].number.scale;
+        fit.covariance(i, j) *= fit.settings[static_cast<std::size_t>(i)].number.scale *
+                                fit.settings[static_cast<std::size_t>(j)].number.scale;
   }
   return fit;
 }

@@ -63,12 +63,17 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
     try {
       static_cast<void>(scenario::read_scenario(set.scenario, overrides));
     } catch (const base::InputError& error) {
-      problems.push_back({set.file.string(), 0, "fit.free", f.key, "must be a number of the scenario: " + error.problems().front().message()});
+      problems.push_back({set.file.string(), 0, "fit.free", f.key,
+                          "must be a number of the scenario: " + error.problems().front().message()});
     }
     if (f.lower && declared_.number(f.key).value_or(0.0) < *f.lower)
-      problems.push_back({set.file.string(), 0, "fit.numbers", f.key, fmt::format("is declared as {:.9g}, below its bound", declared_.number(f.key).value_or(0.0))});
+      problems.push_back(
+          {set.file.string(), 0, "fit.numbers", f.key,
+           fmt::format("is declared as {:.9g}, below its bound", declared_.number(f.key).value_or(0.0))});
     if (f.upper && declared_.number(f.key).value_or(0.0) > *f.upper)
-      problems.push_back({set.file.string(), 0, "fit.numbers", f.key, fmt::format("is declared as {:.9g}, above its bound", declared_.number(f.key).value_or(0.0))});
+      problems.push_back(
+          {set.file.string(), 0, "fit.numbers", f.key,
+           fmt::format("is declared as {:.9g}, above its bound", declared_.number(f.key).value_or(0.0))});
   }
   // Keys of records must be right, too, before anything is written.
   for (const MotionRecord& r : set.records) {
@@ -78,7 +83,8 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
       overrides.insert(overrides.end(), r.set.begin(), r.set.end());
       static_cast<void>(scenario::read_scenario(set.scenario, overrides));
     } catch (const base::InputError& error) {
-      problems.push_back({set.file.string(), 0, fmt::format("records[{}].set", r.name), "", error.problems().front().message()});
+      problems.push_back(
+          {set.file.string(), 0, fmt::format("records[{}].set", r.name), "", error.problems().front().message()});
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
@@ -112,7 +118,8 @@ std::string MotionModel::unit(const RecordChannel& channel) const {
   return column == columns_.end() ? "" : unit_of_key(column->second);
 }
 
-std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings, std::size_t record) const {
+std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings,
+                                                      std::size_t record) const {
   std::vector<base::Override> overrides = set_.set;
   const MotionRecord& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());

@@ -2,7 +2,7 @@
 
 #include "identification/records/declared_scenario.hpp"
 #include "identification/records/motion_number.hpp"
-#include "identification/records/record_file.hpp"
+#include "identification/records/record_set.hpp"
 
 #include <Eigen/Core>
 
@@ -64,16 +64,19 @@ class MotionModel {
   /// at settings that differ in that number only, and are taken over where `only` says so.
   [[nodiscard]] std::vector<std::vector<RecordPrediction>> predict_many(
       const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
-      const std::vector<RecordPrediction>* base = nullptr, const std::vector<std::optional<std::size_t>>& only = {}) const;
+      const std::vector<RecordPrediction>* base = nullptr,
+      const std::vector<std::optional<std::size_t>>& only = {}) const;
 
   [[nodiscard]] long simulations() const { return simulations_; }
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
 
  private:
   /// Null with `failure` set where the scenario cannot be simulated.
-  [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides, std::size_t record, std::string& failure) const;
+  [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides, std::size_t record,
+                                                     std::string& failure) const;
   [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record) const;
-  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings, std::size_t record) const;
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings,
+                                                         std::size_t record) const;
   void look_at_joints();
 
   const RecordSet& set_;

@@ -24,7 +24,8 @@ double median(std::vector<double> values) {
 void check_times(const RecordCsv& csv, const std::vector<double>& times, std::vector<base::InputProblem>& problems) {
   constexpr std::size_t most_told = 3;
   const auto tell = [&](double time, std::string requirement) {
-    problems.push_back({csv.file.string(), 0, csv.time_column, fmt::format("{:.9g}", time + csv.clock), std::move(requirement)});
+    problems.push_back(
+        {csv.file.string(), 0, csv.time_column, fmt::format("{:.9g}", time + csv.clock), std::move(requirement)});
   };
   std::size_t told = 0;
   std::vector<double> steps;
@@ -32,8 +33,9 @@ void check_times(const RecordCsv& csv, const std::vector<double>& times, std::ve
     steps.push_back(times[k] - times[k - 1]);
     if (steps.back() > 0.0 || told >= most_told) continue;
     ++told;
-    tell(times[k], steps.back() == 0.0 ? "stands there twice: times must ascend"
-                                       : fmt::format("comes after {:.9g}: times must ascend", times[k - 1] + csv.clock));
+    tell(times[k], steps.back() == 0.0
+                       ? "stands there twice: times must ascend"
+                       : fmt::format("comes after {:.9g}: times must ascend", times[k - 1] + csv.clock));
   }
   if (!times.empty() && times.front() < -1e-9)
     tell(times.front(), fmt::format("must not be before clock_s = {:.9g}, when the scenario begins", csv.clock));
@@ -43,8 +45,10 @@ void check_times(const RecordCsv& csv, const std::vector<double>& times, std::ve
   for (std::size_t k = 0; k < steps.size() && told < most_told; ++k) {
     if (steps[k] <= most) continue;
     ++told;
-    tell(times[k + 1], fmt::format("comes {:.6g} s after the reading before, usual are {:.6g} s: part the record, or declare longest_gap_s",
-                                   steps[k], usual));
+    tell(times[k + 1],
+         fmt::format(
+             "comes {:.6g} s after the reading before, usual are {:.6g} s: part the record, or declare longest_gap_s",
+             steps[k], usual));
   }
 }
 
@@ -58,7 +62,8 @@ void check_values(const RecordCsv& csv, const std::string& column, const std::ve
   for (const double end : {*low, *high}) {
     const auto count = std::count(values.begin(), values.end(), end);
     if (static_cast<double>(count) > most_at_end * static_cast<double>(values.size()))
-      tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest", count, values.size()));
+      tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
+                            count, values.size()));
   }
 }
 
@@ -99,7 +104,8 @@ std::vector<std::string> read_into(const std::function<RecordReadings()>& read, 
   std::vector<std::string> problems;
   try {
     const RecordReadings readings = read();
-    record.times = Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(readings.times.size()));
+    record.times =
+        Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(readings.times.size()));
     for (std::size_t c = 0; c < record.channels.size(); ++c)
       record.channels[c].values = Eigen::Map<const Eigen::VectorXd>(
           readings.values[c].data(), static_cast<Eigen::Index>(readings.values[c].size()));

@@ -50,7 +50,8 @@ std::vector<base::Override> read_set(const TomlTable& table, const TomlNode* nod
 }
 
 /// Numbers by column: `scale = { position_m = 1000.0 }`.
-double number_by_column(const TomlTable& table, const char* key, const std::string& column, double otherwise, Range range) {
+double number_by_column(const TomlTable& table, const char* key, const std::string& column, double otherwise,
+                        Range range) {
   return table.table(key).number_or(column, otherwise, range);
 }
 
@@ -93,7 +94,8 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
       channel.sigma = table.optional_number("sigma", Range::above(0.0));
     else if (table.has("sigma"))
       channel.sigma = table.table("sigma").optional_number(e.key, Range::above(0.0));
-    csv.columns.emplace_back(e.key, table.has("scale") ? number_by_column(table, "scale", e.key, 1.0, Range::finite()) : 1.0);
+    csv.columns.emplace_back(e.key,
+                             table.has("scale") ? number_by_column(table, "scale", e.key, 1.0, Range::finite()) : 1.0);
     record.channels.push_back(std::move(channel));
   }
   for (std::size_t k = 0; k < watched.size(); ++k)

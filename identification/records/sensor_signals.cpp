@@ -42,7 +42,8 @@ SensorRun read_sensors_of(const std::vector<scenario::Sensor>& sensors, const co
 }
 
 std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
-                                        const std::map<std::string, std::string>& columns, const SignalChanges& changes) {
+                                        const std::map<std::string, std::string>& columns,
+                                        const SignalChanges& changes) {
   std::vector<Eigen::VectorXd> result(record.channels.size());
   for (std::size_t s = 0; s < run.readings.size(); ++s) {
     const std::vector<std::string>& names = run.columns[s];
@@ -66,7 +67,8 @@ std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord
       result[c].resize(record.times.size());
       for (Eigen::Index i = 0; i < record.times.size(); ++i) {
         const double t = record.times[i];
-        result[c][i] = change.gain * value_at(readings.times, values, t - change.delay) + change.bias + change.drift * t;
+        result[c][i] =
+            change.gain * value_at(readings.times, values, t - change.delay) + change.bias + change.drift * t;
       }
     }
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "identification/records/motion_number.hpp"
-#include "identification/records/record_file.hpp"
+#include "identification/records/record_set.hpp"
 #include "scenario/sensors.hpp"
 
 #include <Eigen/Core>
@@ -23,6 +23,7 @@ struct SensorRun {
 /// The readings at the times of a record, with changes: theory.md (I.23). Between two readings of a sensor straight; before the first one
 /// and behind the last one they stand. columns: full names of the channels' sensors.
 [[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
-                                                      const std::map<std::string, std::string>& columns, const SignalChanges& changes);
+                                                      const std::map<std::string, std::string>& columns,
+                                                      const SignalChanges& changes);
 
 }  // namespace snare::identification

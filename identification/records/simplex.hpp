@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/motion_data.hpp"
 
 namespace snare::identification {
 

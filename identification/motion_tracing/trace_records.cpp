@@ -1,4 +1,4 @@
-#include "identification/motion_tracing/motion_trace.hpp"
+#include "identification/motion_tracing/trace_records.hpp"
 
 #include "identification/fitting/statistics.hpp"
 #include "identification/motion_tracing/motion_round.hpp"
@@ -63,7 +63,9 @@ class Tracer {
     return !stop_;
   }
   [[nodiscard]] std::function<bool(int, double)> asked() {
-    return [this](int iteration, double chi2) { return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2)); };
+    return [this](int iteration, double chi2) {
+      return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
+    };
   }
   void reached() {
     if (!options_.reached) return;
@@ -77,7 +79,8 @@ class Tracer {
   }
   MotionTrace end(const std::string& why) {
     trace_.interrupted = stop_;
-    static_cast<void>(trace_.report.end(stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
+    static_cast<void>(
+        trace_.report.end(stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
     trace_.simulations = model_.simulations();
     return std::move(trace_);
   }
@@ -93,7 +96,8 @@ class Tracer {
       const RecordChannel& c = set_.records[p.record].channels[p.channel];
       undeclared[c.sensor] = !c.sigma;
     }
-    const bool several = undeclared.size() > 1 && std::any_of(undeclared.begin(), undeclared.end(), [](const auto& u) { return u.second; });
+    const bool several = undeclared.size() > 1 &&
+                         std::any_of(undeclared.begin(), undeclared.end(), [](const auto& u) { return u.second; });
     for (int k = 0; several && k < most_reweighings && fit.report.usable(); ++k) {
       ChannelScales scales;
       std::map<std::string, double> count;
@@ -129,11 +133,13 @@ class Tracer {
 
   MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
     const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
-    return motion_stage(model_, data_, fit, heldout && heldout->residual.size() > 0 ? &*heldout : nullptr, heldout_data_);
+    return motion_stage(model_, data_, fit, heldout && heldout->residual.size() > 0 ? &*heldout : nullptr,
+                        heldout_data_);
   }
 
   /// Whether an error is more than noise, and more than is worth a name.
-  [[nodiscard]] bool more_than_noise(const MotionStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs, double* lack) const {
+  [[nodiscard]] bool more_than_noise(const MotionStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs,
+                                     double* lack) const {
     std::vector<Eigen::VectorXd> pieces;
     for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
     const double l = ljung_box_p(pieces, 10), r = runs_p(pieces);
@@ -161,7 +167,8 @@ class Tracer {
   }
 
   void tell_noise() {
-    trace_.significant = more_than_noise(trace_.base, current_.residual, &trace_.ljung_box, &trace_.runs, &trace_.lack_of_fit);
+    trace_.significant =
+        more_than_noise(trace_.base, current_.residual, &trace_.ljung_box, &trace_.runs, &trace_.lack_of_fit);
     double squares = 0.0;
     int count = 0;
     bool declared = true;
@@ -272,7 +279,8 @@ class Tracer {
         trace_.next_measurement.clear();
         for (const MotionEffect& e : trace_.effects)
           if (std::find(members.begin(), members.end(), e.label()) != members.end())
-            trace_.next_measurement += fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ", e.label(), e.independent_check);
+            trace_.next_measurement +=
+                fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ", e.label(), e.independent_check);
       }
     }
   }
