@@ -52,7 +52,7 @@ void fields(auto& a, EnergyBalance& e) {
   a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.work)(e.integrator);
 }
 void fields(auto& a, MotionSample::Arm& s) {
-  a(s.state)(s.work)(s.joint_torque);
+  a(s.state)(s.work)(s.joint_torque)(s.drive_torque);
 }
 void fields(auto& a, MotionSample::Bushing& b) {
   a(b.shift)(b.turn)(b.on_second);

@@ -1,10 +1,12 @@
 #include "app/commands.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
+#include "app/record_commands.hpp"
 #include "app/report/push_report.hpp"
 #include "app/report/trace_report.hpp"
 #include "app/result_folder.hpp"
 #include "base/files.hpp"
+#include "identification/records/record_file.hpp"
 #include "identification/tracing/trace.hpp"
 #include "results/curves.hpp"
 #include "results/trace_findings.hpp"
@@ -118,6 +120,7 @@ std::string number_line(const FittedNumber& n) {
 }  // namespace
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  if (identification::is_record_file(file, overrides_of(options))) return trace_record_file(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});
   const Trace trace = trace_and_write(experiment, {}, options, "snare-trace/1", write_trace, console);
@@ -135,6 +138,7 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
 }
 
 ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+  if (identification::is_record_file(file, overrides_of(options))) return fit_records(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "fit.json", "report.html"});
   const Trace trace = trace_and_write(experiment, fitting_options(), options, "snare-fit/1", write_fit, console);

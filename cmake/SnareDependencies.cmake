@@ -10,6 +10,7 @@ find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
+find_package(NLopt 2.7 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(urdfdom REQUIRED)
 # Headers of one source file (coupling/contact/mesh_shape.cpp); users of the installed package need GMP and MPFR only.

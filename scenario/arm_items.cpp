@@ -48,6 +48,26 @@ void hold(Hold how, const Eigen::VectorXd& angles, std::vector<multibody::Drive>
   }
 }
 
+/// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors. One a joint.
+void start_motion(const TomlTable& table, coupling::MotionArm& arm) {
+  const auto count = static_cast<std::size_t>(arm.arm.motors());
+  const auto read = [&](const char* key, double most) {
+    const std::vector<double> none;
+    return table.has(key) ? table.numbers(key, count, count, Range::from(-most, most), base::degree) : none;
+  };
+  const std::vector<double> rates = read("rates_deg_s", 1e5);
+  for (std::size_t j = 0; j < rates.size(); ++j) {
+    arm.start.motor_rate[static_cast<Eigen::Index>(j)] = rates[j];
+    arm.start.v[arm.arm.tree.body(arm.arm.joints[j].body).v_index] = rates[j];
+  }
+  const std::vector<double> deflections = read("deflections_deg", 90.0);
+  for (std::size_t j = 0; j < deflections.size(); ++j) {
+    const auto k = static_cast<Eigen::Index>(j);
+    arm.start.motor[k] -= deflections[j];
+    arm.drives[j].course = multibody::Course::standing(arm.start.motor[k]);
+  }
+}
+
 /// Moves the tree to where it stands, and adds its frames.
 void place_arm(const std::string& name, int index, int tip, const Stand& stand, const PlacedFrame& on,
                coupling::MotionArm& arm, Placement& placement) {
@@ -77,13 +97,15 @@ void read_arms(Composition& c) {
     const Hold how = table.has("hold") ? table.choice("hold", holds).value_or(Hold::as_described) : Hold::as_described;
     const Stand stand = read_stand(table);
     std::optional<multibody::ArmDescription> described;
-    if (!file.empty()) described = base::read_beside(c.document, [&] { return multibody::read_arm(c.folder / file); });
+    if (!file.empty())
+      described =
+          base::read_beside(c.document, [&] { return multibody::read_arm(c.folder / file, c.arm_overrides[name]); });
     const int index = static_cast<int>(c.motion.arms.size());
     coupling::MotionArm& arm = c.motion.arms.emplace_back();
     arm.name = name;
     const std::string key = stand.by_tip ? "tip_frame" : "base_frame";
     if (!described) {
-      for (const char* k : {"pose", "angles_deg"}) static_cast<void>(table.has(k));
+      for (const char* k : {"pose", "angles_deg", "rates_deg_s", "deflections_deg"}) static_cast<void>(table.has(k));
       c.placement.excuse(name);
       static_cast<void>(table.has(key));
       continue;
@@ -94,6 +116,7 @@ void read_arms(Composition& c) {
     arm.drives = described->drives;
     hold(how, angles, arm.drives);
     arm.start = multibody::resting(arm.arm, described->coordinates(angles));
+    start_motion(table, arm);
     for (int j = 0; j < arm.arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.arm.joints[at(j)];
       c.joints[name + "::" + joint.name] = {index, j,

@@ -205,17 +205,42 @@ void add_mounts(Composition& c) {
 
 }  // namespace
 
-WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder) {
+ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides) {
+  constexpr std::string_view list = "arms[";
+  ArmOverrides arms;
+  std::vector<base::Override> own;
+  for (base::Override& one : overrides) {
+    const std::size_t end = one.key.find("].");
+    if (one.key.starts_with(list) && end != std::string::npos) {
+      const std::string rest = one.key.substr(end + 2);
+      const std::string_view first = std::string_view(rest).substr(0, rest.find_first_of(".["));
+      if (first == "joint" || first == "every_joint" || first == "link" || first == "gravity_m_s2") {
+        arms[one.key.substr(list.size(), end - list.size())].push_back({rest, one.value});
+        continue;
+      }
+    }
+    own.push_back(std::move(one));
+  }
+  overrides = std::move(own);
+  return arms;
+}
+
+WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder, const ArmOverrides& arms) {
   const TomlTable root = document.root();
   NamedMotion run;
   run.name = root.text("title");
   run.model = "wire";
-  Composition c{document, folder};
+  Composition c{document, folder, arms};
   read_motion_options(root, run.options);
   c.motion.gravity = read_vector_or_zero(root.table("gravity"), "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
   c.damping = read_damping(root.table("damping"));
   // What stands somewhere, then what is between.
   read_arms(c);
+  for (const auto& [name, of_file] : arms) {
+    if (!c.arm_names.find(name))
+      document.add({"--set", 0, fmt::format("arms[{}].{}", name, of_file.front().key), of_file.front().value,
+                    "no such arm: " + c.arm_names.requirement()});
+  }
   read_bodies(c);
   Snares snares(c);
   read_frames(c);

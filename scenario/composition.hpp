@@ -38,6 +38,8 @@ struct PlacedShape {
 struct Composition {
   base::TomlDocument& document;
   std::filesystem::path folder;
+  std::map<std::string, std::vector<base::Override>> arm_overrides =
+      {};  ///< of the arms' own files, by the arms' names
   coupling::Motion motion = {};
   Placement placement = {};
   wire::RodDamping damping = {};

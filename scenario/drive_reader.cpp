@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 namespace snare::scenario {
 
@@ -36,17 +37,54 @@ constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proport
 
 using CourseMaker = std::function<Course(double time, double from)>;
 
-/// A course from a CSV of `time_s` and the position, counted from where the motor is when it begins.
+/// Mean about one row with the weights of a raised cosine that ends a half width of time away, and no farther than the rows go on both sides.
+double smoothed(const std::vector<double>& times, const std::vector<double>& values, std::size_t row,
+                double half_width) {
+  const double width = std::min({half_width, times[row] - times.front(), times.back() - times[row]});
+  if (!(width > 0.0)) return values[row];
+  double sum = 0.0, weights = 0.0;
+  const auto add = [&](std::size_t k) {
+    const double weight = 1.0 + std::cos(std::numbers::pi * (times[k] - times[row]) / width);
+    sum += weight * values[k];
+    weights += weight;
+  };
+  for (std::size_t k = row; k < times.size() && times[k] - times[row] < width; ++k) add(k);
+  for (std::size_t k = row; k-- > 0 && times[row] - times[k] < width;) add(k);
+  return sum / weights;
+}
+
+/// Through values by the C2 spline: its acceleration has no jumps, as a motor needs whose torque is asked for. Between the values it may overshoot.
+Course smooth_course(double from, double begin, const std::vector<double>& times, const std::vector<double>& values) {
+  std::vector<double> rise(values);
+  for (double& value : rise) value -= values.front();
+  Course course(from, from + rise.back(), begin, times.back());
+  course.kind = multibody::CourseKind::table;
+  std::vector<double> slopes = numerics::HermiteCurve(times, rise).slopes();
+  slopes.front() = slopes.back() = 0.0;  // at rest at both ends
+  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise, slopes);
+  return course;
+}
+
+/// A course from a CSV of `time_s` and the position, counted from where the motor is when it begins, or from its zero.
 CourseMaker table_course(const TomlTable& table, const std::filesystem::path& folder, const Units& u,
                          std::string& input) {
   const std::string name = table.text("course_file");
+  static constexpr Choice<bool> counts[] = {{"motor", false}, {"zero", true}};
+  const bool from_zero = table.has("counted_from") && table.choice("counted_from", counts).value_or(false);
+  const std::string column = table.text_or("course_column", u.column);
+  const double factor = table.number_or("course_factor", 1.0, Range::from(-1e9, 1e9));
+  const int every = table.integer_or("course_every", 1, 1, 1000000);
+  const double smooth = table.number_or("course_smooth_s", 0.0, Range::from(0.0, 1e3));
   if (name.empty()) return {};
   try {
     const base::CsvTable csv = base::read_csv(
         folder / name, {{"time_s", base::CsvColumn::Presence::required, Range::from(0.0, 1e6)},
-                        {u.column, base::CsvColumn::Presence::required, Range::from(-1e6, 1e6), u.unit}});
-    const std::vector<double>& times = csv.columns[0];
-    const std::vector<double>& values = csv.columns[1];
+                        {column, base::CsvColumn::Presence::required, Range::from(-1e6, 1e6), factor * u.unit}});
+    std::vector<double> times, values;
+    for (std::size_t k = 0; k < csv.rows; k += base::at(every)) {
+      times.push_back(csv.columns[0][k]);
+      values.push_back(smooth > 0.0 ? smoothed(csv.columns[0], csv.columns[1], k, smooth) : csv.columns[1][k]);
+    }
     bool ascending = times.size() >= 2 && times.front() == 0.0;
     for (std::size_t k = 1; k < times.size(); ++k) ascending = ascending && times[k] > times[k - 1];
     if (!ascending) {
@@ -54,7 +92,10 @@ CourseMaker table_course(const TomlTable& table, const std::filesystem::path& fo
       return {};
     }
     for (std::size_t k = 0; k < times.size(); ++k) input += fmt::format("{} {}\n", times[k], values[k]);
-    return [times, values](double time, double from) { return Course::through(from, time, times, values); };
+    return [times, values, from_zero, smooth](double time, double from) {
+      const double begin = from_zero ? values.front() : from;
+      return smooth > 0.0 ? smooth_course(begin, time, times, values) : Course::through(begin, time, times, values);
+    };
   } catch (const base::InputError& error) {
     for (const base::InputProblem& problem : error.problems())
       table.fail("course_file", fmt::format("{}: {}", problem.file, problem.requirement));
@@ -111,6 +152,7 @@ DriveMaker read_drive(const TomlTable& table, const std::filesystem::path& folde
     };
     drive.proportional = gain(u.stiffness, as_described.proportional, Range::above(0.0, 1e15));
     drive.derivative = gain(u.damping, as_described.derivative, Range::from(0.0, 1e15));
+    drive.rate_share = table.number_or("rate_share", as_described.rate_share, Range::from(0.0, 1.0));
     drive.limit = table.number_or(u.limit, described ? as_described.limit : drive.limit, Range::above(0.0, 1e15));
   }
   if (drive.mode == DriveMode::locked || drive.mode == DriveMode::limp)

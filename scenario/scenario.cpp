@@ -96,12 +96,14 @@ void check_lists(const base::TomlTable& root) {
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
   const TomlNode written = base::parse_toml(file.string(), base::read_text(file, TomlDocument::size_limit));
   const SplitOverrides split_overrides = split(overrides);
+  std::vector<base::Override> own = overrides;  // less those of the arms' files
+  const ArmOverrides arms = take_arm_overrides(own);
   TomlNode looked_at = written;
   std::vector<base::InputProblem> ignored;  // the document tells them
-  for (const base::Override& one : split_overrides.own) base::apply_override(looked_at, one, ignored);
+  for (const base::Override& one : own) base::apply_override(looked_at, one, ignored);
   const Kind kind = kind_of(file, looked_at);
 
-  TomlDocument document(file.string(), written, kind == Kind::arm_contact ? split_overrides.own : overrides);
+  TomlDocument document(file.string(), written, kind == Kind::arm_contact ? split_overrides.own : own);
   const base::TomlTable root = document.root();
   Scenario scenario;
   base::require_schema(root, kind == Kind::composed ? composed_schema : scenario_schema);
@@ -111,7 +113,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<base
   const std::filesystem::path folder = file.parent_path();
   switch (kind) {
     case Kind::composed:
-      scenario.content = read_composition(document, folder);
+      scenario.content = read_composition(document, folder, arms);
       break;
     case Kind::contact:
       if (!lists_bodies(looked_at)) {

@@ -12,12 +12,12 @@ using base::TomlTable;
 
 std::vector<Sensor> read_sensors(const Composition& c, double output_interval) {
   using Kind = Sensor::Kind;
-  static constexpr Choice<Kind> kinds[] = {{"position", Kind::position},           {"attitude", Kind::attitude},
-                                           {"velocity", Kind::velocity},           {"rate", Kind::rate},
-                                           {"joint_angle", Kind::joint_angle},     {"motor_angle", Kind::motor_angle},
-                                           {"motor_rate", Kind::motor_rate},       {"joint_torque", Kind::joint_torque},
-                                           {"contact_force", Kind::contact_force}, {"tension", Kind::tension},
-                                           {"mount_force", Kind::mount_force}};
+  static constexpr Choice<Kind> kinds[] = {{"position", Kind::position},         {"attitude", Kind::attitude},
+                                           {"velocity", Kind::velocity},         {"rate", Kind::rate},
+                                           {"joint_angle", Kind::joint_angle},   {"motor_angle", Kind::motor_angle},
+                                           {"motor_rate", Kind::motor_rate},     {"joint_torque", Kind::joint_torque},
+                                           {"drive_torque", Kind::drive_torque}, {"contact_force", Kind::contact_force},
+                                           {"tension", Kind::tension},           {"mount_force", Kind::mount_force}};
   std::vector<Sensor> sensors;
   Names names("sensor");
   for (const TomlTable& table : c.document.root().tables("sensors")) {

@@ -43,8 +43,8 @@ Unit unit_of(const Sensor& sensor) {
     case Sensor::Kind::motor_rate:
       return sensor.slides ? Unit{"mm_s", base::mm} : Unit{"deg_s", base::degree};
     case Sensor::Kind::joint_torque:
-      if (!sensor.slides) return {"Nm", 1.0};
-      break;
+    case Sensor::Kind::drive_torque:
+      return {sensor.slides ? "N" : "Nm", 1.0};
     case Sensor::Kind::contact_force:
     case Sensor::Kind::tension:
     case Sensor::Kind::mount_force:
@@ -79,6 +79,8 @@ class Sight {
         return one(arm().state.motor_rate[sensor_.joint]);
       case Sensor::Kind::joint_torque:
         return one(arm().joint_torque[sensor_.joint]);
+      case Sensor::Kind::drive_torque:
+        return one(arm().drive_torque[sensor_.joint]);
       case Sensor::Kind::contact_force:
         return one(s.contacts[at(sensor_.index)].normal_force);
       case Sensor::Kind::tension:

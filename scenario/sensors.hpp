@@ -16,10 +16,11 @@ struct Sensor {
     attitude,       ///< rotation vector of a frame in another [rad], three
     velocity,       ///< of a frame's origin relative to another's, in that one's axes [m/s], three
     rate,           ///< angular, in the axes of the frame itself, as a gyroscope [rad/s], three
-    joint_angle,    ///< of the link behind an elastic joint [rad]
-    motor_angle,    ///< [rad]
-    motor_rate,     ///< [rad/s]
-    joint_torque,   ///< in the spring of a joint [N m]
+    joint_angle,    ///< of the link behind an elastic joint [rad], of one that slides [m]
+    motor_angle,    ///< [rad], [m]
+    motor_rate,     ///< [rad/s], [m/s]
+    joint_torque,   ///< in the spring of a joint [N m], [N]
+    drive_torque,   ///< of the drive on the motor [N m], [N]
     contact_force,  ///< normal [N]
     tension,        ///< of a wire, the smaller of the pulls of its mounts [N]
     mount_force     ///< size of the force on a mount, of the wire's first end [N]
@@ -27,10 +28,9 @@ struct Sensor {
   std::string name;
   Kind kind = Kind::position;
   PlacedFrame frame, relative_to;
-  int index = 0;  ///< of the arm, the contact or the wire
-  int joint = 0;  ///< of the arm
-  bool slides =
-      false;  ///< the joint's coordinate is a length: metres and newtons in the place of radians and newton metres
+  int index = 0;          ///< of the arm, the contact or the wire
+  int joint = 0;          ///< of the arm
+  bool slides = false;    ///< the joint's coordinate is a length
   double interval = 0.0;  ///< between two readings, a whole multiple of that of the output [s]
   double delay = 0.0;     ///< age of what a reading tells [s]
   double noise = 0.0;     ///< standard deviation of a reading, in the unit of its column

@@ -55,7 +55,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
   }
   for (const PressPart* p : presses_) e.strain += p->power(at.y).energy;
   constraints_->add_energy(at.y, e, into);
-  if (into != nullptr) constraints_->fill(at.y, *into);
+  if (into != nullptr) constraints_->fill(at.time, at.y, *into);
   return e;
 }
 

@@ -383,7 +383,7 @@ std::optional<Vector3d> ConstraintSet::mount_force(int wire, wire::End end, cons
   return std::nullopt;
 }
 
-void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
+void ConstraintSet::fill(double time, const VectorView& y, MotionSample& sample) const {
   for (std::size_t k = 0; k < mounts_.size(); ++k) {
     const auto i = 2 * at_index(motion_.mounts[k].wire) + index_of(mounts_[k].end());
     sample.mount_forces[i] = mounts_[k].wrench(y).force;
@@ -393,7 +393,11 @@ void ConstraintSet::fill(const VectorView& y, MotionSample& sample) const {
     s.state = a.part->state(y);
     s.work = a.part->work(y);
     s.joint_torque.resize(a.model.motors());
-    for (int k = 0; k < a.model.motors(); ++k) s.joint_torque[k] = a.part->joint_torque(y, k);
+    s.drive_torque.resize(a.model.motors());
+    for (int k = 0; k < a.model.motors(); ++k) {
+      s.joint_torque[k] = a.part->joint_torque(y, k);
+      s.drive_torque[k] = a.part->drive_torque(time, y, k);
+    }
     sample.arms.push_back(std::move(s));
   }
   for (const WeldPart& w : welds_) sample.welds.push_back(w.wrench(y));

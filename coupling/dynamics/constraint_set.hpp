@@ -83,7 +83,7 @@ class ConstraintSet {
   [[nodiscard]] std::optional<Eigen::Vector3d> mount_force(int wire, wire::End end,
                                                            const numerics::VectorView& y) const;
   /// Forces of moving mounts into a sample, and the arms' coordinates.
-  void fill(const numerics::VectorView& y, MotionSample& sample) const;
+  void fill(double time, const numerics::VectorView& y, MotionSample& sample) const;
   [[nodiscard]] double largest_gap(const numerics::VectorView& y) const;
 
  private:

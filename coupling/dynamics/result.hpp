@@ -56,6 +56,7 @@ struct MotionSample {
     multibody::ArmState state;
     multibody::ArmWork work;
     Eigen::VectorXd joint_torque;  ///< of the springs with their dampers, on the motors [N m]
+    Eigen::VectorXd drive_torque;  ///< of the drives on the motors [N m]
   };
   std::vector<Arm> arms;
   std::vector<multibody::Wrench> welds;  ///< on the held bodies, about their centres of mass, axes of the world

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -32,6 +34,7 @@ enum class Law { linear, piecewise, backlash };
 /// Stiffnesses, torques, inertias, rates: the bound keeps every product of them finite.
 constexpr Range positive{0.0, 1e15, false};
 constexpr Range not_negative{0.0, 1e15, true};
+constexpr Range any_torque{-1e15, 1e15, true};
 
 constexpr Choice<Law> laws[] = {{"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
 enum class BaseKind { fixed, free };
@@ -148,8 +151,41 @@ JointFriction friction_of(const TomlTable& table) {
   law.breakaway = table.number_or("breakaway_Nm", law.coulomb, not_negative);
   law.stribeck_velocity = table.number_or("stribeck_velocity_rad_s", 1e-3, positive);
   law.viscous = table.number_or("viscous_Nms_rad", 0.0, not_negative);
+  law.quadratic = table.number_or("quadratic_Nms2_rad2", 0.0, not_negative);
+  law.viscous_asymmetry = table.number_or("viscous_asymmetry_Nms_rad", 0.0, any_torque);
+  if (std::abs(law.viscous_asymmetry) > law.viscous)
+    table.fail("viscous_asymmetry_Nms_rad", "must not be larger than viscous_Nms_rad");
+  law.offset = table.number_or("offset_Nm", 0.0, any_torque);
   if (law.breakaway < law.coulomb) table.fail("breakaway_Nm", "must not be smaller than coulomb_Nm");
   return law;
+}
+
+/// Mass, centre of mass and moments of links that the file gives in place of the URDF's: `[link.NAME]`.
+void change_links(const TomlTable& links, RobotDescription& robot) {
+  for (RobotLink& link : robot.links) {
+    const TomlTable own = links.table(link.name);
+    for (const char* key : {"mass_kg", "com_mm", "inertia_kg_m2"}) {
+      if (own.has(key) && !(link.inertia.mass > 0.0)) own.fail(key, "only of a link that has a mass in the URDF");
+    }
+    if (!(link.inertia.mass > 0.0)) continue;
+    const double was = link.inertia.mass;
+    const double mass = own.number_or("mass_kg", was, Range::above(0.0, 1e9));
+    Eigen::Vector3d com = link.inertia.centre();
+    Eigen::Matrix3d inertia = link.inertia.about_own_centre() * (mass / was);
+    if (own.has("com_mm")) {
+      const auto c = own.numbers("com_mm", 3, 3, Range::from(-1e6, 1e6), base::mm);
+      if (c.size() == 3) com = {c[0], c[1], c[2]};
+    }
+    if (own.has("inertia_kg_m2")) {
+      const auto i = own.numbers("inertia_kg_m2", 3, 3, positive);
+      if (i.size() == 3) {
+        if (2.0 * std::max({i[0], i[1], i[2]}) > i[0] + i[1] + i[2])
+          own.fail("inertia_kg_m2", "must not have a moment larger than the two others together");
+        inertia = Eigen::Vector3d(i[0], i[1], i[2]).asDiagonal();
+      }
+    }
+    link.inertia = SpatialInertia::about_centre(mass, com, inertia);
+  }
 }
 
 Drive drive_of(const TomlTable& table) {
@@ -196,7 +232,8 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   // Without its bodies nothing else in the file has a meaning: their problems are reported alone.
   const std::string urdf = root.text("urdf");
   if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
-  const std::optional<RobotDescription> robot = read_urdf(folder / urdf);
+  std::optional<RobotDescription> robot = read_urdf(folder / urdf);
+  change_links(root.table("link"), *robot);
   description.input += robot->text + document.canonical();
   const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
   if (whole) {

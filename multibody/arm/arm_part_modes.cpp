@@ -48,7 +48,7 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
     const JointFriction law = friction(k);
     if (!drive.rules() && law.sticks()) {
       if (mode.turning == 0) {
-        const double applied = joint_torque(point.y, k) + drive_torque(point.time, point.y, k);
+        const double applied = joint_torque(point.y, k) + drive_torque(point.time, point.y, k) - law.offset;
         g(JointEvent::turn_forward_or_rest) = (law.breakaway - applied) / law.breakaway;
         g(JointEvent::turn_backward) = (law.breakaway + applied) / law.breakaway;
       } else {
@@ -104,8 +104,7 @@ void ElasticArmPart::settle(double time, numerics::VectorView y) {
     const double rate = y[rate_ + k];
     mode.turning = rate < 0.0 ? -1 : 1;
     if (!drive.rules() && law.sticks() && rate == 0.0) {
-      const double applied = joint_torque(y, k) + drive_torque(time, y, k);
-      mode.turning = std::abs(applied) <= law.breakaway ? 0 : (applied > 0.0 ? 1 : -1);
+      mode.turning = law.leaves(joint_torque(y, k) + drive_torque(time, y, k));
     }
   }
 }
@@ -126,8 +125,7 @@ void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, con
           mode.turning = 1;
         } else {  // come to rest: what acts now decides
           y[rate_ + k] = 0.0;
-          const double applied = joint_torque(y, k) + drive_torque(time, y, k);
-          mode.turning = std::abs(applied) <= friction(k).breakaway ? 0 : (applied > 0.0 ? 1 : -1);
+          mode.turning = friction(k).leaves(joint_torque(y, k) + drive_torque(time, y, k));
         }
         break;
       case JointEvent::turn_backward:

@@ -31,7 +31,7 @@ Drive Drive::holding(double angle, double proportional, double derivative, doubl
 
 double Drive::demand(double time, double angle, double rate) const {
   return mode == DriveMode::servo
-             ? proportional * (course.angle(time) - angle) + derivative * (course.rate(time) - rate)
+             ? proportional * (course.angle(time) - angle) + derivative * (rate_share * course.rate(time) - rate)
              : 0.0;
 }
 

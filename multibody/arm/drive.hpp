@@ -11,7 +11,7 @@ namespace snare::multibody {
 /// What holds a motor.
 enum class DriveMode {
   locked,  ///< a brake: the motor does not turn
-  servo,   ///< torque = clamp(kp (r - qm) + kd (r' - qm'), +-limit)
+  servo,   ///< torque = clamp(kp (r - qm) + kd (s r' - qm'), +-limit)
   limp,    ///< no torque; the gear is driven back by the load
   course   ///< the motor runs its course whatever it takes: qm' = r'
 };
@@ -21,6 +21,7 @@ struct Drive {
   double proportional = 0.0;                               ///< kp [N m/rad], >= 0
   double derivative = 0.0;                                 ///< kd [N m s/rad], >= 0
   double limit = std::numeric_limits<double>::infinity();  ///< [N m], > 0
+  double rate_share = 1.0;                                 ///< s: of the course's rate that kd sees [-], 0 to 1
   Course course;
 
   [[nodiscard]] static Drive locked();

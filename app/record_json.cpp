@@ -1,0 +1,170 @@
+#include "app/record_json.hpp"
+
+#include "results/version.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace snare::app {
+
+namespace {
+
+using identification::ChannelError;
+using identification::MotionCandidate;
+using identification::MotionStage;
+using identification::MotionTrace;
+using identification::RecordSet;
+using identification::TracedNumber;
+using nlohmann::json;
+
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+json finite(const std::optional<double>& value) {
+  return value ? finite(*value) : json();
+}
+
+/// "rmse_N": with the unit of the fitted channels, where there is one; else over their scales.
+std::string with_unit(const char* name, const MotionTrace& trace) {
+  std::string unit;
+  int count = 0;
+  for (const ChannelError& e : trace.base.errors) {
+    if (!e.fitted) continue;
+    ++count;
+    const std::size_t low = e.unit.find_first_of(" /");
+    unit = low == std::string::npos ? e.unit : std::string();
+  }
+  return count == 1 && !unit.empty() ? std::string(name) + "_" + unit : std::string(name);
+}
+
+json errors_json(const std::vector<ChannelError>& errors) {
+  json list = json::array();
+  for (const ChannelError& e : errors)
+    list.push_back({{"sensor", e.sensor},
+                    {"unit", e.unit},
+                    {"fitted", e.fitted},
+                    {"rmse", finite(e.rmse)},
+                    {"nrmse", finite(e.nrmse)},
+                    {"relative", finite(e.relative)},
+                    {"sigma", finite(e.sigma)}});
+  return list;
+}
+
+json number_json(const TracedNumber& n) {
+  return {{"value", finite(n.value)},
+          {"stderr", n.lower ? finite(n.stderr_) : json()},
+          {"unit", n.unit},
+          {"lower", finite(n.lower)},
+          {"upper", finite(n.upper)}};
+}
+
+json stage_json(const MotionTrace& trace, const MotionStage& stage) {
+  json numbers = json::object();
+  for (const TracedNumber& n : stage.numbers) numbers[n.key] = number_json(n);
+  return {{with_unit("rmse", trace), finite(stage.rmse)},
+          {"nrmse", finite(stage.nrmse)},
+          {"chi2_dof", finite(stage.chi2_dof)},
+          {"parameters", numbers},
+          {"channels", errors_json(stage.errors)}};
+}
+
+json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
+  const identification::MotionEffect& effect = trace.effects[c.score.effect];
+  json value = json::object();
+  for (const TracedNumber& n : c.numbers) value[n.key] = finite(n.value);
+  return {{"effect", effect.name},
+          {"place", effect.place},
+          {"channel", effect.channel},
+          {"unobservable", c.score.unobservable},
+          {"score_p", finite(c.score.p)},
+          {"adjusted_p", finite(c.score.adjusted_p)},
+          {"z", finite(c.score.z)},
+          {"detectable", finite(c.score.detectable)},
+          {"refitted", c.refitted},
+          {with_unit("rmse", trace), c.refitted ? finite(c.rmse) : json()},
+          {"delta_bic", c.refitted ? finite(c.delta_bic) : json()},
+          {"value", value},
+          {"plausible", c.plausible},
+          {"why_not", c.why_not},
+          {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
+          {"class", c.class_index}};
+}
+
+json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
+  return {{"schema", schema},
+          {"interrupted", trace.interrupted},
+          {"title", set.title},
+          {"source", set.source},
+          {"version", results::version()},
+          {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
+          {"declared", stage_json(trace, trace.declared)},
+          {"simulations",
+           {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
+}
+
+json tests_json(const MotionTrace& trace) {
+  return {{"runs_p", finite(trace.runs)},
+          {"ljung_box_p", finite(trace.ljung_box)},
+          {"lack_of_fit_p", finite(trace.lack_of_fit)}};
+}
+
+}  // namespace
+
+json record_trace_json(const RecordSet& set, const MotionTrace& trace) {
+  json result = head(set, trace, "snare-trace/1");
+  result["base"] = stage_json(trace, trace.base);
+  result["residual"] = {{"significant", trace.significant}, {"tests", tests_json(trace)}};
+  result["candidates"] = json::array();
+  result["classes"] = json::array();
+  result["rounds"] = json::array();
+  for (const identification::MotionRound& round : trace.rounds) {
+    json candidates = json::array();
+    for (const MotionCandidate& c : round.candidates) candidates.push_back(candidate_json(trace, c));
+    if (result["rounds"].empty()) {
+      result["candidates"] = candidates;
+      result["classes"] = round.classes;
+    }
+    result["rounds"].push_back(
+        {{"candidates", candidates}, {"classes", round.classes}, {"added", round.added}, {"reason", round.reason}});
+  }
+  json names = json::array();
+  for (const std::size_t e : trace.selected_effects) names.push_back(trace.effects[e].name);
+  result["selected"] = names;
+  result["selected_places"] = trace.selected;
+  result["final"] = stage_json(trace, trace.final);
+  result["heldout"] = {
+      {with_unit("rmse_base", trace), trace.base.heldout.empty() ? json() : finite(trace.base.heldout_rmse)},
+      {with_unit("rmse_final", trace), trace.final.heldout.empty() ? json() : finite(trace.final.heldout_rmse)},
+      {with_unit("rmse_declared", trace),
+       trace.declared.heldout.empty() ? json() : finite(trace.declared.heldout_rmse)},
+      {"base", errors_json(trace.base.heldout)},
+      {"final", errors_json(trace.final.heldout)}};
+  result["explained"] = trace.kind == identification::VerdictKind::nothing_missing ||
+                        trace.kind == identification::VerdictKind::explained;
+  result["verdict_kind"] = to_string(trace.kind);
+  json left = json::array();
+  for (std::size_t k = 0; k < std::min<std::size_t>(trace.leftovers.size(), 10); ++k)
+    left.push_back({{"sensor", trace.leftovers[k].sensor},
+                    {"on", trace.leftovers[k].on},
+                    {"share", finite(trace.leftovers[k].share)}});
+  result["remaining"] = {{with_unit("rmse", trace), finite(trace.final.rmse)},
+                         {"share_of_excess", finite(trace.share_left)},
+                         {"channel", trace.leftovers.empty() ? "" : trace.leftovers.front().sensor},
+                         {"hangs_on", left}};
+  result["channel"] = trace.channel;
+  result["next_experiment"] = {{"what", trace.next_measurement}, {"separates", trace.next_separates}};
+  return result;
+}
+
+json record_fit_json(const RecordSet& set, const MotionTrace& trace) {
+  json result = head(set, trace, "snare-fit/1");
+  result["fit"] = stage_json(trace, trace.base);
+  result["residual"] = {{"acceptable", !trace.significant}, {"tests", tests_json(trace)}};
+  result["heldout"] = {{"declared", errors_json(trace.declared.heldout)}, {"fit", errors_json(trace.base.heldout)}};
+  return result;
+}
+
+}  // namespace snare::app

@@ -1,0 +1,167 @@
+#include "app/report/record_report.hpp"
+
+#include "app/report/report_page.hpp"
+#include "results/version.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace snare::app {
+
+using identification::ChannelError;
+using identification::MotionStage;
+using identification::MotionTrace;
+using identification::RecordSet;
+using identification::TracedNumber;
+using identification::VerdictKind;
+
+namespace {
+
+std::string probability(double p) {
+  return p < 1e-12 ? "< 1e-12" : format_number(p, 2);
+}
+
+void errors(ReportPage& page, const MotionTrace& trace) {
+  Table table{"Error of the simulation",
+              {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number, "Final"_number,
+               "Final, of the readings"_number}};
+  const auto rows = [&](const char* which, const std::vector<ChannelError>& declared,
+                        const std::vector<ChannelError>& base, const std::vector<ChannelError>& last) {
+    for (std::size_t k = 0; k < last.size(); ++k)
+      table.rows.push_back({std::string(which) + (last[k].fitted ? "" : ", watched"), last[k].sensor, last[k].unit,
+                            k < declared.size() ? format_significant(declared[k].rmse) : std::string(),
+                            k < base.size() ? format_significant(base[k].rmse) : std::string(),
+                            format_significant(last[k].rmse), fmt::format("{:.2f} %", 100.0 * last[k].relative)});
+  };
+  rows("fitted", trace.declared.errors, trace.base.errors, trace.final.errors);
+  rows("held out", trace.declared.heldout, trace.base.heldout, trace.final.heldout);
+  page.table(table);
+}
+
+void numbers(ReportPage& page, const MotionStage& stage) {
+  Table table{"Numbers of the final model", {"Key"_code, "Value"_number, "95 %"_number, "Unit"_text}};
+  for (const TracedNumber& n : stage.numbers)
+    table.rows.push_back(
+        {n.key, format_number(n.value),
+         n.lower && n.upper ? fmt::format("{:.5g} to {:.5g}", *n.lower, *n.upper) : std::string("not seen"), n.unit});
+  page.table(table);
+}
+
+void rounds(ReportPage& page, const MotionTrace& trace) {
+  for (std::size_t k = 0; k < trace.rounds.size(); ++k) {
+    const identification::MotionRound& round = trace.rounds[k];
+    Table table{fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added",
+                            round.reason.empty() ? "" : "; " + round.reason),
+                {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number,
+                 "Would be seen from"_number, "Remark"_text}};
+    for (const identification::MotionCandidate& c : round.candidates)
+      table.rows.push_back({trace.effects[c.score.effect].label(),
+                            c.score.unobservable.empty() ? format_number(c.score.z, 3) : std::string(),
+                            c.score.unobservable.empty() ? probability(c.score.adjusted_p) : std::string(),
+                            c.refitted ? format_significant(c.rmse) : std::string(),
+                            c.numbers.empty() ? std::string() : format_number(c.numbers.front().value, 4),
+                            c.score.detectable && std::isfinite(*c.score.detectable)
+                                ? format_number(*c.score.detectable, 3)
+                                : std::string(),
+                            c.score.unobservable + c.why_not});
+    page.table(table);
+    for (const auto& members : round.classes)
+      if (members.size() > 1)
+        page.callout(fmt::format("These records cannot tell apart: {}", fmt::join(members, ", ")), Tone::plain);
+  }
+}
+
+Curve curve_of(const char* name, const Eigen::VectorXd& x, const Eigen::VectorXd& y, CurveStyle style, int colour) {
+  return make_curve(name, Values(x.begin(), x.end()), Values(y.begin(), y.end()), style, colour);
+}
+
+void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
+  for (std::size_t r = 0; r < set.records.size(); ++r) {
+    const identification::MotionRecord& record = set.records[r];
+    if (r >= trace.final.predictions.size() || trace.final.predictions[r].channels.empty()) continue;
+    page.subheading(record.name + (record.heldout ? " (held out)" : ""));
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+      const Eigen::VectorXd& measured = record.channels[c].values;
+      std::string unit;
+      for (const ChannelError& e : trace.final.errors)
+        if (e.sensor == record.channels[c].sensor) unit = e.unit;
+      PlotSpecification plot{record.channels[c].sensor, {"time", "s"}, {record.channels[c].sensor, unit}};
+      PlotSpecification left{"measured less simulated", {"time", "s"}, {"difference", unit}};
+      plot.width = left.width = PlotWidth::full;
+      plot.curves.push_back(curve_of("measured", record.times, measured, CurveStyle::points, 0));
+      const auto add = [&](const char* name, const MotionStage& stage, CurveStyle style, int colour) {
+        if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return;
+        const Eigen::VectorXd& y = stage.predictions[r].channels[c];
+        plot.curves.push_back(curve_of(name, record.times, y, style, colour));
+        left.curves.push_back(curve_of(name, record.times, measured - y, style, colour));
+      };
+      add("declared", trace.declared, CurveStyle::dashes, 1);
+      add("base fit", trace.base, CurveStyle::line, 2);
+      if (!trace.selected.empty()) add("traced", trace.final, CurveStyle::line, 3);
+      page.line_plot(plot);
+      page.line_plot(left);
+    }
+  }
+}
+
+}  // namespace
+
+std::string record_verdict(const MotionTrace& trace) {
+  const std::string names = fmt::format("{}", fmt::join(trace.selected, ", "));
+  switch (trace.kind) {
+    case VerdictKind::nothing_missing:
+      return "Nothing is missing: what the declared scenario leaves is noise, or too small to be worth a name.";
+    case VerdictKind::explained:
+      return fmt::format(
+          "Explained: the scenario lacks {}; with it what is left is noise, or too small to be worth a name.", names);
+    case VerdictKind::partly_explained:
+      return fmt::format(
+          "Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest stays open.",
+          names, 100.0 * (1.0 - trace.share_left));
+    case VerdictKind::not_explained:
+      break;
+  }
+  if (trace.selected.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
+  return fmt::format(
+      "Not explained: {} are needed, and carry {:.1f} % of what the base model leaves beside the noise, but something "
+      "else is missing.",
+      names, 100.0 * (1.0 - trace.share_left));
+}
+
+std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
+  ReportPage page(set.title, set.source);
+  page.doubts({}, trace.interrupted);
+  page.heading("Verdict");
+  const bool good = trace.kind == VerdictKind::nothing_missing || trace.kind == VerdictKind::explained;
+  page.callout(record_verdict(trace), good ? Tone::good : Tone::plain);
+  for (const std::size_t e : trace.selected_effects)
+    page.paragraph(trace.effects[e].label() + ": " + trace.effects[e].meaning + ".");
+  errors(page, trace);
+  numbers(page, trace.final);
+  if (!trace.leftovers.empty() && trace.leftovers.front().share > 0.05) {
+    page.heading("What is left");
+    std::vector<std::string> items;
+    for (const identification::Leftover& l : trace.leftovers)
+      if (l.share > 0.05 && items.size() < 5)
+        items.push_back(fmt::format(
+            "{:.0f} % of the residual of {} is a function of {} (found on one half of the time, tried on the other)",
+            100.0 * l.share, l.sensor, l.on));
+    page.list(items);
+  }
+  if (!trace.next_measurement.empty()) {
+    page.heading("What to measure next");
+    page.paragraph(trace.next_measurement + ".");
+  }
+  if (!trace.rounds.empty()) {
+    page.heading("Effects");
+    rounds(page, trace);
+  }
+  page.heading("Records");
+  records(page, set, trace);
+  page.footer(written_by(results::version(), "trace.json and curves.csv") + plot_help);
+  return page.html();
+}
+
+}  // namespace snare::app

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "identification/motion_tracing/motion_trace.hpp"
+
+#include <string>
+
+namespace snare::app {
+
+/// The verdict on records in time in one sentence, in words of the trade.
+[[nodiscard]] std::string record_verdict(const identification::MotionTrace& trace);
+
+/// report.html of records in time: verdict, numbers, effects, every channel measured, declared and traced over time with what is left.
+[[nodiscard]] std::string record_report_html(const identification::RecordSet& set,
+                                             const identification::MotionTrace& trace);
+
+}  // namespace snare::app

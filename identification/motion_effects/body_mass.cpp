@@ -1,0 +1,14 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Mass of a body.
+std::vector<MotionEffect> body_mass_effects(const MotionModel& model) {
+  return other_number(model, "bodies", "mass_kg",
+                      {.name = "body_mass",
+                       .channel = "body",
+                       .meaning = "the body is heavier or lighter",
+                       .independent_check = "weigh it, or push it with a known impulse"});
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,14 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Torque that a limp gear needs to be driven back, where one is declared: (A.11).
+std::vector<MotionEffect> joint_back_drive_effects(const MotionModel& model) {
+  return other_joint_number(model, "back_drive_Nm",
+                            {.name = "joint_back_drive",
+                             .channel = "joint",
+                             .meaning = "the limp gear takes another torque to be driven back",
+                             .independent_check = "drive the limp joint back from the link with a torque sensor"});
+}
+
+}  // namespace snare::identification

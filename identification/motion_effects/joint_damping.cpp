@@ -1,0 +1,14 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Damping of a linear gear: (A.10).
+std::vector<MotionEffect> joint_damping_effects(const MotionModel& model) {
+  return other_joint_number(model, "damping_Nms_rad",
+                            {.name = "joint_damping",
+                             .channel = "joint",
+                             .meaning = "the gear damps more or less",
+                             .independent_check = "lock the motor and let the link ring down"});
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,14 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Stiffness of a linear gear: (A.10).
+std::vector<MotionEffect> joint_stiffness_effects(const MotionModel& model) {
+  return other_joint_number(model, "stiffness_Nm_rad",
+                            {.name = "joint_stiffness",
+                             .channel = "joint",
+                             .meaning = "the gear is stiffer or softer",
+                             .independent_check = "lock the motor, load the link statically, measure its angle"});
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,86 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr double least_share = 0.2, most_share = 5.0;  // of what is declared
+
+void declare_other(MotionEffect& effect, const std::string& key, double declared) {
+  MotionNumber number = number_at(key, declared, 0.02 * declared);
+  number.lower = 0.01 * declared;
+  number.upper = 100.0 * declared;
+  effect.plausible_lower = least_share * declared;
+  effect.plausible_upper = most_share * declared;
+  effect.numbers = {number};
+}
+
+}  // namespace
+
+std::vector<JointPlace> joint_places(const MotionModel& model) {
+  std::vector<JointPlace> places;
+  for (const auto& [name, use] : model.joints()) {
+    const std::size_t colons = name.find("::");
+    const std::string arm = name.substr(0, colons), joint = name.substr(colons + 2);
+    if (model.declared().arms.contains(arm)) places.push_back({name, "arms[" + arm + "].joint." + joint + ".", use});
+  }
+  return places;
+}
+
+MotionNumber number_at(const std::string& key, double null, double scale) {
+  MotionNumber number = keyed_number(key, null);
+  number.scale = scale;
+  return number;
+}
+
+std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list, const std::string& key,
+                                       const MotionEffect& what) {
+  std::vector<MotionEffect> effects;
+  for (const std::string& name : model.declared().names(list)) {
+    const std::string full = list + "[" + name + "]." + key;
+    const std::optional<double> declared = model.declared().number(full);
+    if (!declared || !(*declared > 0.0)) continue;
+    MotionEffect effect = what;
+    effect.place = name;
+    declare_other(effect, full, *declared);
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
+std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
+                                             const MotionEffect& what) {
+  std::vector<MotionEffect> effects;
+  for (const JointPlace& joint : joint_places(model)) {
+    const std::optional<double> declared = model.declared().number(joint.prefix + key);
+    if (!declared || !(*declared > 0.0)) continue;
+    MotionEffect effect = what;
+    effect.place = joint.name;
+    declare_other(effect, joint.prefix + key, *declared);
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
+std::vector<ChannelPlace> channel_places(const MotionModel& model) {
+  std::vector<ChannelPlace> places;
+  const RecordSet& set = model.records();
+  for (const std::size_t r : set.used(false)) {
+    const MotionRecord& record = set.records[r];
+    for (const RecordChannel& c : record.channels) {
+      const std::string& column = model.column(c);
+      if (!c.fitted || std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; }))
+        continue;
+      const auto n = static_cast<double>(c.values.size());
+      const double way = record.times[record.times.size() - 1] - record.times[0];
+      places.push_back(
+          {column, std::sqrt((c.values.array() - c.values.mean()).square().sum() / n), way / (n - 1.0), way});
+    }
+  }
+  return places;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,14 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Modulus of a wire: both its stiffnesses together.
+std::vector<MotionEffect> wire_modulus_effects(const MotionModel& model) {
+  return other_number(model, "wires", "youngs_modulus_GPa",
+                      {.name = "wire_modulus",
+                       .channel = "wire",
+                       .meaning = "the wire's material is stiffer or softer",
+                       .independent_check = "pull the wire straight on a testing machine"});
+}
+
+}  // namespace snare::identification

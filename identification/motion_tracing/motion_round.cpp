@@ -1,0 +1,166 @@
+#include "identification/motion_tracing/motion_round.hpp"
+
+#include "identification/motion_tracing/motion_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr std::size_t most_refits = 5;
+constexpr double promising = 0.3;  // of the best promise: what falls less is not refitted
+constexpr double apart = 2.0;      // deviates by which the misfits of two refits must differ to be told apart
+
+/// The model with the numbers of an effect beside those that are fitted.
+MotionFit refit(const RoundInput& in, const MotionScore& score) {
+  std::vector<MotionSetting> start = in.current.settings;
+  const MotionEffect& effect = in.effects[score.effect];
+  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
+    MotionNumber number = effect.numbers[k];
+    number.scale = score.scale[k];
+    start.push_back({number, score.start[k]});
+  }
+  MotionFitOptions options;
+  options.progress = in.progress;
+  MotionFit fit = fit_motion(in.model, in.data, start, options);
+  if (fit.chi2 < in.current.chi2 || in.model.stopped()) return fit;
+  // The first order led too far: begin beside null.
+  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
+    MotionSetting& s = start[in.current.settings.size() + k];
+    s.value = std::clamp(
+        effect.numbers[k].declared + std::copysign(0.1 * s.number.scale, score.start[k] - effect.numbers[k].declared),
+        s.number.lower, s.number.upper);
+  }
+  MotionFit again = fit_motion(in.model, in.data, start, options);
+  return again.chi2 < fit.chi2 ? again : fit;
+}
+
+/// Bayesian criterion of prewhitened residuals, up to what all models share.
+double bic(const MotionData& data, const ColouredNoise& noise, const MotionFit& fit) {
+  return whitened(data, noise, fit.residual).squaredNorm() +
+         static_cast<double>(fit.settings.size()) * std::log(static_cast<double>(data.rows));
+}
+
+/// Whether the records tell two refits apart: e is the difference of their residuals, the misfit of the worse is larger by
+/// |e|^2 + 2 e'r, of standard deviation 2 |Sigma^(1/2)' e|.
+bool told_apart(const MotionData& data, const ColouredNoise& noise, const MotionFit& best, const MotionFit& other) {
+  const Eigen::VectorXd difference = other.residual - best.residual;
+  const double deviation = 2.0 * coloured(data, noise, difference).norm();
+  return other.chi2 - best.chi2 > apart * deviation;
+}
+
+/// Why an effect that is significant is not named.
+std::string objection(const RoundInput& in, const MotionCandidate& c, const MotionFit& fit) {
+  const MotionEffect& effect = in.effects[c.score.effect];
+  const double value = c.numbers.front().value;
+  if (!c.plausible)
+    return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
+                       c.numbers.front().unit, effect.plausible_lower, effect.plausible_upper);
+  bool large = false;
+  for (const ResidualPiece& p : in.data.pieces) {
+    const std::string& sensor = in.data.set->records[p.record].channels[p.channel].sensor;
+    const double fall = in.current.residual.segment(p.begin, p.size).squaredNorm() -
+                        fit.residual.segment(p.begin, p.size).squaredNorm();
+    const double error = std::sqrt(std::max(0.0, fall) / static_cast<double>(p.size)) * p.scale;
+    large = large || error > in.tolerance.at(sensor);
+  }
+  if (!large) return "what it changes is too small to be worth a name";
+  if (c.heldout_improves == false) return "the records held out are not predicted better with it";
+  return "";
+}
+
+}  // namespace
+
+RoundResult motion_round(const RoundInput& in) {
+  RoundResult result;
+  std::vector<MotionEffect> asked;
+  std::vector<std::size_t> index;
+  for (std::size_t e = 0; e < in.effects.size(); ++e) {
+    if (std::find(in.selected.begin(), in.selected.end(), e) != in.selected.end()) continue;
+    asked.push_back(in.effects[e]);
+    index.push_back(e);
+  }
+  MotionScores scores = score_motion(in.model, in.data, in.current, {}, asked, in.significance);
+  std::vector<MotionCandidate>& candidates = result.round.candidates;
+  for (MotionScore& score : scores.scores) {
+    score.effect = index[score.effect];
+    candidates.emplace_back().score = std::move(score);
+  }
+  const auto significant = [&](const MotionCandidate& c) {
+    return c.score.unobservable.empty() && c.score.adjusted_p < in.significance;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const MotionCandidate& a, const MotionCandidate& b) {
+    if (significant(a) != significant(b)) return significant(a);
+    return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
+  });
+  if (candidates.empty() || !significant(candidates.front())) {
+    result.round.reason = "no effect of the catalogue is significant";
+    return result;
+  }
+  std::vector<MotionFit> fits(candidates.size());
+  const double present = bic(in.data, scores.noise, in.current);
+  const double promise = candidates.front().score.fall;
+  for (std::size_t k = 0; k < std::min(candidates.size(), most_refits); ++k) {
+    MotionCandidate& c = candidates[k];
+    if (!significant(c) || c.score.fall < promising * promise) break;
+    if (in.model.stopped()) return result;
+    fits[k] = refit(in, c.score);
+    if (fits[k].residual.size() == 0 || fits[k].covariance.size() == 0) continue;
+    c.refitted = true;
+    const std::vector<TracedNumber> numbers = traced_numbers(fits[k]);
+    c.numbers.assign(numbers.begin() + static_cast<std::ptrdiff_t>(in.current.settings.size()), numbers.end());
+    c.rmse = motion_stage(in.model, in.data, fits[k], nullptr, {}).rmse;
+    c.delta_bic = bic(in.data, scores.noise, fits[k]) - present;
+    const MotionEffect& effect = in.effects[c.score.effect];
+    c.plausible =
+        c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
+    if (in.heldout_improves) c.heldout_improves = in.heldout_improves(fits[k]);
+    c.why_not = objection(in, c, fits[k]);
+  }
+  // Refitted ones by their misfit, those that may be named first.
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const MotionCandidate &x = candidates[a], &y = candidates[b];
+    if (x.refitted != y.refitted) return x.refitted;
+    if (!x.refitted) return false;
+    if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
+    return fits[a].chi2 < fits[b].chi2;
+  });
+  std::vector<MotionCandidate> sorted;
+  std::vector<MotionFit> sorted_fits;
+  for (const std::size_t k : order) {
+    sorted.push_back(std::move(candidates[k]));
+    sorted_fits.push_back(std::move(fits[k]));
+  }
+  candidates = std::move(sorted);
+  fits = std::move(sorted_fits);
+  MotionCandidate& best = candidates.front();
+  if (!best.refitted || !best.why_not.empty()) {
+    result.round.reason = best.refitted ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
+                                        : "no effect could be fitted";
+    return result;
+  }
+  std::vector<std::string> alike{in.effects[best.score.effect].label()};
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
+    MotionCandidate& c = candidates[k];
+    const bool same = c.refitted && c.why_not.empty() && !told_apart(in.data, scores.noise, fits.front(), fits[k]);
+    if (same) alike.push_back(in.effects[c.score.effect].label());
+    c.class_index = same ? 0 : result.round.classes.size() + 1;
+    if (!same) result.round.classes.push_back({in.effects[c.score.effect].label()});
+  }
+  result.round.classes.insert(result.round.classes.begin(), alike);
+  result.round.added = alike.front();
+  result.round.reason = alike.size() > 1 ? "best of a class that these records cannot tell apart"
+                                         : "explains most, and nothing else does as well";
+  result.added = best.score.effect;
+  result.better = std::move(fits.front());
+  return result;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "identification/motion_tracing/motion_trace.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// What one pass over the catalogue needs.
+struct RoundInput {
+  const MotionModel& model;
+  const MotionData& data;
+  const MotionFit& current;
+  const std::vector<MotionEffect>& effects;
+  const std::vector<std::size_t>& selected;  ///< indices of effects that are part of `current`
+  double significance = 0.01;
+  std::map<std::string, double> tolerance = {};  ///< by which a channel's error must fall, as the root of squares
+  std::function<std::optional<bool>(const MotionFit& fit)> heldout_improves = {};
+  std::function<bool(int iteration, double chi2)> progress = {};
+};
+
+struct RoundResult {
+  MotionRound round;
+  std::optional<std::size_t> added;  ///< index of the effect
+  MotionFit better;
+};
+
+/// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any.    theory.md (I.22)
+[[nodiscard]] RoundResult motion_round(const RoundInput& input);
+
+}  // namespace snare::identification

@@ -1,0 +1,177 @@
+#include "identification/motion_tracing/motion_score.hpp"
+
+#include "identification/fitting/statistics.hpp"
+#include "identification/tracing/projection.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+/// Changes of the signal at trial sizes.
+struct Trial {
+  std::size_t effect = 0, number = 0;
+  double scale = 0.0;  // of the number; the trial is a tenth of it
+  bool settled = false;
+  Eigen::VectorXd column;  // derivative times scale; empty: it could not be simulated
+};
+
+constexpr double trial_share = 0.1;
+constexpr double least_change = 0.02, most_change = 1.0, wanted_change = 0.2;  // of the residual's norm
+constexpr int most_passes = 3;
+
+/// One pass over the trials that are not settled.
+void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+               const std::vector<MotionSetting>& all, const std::vector<MotionEffect>& effects,
+               std::vector<Trial>& trials) {
+  std::vector<std::vector<MotionSetting>> points;
+  std::vector<std::pair<std::size_t, double>> of;  // trial, step
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    if (trials[t].settled) continue;
+    const MotionNumber& n = effects[trials[t].effect].numbers[trials[t].number];
+    const double step = trial_share * trials[t].scale;
+    for (const double move : {-step, step}) {
+      if (n.declared + move < n.lower || n.declared + move > n.upper) continue;
+      points.push_back(all);
+      points.back().push_back({n, n.declared + move});
+      of.emplace_back(t, move);
+    }
+  }
+  const auto predictions = model.predict_many(points, data.records);
+  const Eigen::VectorXd here = data.signal(fit.predictions);
+  const double size = std::max(fit.residual.norm(), 1e-12 * here.norm());
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    if (trials[t].settled) continue;
+    Eigen::VectorXd sum;
+    double way = 0.0;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if (of[k].first != t) continue;
+      const Eigen::VectorXd there = data.signal(predictions[k]);
+      if (there.size() == 0) continue;
+      const Eigen::VectorXd change = (there - here) * (of[k].second < 0.0 ? -1.0 : 1.0);
+      sum = sum.size() == 0 ? change : Eigen::VectorXd(sum + change);
+      way += std::abs(of[k].second);
+    }
+    if (sum.size() == 0 || way == 0.0) {  // no motion at this size: try a smaller one
+      trials[t].column.resize(0);
+      trials[t].scale *= 0.1;
+      continue;
+    }
+    trials[t].column = sum * (trials[t].scale / way);
+    const double change = trial_share * trials[t].column.norm() / size;
+    trials[t].settled = change >= least_change && change <= most_change;
+    if (!trials[t].settled) {
+      const double factor = std::clamp(wanted_change / std::max(change, 1e-8), 1e-5, 1e5);
+      trials[t].column *= factor;  // if this was the last pass
+      trials[t].scale *= factor;
+    }
+  }
+}
+
+/// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
+void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual,
+           const MotionEffect& effect, MotionScore& score) {
+  const Eigen::MatrixXd& g = score.columns;
+  const Eigen::VectorXd u = g.transpose() * residual;
+  const Eigen::MatrixXd through = coloured(data, noise, g);
+  const Eigen::MatrixXd variance = through.transpose() * through;
+  const Eigen::MatrixXd normal = g.transpose() * g;
+  const Eigen::LDLT<Eigen::MatrixXd> by_variance(variance), by_normal(normal);
+  const Eigen::VectorXd step = by_normal.solve(u);
+  const double statistic = u.dot(by_variance.solve(u));
+  if (!(statistic >= 0.0) || !step.allFinite()) {
+    score.unobservable = "its numbers cannot be told from each other";
+    return;
+  }
+  score.fall = u.dot(step);
+  const Eigen::Index k = u.size();
+  if (k == 1) {
+    const double deviate = u[0] / std::sqrt(variance(0, 0));
+    const double bounded = normal_tail(effect.one_sided ? deviate : std::abs(deviate));
+    score.p = effect.one_sided ? bounded : std::min(1.0, 2.0 * bounded);
+    score.z = deviate;
+    if (effect.one_sided && deviate < 0.0) score.fall = 0.0;
+  } else {
+    score.p = chi_square_tail(statistic, static_cast<double>(k));
+    score.z = std::sqrt(statistic);
+  }
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const MotionNumber& n = effect.numbers[static_cast<std::size_t>(i)];
+    const double scale = score.scale[static_cast<std::size_t>(i)];
+    score.start.push_back(std::clamp(n.declared + step[i] * scale, n.lower, n.upper));
+  }
+}
+
+}  // namespace
+
+MotionScores score_motion(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+                          const std::vector<MotionSetting>& fixed, const std::vector<MotionEffect>& effects,
+                          double significance) {
+  const std::vector<MotionSetting> all = together(fit.settings, fixed);
+  std::vector<Trial> trials;
+  for (std::size_t e = 0; e < effects.size(); ++e)
+    for (std::size_t n = 0; n < effects[e].numbers.size(); ++n)
+      trials.push_back({e, n, effects[e].numbers[n].scale, false, {}});
+  for (int pass = 0; pass < most_passes && !model.stopped(); ++pass) try_sizes(model, data, fit, all, effects, trials);
+
+  MotionScores result;
+  const Projection projection(fit.jacobian);
+  std::vector<Eigen::VectorXd> usable;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    MotionScore score;
+    score.effect = e;
+    std::vector<Eigen::VectorXd> columns;
+    double before = 0.0;
+    for (const Trial& t : trials) {
+      if (t.effect != e) continue;
+      if (t.column.size() == 0) score.unobservable = "the scenario cannot be simulated with it";
+      if (t.column.size() == 0) continue;
+      score.scale.push_back(t.scale);
+      before = std::max(before, t.column.norm());
+      columns.push_back(t.column);
+    }
+    if (score.unobservable.empty()) {
+      Eigen::MatrixXd matrix(data.rows, static_cast<Eigen::Index>(columns.size()));
+      for (std::size_t k = 0; k < columns.size(); ++k) matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
+      score.columns = projection.without(matrix);
+      constexpr double absorbed = 1e-3;  // of the change: below it the fitted numbers do the same
+      if (!(before > 0.0))
+        score.unobservable = "it changes nothing in these records";
+      else if (score.columns.colwise().norm().maxCoeff() < absorbed * before)
+        score.unobservable = "the fitted numbers change the records in the same way";
+    }
+    if (score.unobservable.empty())
+      for (Eigen::Index k = 0; k < score.columns.cols(); ++k) usable.emplace_back(score.columns.col(k));
+    result.scores.push_back(std::move(score));
+  }
+  // Noise of what no effect can take away.
+  Eigen::MatrixXd everything(data.rows, fit.jacobian.cols() + static_cast<Eigen::Index>(usable.size()));
+  if (fit.jacobian.cols() > 0) everything.leftCols(fit.jacobian.cols()) = fit.jacobian;
+  for (std::size_t k = 0; k < usable.size(); ++k)
+    everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
+  result.noise = coloured_noise(data, Projection(everything).without(fit.residual));
+
+  std::vector<double> p;
+  for (MotionScore& score : result.scores) {
+    if (score.unobservable.empty()) judge(data, result.noise, fit.residual, effects[score.effect], score);
+    if (score.unobservable.empty()) p.push_back(score.p);
+  }
+  const std::vector<double> adjusted = holm(p);
+  const double needed =
+      normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) + 1.2816;  // nine of ten
+  std::size_t next = 0;
+  for (MotionScore& score : result.scores) {
+    if (!score.unobservable.empty()) continue;
+    score.adjusted_p = adjusted[next++];
+    if (score.columns.cols() != 1) continue;
+    const double norm = score.columns.squaredNorm();
+    score.detectable = needed * coloured(data, result.noise, score.columns).norm() / norm * score.scale.front();
+  }
+  return result;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/records/coloured_noise.hpp"
+#include "identification/records/motion_fit.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// Score test of one effect beside a fitted scenario.                                              theory.md (I.22)
+struct MotionScore {
+  std::size_t effect = 0;            ///< index in the list
+  std::string unobservable;          ///< why the records cannot show it; empty: they can
+  double p = 1.0;                    ///< of the score, one-sided where the effect is
+  double adjusted_p = 1.0;           ///< by Holm
+  double z = 0.0;                    ///< normal deviate of that p
+  double fall = 0.0;                 ///< of the sum of squares that it promises, to first order
+  std::vector<double> start;         ///< of its numbers, for a refit
+  std::vector<double> scale;         ///< at which they were tried
+  std::optional<double> detectable;  ///< size of the first number that would be seen in nine of ten cases, in its unit
+  Eigen::MatrixXd columns;           ///< of the signal by the numbers over their scales, fitted columns out
+};
+
+/// What the tests of one round rest on.
+struct MotionScores {
+  std::vector<MotionScore> scores;
+  ColouredNoise noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
+};
+
+/// Tests of all effects. The size of the trial follows from what it changes: between a fiftieth of the residual and as much as it.
+[[nodiscard]] MotionScores score_motion(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+                                        const std::vector<MotionSetting>& fixed,
+                                        const std::vector<MotionEffect>& effects, double significance);
+
+}  // namespace snare::identification

@@ -1,0 +1,120 @@
+#include "identification/motion_tracing/motion_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace snare::identification {
+
+namespace {
+
+struct Sums {
+  double squares = 0.0, measured = 0.0, count = 0.0;
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+};
+
+std::vector<ChannelError> errors_of(const MotionModel& model, const std::vector<std::size_t>& records,
+                                    const std::vector<RecordPrediction>& predictions) {
+  std::vector<ChannelError> errors;
+  std::map<std::string, Sums> sums;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const MotionRecord& record = model.records().records[records[k]];
+    if (!predictions[k].usable()) continue;
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+      const RecordChannel& channel = record.channels[c];
+      if (!sums.contains(channel.sensor))
+        errors.push_back({channel.sensor, model.unit(channel), channel.fitted, 0.0, 0.0, 0.0,
+                          reading_sigma(model.records(), channel.sensor)});
+      Sums& s = sums[channel.sensor];
+      s.squares += (channel.values - predictions[k].channels[c]).squaredNorm();
+      s.measured += channel.values.squaredNorm();
+      s.count += static_cast<double>(channel.values.size());
+      s.low = std::min(s.low, channel.values.minCoeff());
+      s.high = std::max(s.high, channel.values.maxCoeff());
+    }
+  }
+  for (ChannelError& e : errors) {
+    const Sums& s = sums[e.sensor];
+    e.rmse = std::sqrt(s.squares / s.count);
+    e.nrmse = e.rmse / (s.high - s.low);
+    e.relative = s.measured > 0.0 ? std::sqrt(s.squares / s.measured) : 0.0;
+  }
+  return errors;
+}
+
+/// Root mean square over the fitted channels: of the only one in its unit, of several over their scales.
+double rmse_of(const MotionData& data, const Eigen::VectorXd& residual) {
+  if (residual.size() == 0) return 0.0;
+  bool one = true;
+  for (const ResidualPiece& p : data.pieces)
+    one = one && data.set->records[p.record].channels[p.channel].sensor ==
+                     data.set->records[data.pieces.front().record].channels[data.pieces.front().channel].sensor;
+  double sum = 0.0;
+  for (const ResidualPiece& p : data.pieces)
+    sum += residual.segment(p.begin, p.size).squaredNorm() * (one ? p.scale * p.scale : 1.0);
+  return std::sqrt(sum / static_cast<double>(residual.size()));
+}
+
+}  // namespace
+
+double reading_sigma(const RecordSet& set, const std::string& sensor) {
+  double sum = 0.0, count = 0.0;
+  for (const MotionRecord& record : set.records) {
+    for (const RecordChannel& c : record.channels) {
+      if (c.sensor != sensor) continue;
+      if (c.sigma) return *c.sigma;
+      const Eigen::Index n = c.values.size();
+      sum += (c.values.head(n - 2) - 2.0 * c.values.segment(1, n - 2) + c.values.tail(n - 2)).squaredNorm() / 6.0;
+      count += static_cast<double>(n - 2);
+    }
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
+  std::vector<TracedNumber> numbers;
+  for (std::size_t k = 0; k < fit.settings.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const MotionSetting& s = fit.settings[k];
+    TracedNumber n{s.number.key, s.number.unit, s.value, 0.0, {}, {}};
+    const bool seen = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() &&
+                      fit.jacobian.col(i).norm() > 0.0;
+    if (seen) {
+      n.stderr_ = std::sqrt(fit.covariance(i, i));
+      n.lower = std::max(s.number.lower, s.value - 1.96 * n.stderr_);
+      n.upper = std::min(s.number.upper, s.value + 1.96 * n.stderr_);
+    }
+    numbers.push_back(n);
+  }
+  return numbers;
+}
+
+MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
+                         const MotionFit* heldout, const MotionData& heldout_data) {
+  MotionStage stage;
+  stage.numbers = traced_numbers(fit);
+  stage.errors = errors_of(model, data.records, fit.predictions);
+  stage.rmse = rmse_of(data, fit.residual);
+  double range = 0.0, squares = 0.0, count = 0.0;
+  for (const ChannelError& e : stage.errors) {
+    if (!e.fitted) continue;
+    range = std::max(range, e.nrmse);
+    if (e.sigma > 0.0) {
+      squares += e.rmse * e.rmse / (e.sigma * e.sigma);
+      count += 1.0;
+    }
+  }
+  stage.nrmse = range;
+  stage.chi2_dof = count > 0.0 ? squares / count : 0.0;
+  stage.predictions.resize(model.records().records.size());
+  for (std::size_t k = 0; k < data.records.size(); ++k) stage.predictions[data.records[k]] = fit.predictions[k];
+  if (heldout == nullptr) return stage;
+  stage.heldout = errors_of(model, heldout_data.records, heldout->predictions);
+  stage.heldout_rmse = rmse_of(heldout_data, heldout->residual);
+  for (std::size_t k = 0; k < heldout_data.records.size(); ++k)
+    stage.predictions[heldout_data.records[k]] = heldout->predictions[k];
+  return stage;
+}
+
+}  // namespace snare::identification

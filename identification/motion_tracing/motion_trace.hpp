@@ -1,0 +1,88 @@
+#pragma once
+
+#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_tracing/leftover.hpp"
+#include "identification/motion_tracing/motion_score.hpp"
+#include "identification/records/motion_fit.hpp"
+#include "identification/tracing/verdict.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace snare::identification {
+
+/// A number after a fit, in the unit of its key.
+struct TracedNumber {
+  std::string key, unit;
+  double value = 0.0, stderr_ = 0.0;
+  std::optional<double> lower, upper;  ///< 95 %, of correlated residuals; absent where the records do not show it
+};
+
+/// Error of one channel over some records.
+struct ChannelError {
+  std::string sensor, unit;
+  bool fitted = true;
+  double rmse = 0.0;      ///< in the unit of the channel
+  double nrmse = 0.0;     ///< over the range of the measured values
+  double relative = 0.0;  ///< norm of the error over that of the readings
+  double sigma = 0.0;     ///< of a reading: declared, or from second differences of the readings
+};
+
+/// One model of a trace with what it leaves.
+struct MotionStage {
+  std::vector<TracedNumber> numbers;
+  std::vector<ChannelError> errors;  ///< of the fitted records
+  std::vector<ChannelError>
+      heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
+  double rmse = 0.0, nrmse = 0.0;  ///< over the fitted channels: in the unit of the only one, else over their scales
+  double chi2_dof = 0.0;           ///< against the noise
+  double heldout_rmse = 0.0;
+  std::vector<RecordPrediction> predictions;  ///< of all records of the set, in its order
+};
+
+/// An effect beside the model of a round.
+struct MotionCandidate {
+  MotionScore score;
+  bool refitted = false;
+  double rmse = 0.0;                  ///< after the refit
+  double delta_bic = 0.0;             ///< of the refit, of prewhitened residuals
+  std::vector<TracedNumber> numbers;  ///< of the effect after the refit
+  bool plausible = true;
+  std::string why_not;  ///< it is not named although it is significant
+  std::optional<bool> heldout_improves;
+  std::size_t class_index = 0;
+};
+
+struct MotionRound {
+  std::vector<MotionCandidate> candidates;        ///< ranked, best first
+  std::vector<std::vector<std::string>> classes;  ///< of labels
+  std::string added, reason;
+};
+
+struct MotionTrace {
+  std::vector<MotionEffect> effects;
+  MotionStage declared, base, final;
+  std::string noise_source;                               ///< "declared", "second_differences"
+  double sigma = 0.0;                                     ///< of the fitted channels together, as MotionStage::rmse
+  bool significant = false;                               ///< what the base leaves
+  double ljung_box = 1.0, runs = 1.0, lack_of_fit = 1.0;  ///< p of the base's residual
+  std::vector<MotionRound> rounds;
+  std::vector<std::string> selected;  ///< labels
+  std::vector<std::size_t> selected_effects;
+  VerdictKind kind = VerdictKind::nothing_missing;
+  double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares
+  std::string channel;      ///< of the first effect selected
+  std::vector<Leftover> leftovers;
+  std::string next_measurement;
+  std::vector<std::string> next_separates;
+  long simulations = 0;
+  int fit_iterations = 0;
+  long fit_simulations = 0;  ///< of the base fit
+  bool interrupted = false;
+  numerics::SolveReport report;
+};
+
+}  // namespace snare::identification

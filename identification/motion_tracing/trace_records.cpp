@@ -1,0 +1,304 @@
+#include "identification/motion_tracing/trace_records.hpp"
+
+#include "identification/fitting/statistics.hpp"
+#include "identification/motion_tracing/motion_round.hpp"
+#include "identification/motion_tracing/motion_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr double usual_share = 0.01;  // of a channel's rms less its mean: an error below is called no error
+constexpr double like_noise = 0.002;  // p below which a residual is none
+constexpr int most_reweighings = 3;
+
+/// Everything that is kept along the way.
+class Tracer {
+ public:
+  Tracer(const RecordSet& set, const MotionTraceOptions& options)
+      : set_(set),
+        options_(options),
+        model_(set, [this] { return stop_; }),
+        fitted_(set.used(false)),
+        heldout_(set.used(true)) {}
+
+  MotionTrace run() {
+    weigh(first_scales(set_, fitted_));
+    if (!go_on("declared model")) return end("interrupted before the declared model was simulated");
+    MotionFitOptions look;
+    look.derivatives = false;
+    look.progress = asked();
+    // The numbers of every record for itself are no part of the model: also the declared one has its own.
+    std::vector<MotionSetting> own, shared;
+    for (const MotionSetting& s : model_.free(fitted_)) (s.number.record ? own : shared).push_back(s);
+    look.fixed = shared;
+    const MotionFit declared = fit_motion(model_, data_, own, look);
+    if (!declared.report.usable()) return end(declared.report.message);
+    if (!go_on("base fit")) return end("interrupted before the base fit was finished");
+    current_ = base_fit();
+    trace_.fit_simulations = current_.simulations;
+    trace_.fit_iterations = current_.iterations;
+    if (!current_.report.usable()) return end(current_.report.message);
+    trace_.declared = stage(declared, shared);
+    trace_.base = trace_.final = stage(current_, {});
+    tell_noise();
+    trace_.simulations = model_.simulations();
+    reached();
+    trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
+    trace_.share_left = trace_.significant ? 1.0 : 0.0;
+    if (options_.effects && trace_.significant) look_for_effects();
+    trace_.simulations = model_.simulations();
+    trace_.interrupted = stop_;
+    return std::move(trace_);
+  }
+
+ private:
+  bool go_on(const std::string& what) {
+    if (options_.progress && !options_.progress(what)) stop_ = true;
+    return !stop_;
+  }
+  [[nodiscard]] std::function<bool(int, double)> asked() {
+    return [this](int iteration, double chi2) {
+      return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
+    };
+  }
+  void reached() {
+    if (!options_.reached) return;
+    MotionTrace part = trace_;
+    part.interrupted = true;
+    options_.reached(part);
+  }
+  void weigh(const ChannelScales& scales) {
+    data_ = motion_data(set_, fitted_, scales);
+    heldout_data_ = motion_data(set_, heldout_, scales);
+  }
+  MotionTrace end(const std::string& why) {
+    trace_.interrupted = stop_;
+    static_cast<void>(
+        trace_.report.end(stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
+    trace_.simulations = model_.simulations();
+    return std::move(trace_);
+  }
+
+  /// Least squares with the channels weighed by what they leave, where their noise is not declared and there are several.
+  MotionFit base_fit() {
+    MotionFitOptions options;
+    options.method = set_.method;
+    options.progress = asked();
+    MotionFit fit = fit_motion(model_, data_, model_.free(fitted_), options);
+    std::map<std::string, bool> undeclared;
+    for (const ResidualPiece& p : data_.pieces) {
+      const RecordChannel& c = set_.records[p.record].channels[p.channel];
+      undeclared[c.sensor] = !c.sigma;
+    }
+    const bool several = undeclared.size() > 1 &&
+                         std::any_of(undeclared.begin(), undeclared.end(), [](const auto& u) { return u.second; });
+    for (int k = 0; several && k < most_reweighings && fit.report.usable(); ++k) {
+      ChannelScales scales;
+      std::map<std::string, double> count;
+      for (const ResidualPiece& p : data_.pieces) {
+        const std::string& sensor = set_.records[p.record].channels[p.channel].sensor;
+        scales[sensor] += fit.residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale;
+        count[sensor] += static_cast<double>(p.size);
+      }
+      for (auto& [sensor, scale] : scales)
+        scale = std::max(std::sqrt(scale / count[sensor]), std::max(1e-300, reading_sigma(set_, sensor)));
+      weigh(scales);
+      const long before = fit.simulations;
+      fit = fit_motion(model_, data_, fit.settings, options);
+      fit.simulations += before;
+    }
+    return fit;
+  }
+
+  /// A fitted model on the held-out records: what belongs to a record is fitted there, the rest stays.
+  std::optional<MotionFit> on_heldout(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
+    if (heldout_.empty()) return std::nullopt;
+    MotionFitOptions options;
+    options.derivatives = false;
+    options.progress = asked();
+    for (const MotionSetting& s : together(fit.settings, fixed))
+      if (!s.number.record) options.fixed.push_back(s);
+    std::vector<MotionSetting> own;
+    for (const MotionSetting& s : model_.free(heldout_))
+      if (s.number.record) own.push_back(s);
+    // The same starts for all models.
+    return fit_motion(model_, heldout_data_, own, options);
+  }
+
+  MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
+    const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
+    return motion_stage(model_, data_, fit, heldout && heldout->residual.size() > 0 ? &*heldout : nullptr,
+                        heldout_data_);
+  }
+
+  /// Whether an error is more than noise, and more than is worth a name.
+  [[nodiscard]] bool more_than_noise(const MotionStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs,
+                                     double* lack) const {
+    std::vector<Eigen::VectorXd> pieces;
+    for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
+    const double l = ljung_box_p(pieces, 10), r = runs_p(pieces);
+    const double dof = static_cast<double>(residual.size()) - static_cast<double>(s.numbers.size());
+    double f = 1.0;
+    bool large = false;
+    for (const ChannelError& e : s.errors) {
+      if (!e.fitted) continue;
+      if (e.sigma > 0.0) f = std::min(f, chi_square_tail(e.rmse * e.rmse / (e.sigma * e.sigma) * dof, dof));
+      large = large || e.rmse > tolerance(e.sensor);
+    }
+    if (ljung != nullptr) *ljung = l;
+    if (runs != nullptr) *runs = r;
+    if (lack != nullptr) *lack = f;
+    return large && 3.0 * std::min({l, r, f}) < like_noise;
+  }
+
+  /// Error of a channel below which nothing is called missing, in its unit.
+  [[nodiscard]] double tolerance(const std::string& sensor) const {
+    bool declared = false;
+    for (const MotionRecord& r : set_.records)
+      for (const RecordChannel& c : r.channels) declared = declared || (c.sensor == sensor && c.sigma);
+    if (declared && !set_.tolerance) return 0.0;
+    return set_.tolerance.value_or(usual_share) * first_scales(set_, fitted_).at(sensor);
+  }
+
+  void tell_noise() {
+    trace_.significant =
+        more_than_noise(trace_.base, current_.residual, &trace_.ljung_box, &trace_.runs, &trace_.lack_of_fit);
+    double squares = 0.0;
+    int count = 0;
+    bool declared = true;
+    for (const ChannelError& e : trace_.base.errors) {
+      if (!e.fitted) continue;
+      const double scale = scale_of(e.sensor);
+      squares += e.sigma * e.sigma / (scale * scale);
+      ++count;
+      bool own = false;
+      for (const MotionRecord& r : set_.records)
+        for (const RecordChannel& c : r.channels) own = own || (c.sensor == e.sensor && c.sigma);
+      declared = declared && own;
+    }
+    trace_.sigma = count > 0 ? std::sqrt(squares / count) : 0.0;
+    trace_.noise_source = declared ? "declared" : "second_differences";
+  }
+  /// Of the unit in which MotionStage::rmse is told.
+  [[nodiscard]] double scale_of(const std::string& sensor) const {
+    double scale = 1.0;
+    bool one = true;
+    for (const ResidualPiece& p : data_.pieces) {
+      const std::string& s = set_.records[p.record].channels[p.channel].sensor;
+      one = one && s == set_.records[data_.pieces.front().record].channels[data_.pieces.front().channel].sensor;
+      if (s == sensor) scale = p.scale;
+    }
+    return one ? 1.0 : scale;
+  }
+
+  struct Reached {
+    MotionFit fit;
+    MotionStage stage;
+  };
+  /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
+  /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes.
+  void keep_what_carries_over(std::vector<Reached>& kept) {
+    if (heldout_.empty() || kept.size() < 2 || stop_) return;
+    const auto best = std::min_element(kept.begin(), kept.end(), [](const Reached& a, const Reached& b) {
+      return a.stage.heldout_rmse < b.stage.heldout_rmse;
+    });
+    const auto count = static_cast<std::size_t>(best - kept.begin());
+    for (std::size_t k = count; k + 1 < kept.size() && k < trace_.rounds.size(); ++k) {
+      trace_.rounds[k].reason = "taken back: the records held out are not predicted better with it";
+      trace_.rounds[k].added.clear();
+    }
+    trace_.selected.resize(count);
+    trace_.selected_effects.resize(count);
+    if (count == 0) trace_.channel.clear();
+    current_ = best->fit;
+    trace_.final = best->stage;
+    trace_.kind = VerdictKind::not_explained;
+    trace_.share_left = 1.0;
+    if (count > 0) judge();
+    reached();
+  }
+
+  void look_for_effects() {
+    trace_.effects = motion_effects(model_);
+    // Numbers that are fitted already are no effects.
+    std::erase_if(trace_.effects, [this](const MotionEffect& e) {
+      return std::any_of(set_.free.begin(), set_.free.end(),
+                         [&](const FreeNumber& f) { return f.key.starts_with(e.numbers.front().key); });
+    });
+    std::vector<Reached> kept{{current_, trace_.base}};
+    for (int number = 1; number <= set_.most_effects; ++number) {
+      if (!go_on(fmt::format("round {}: {} effects", number, trace_.effects.size()))) return;
+      RoundInput input{model_, data_, current_, trace_.effects, trace_.selected_effects, options_.significance};
+      for (const ChannelError& e : trace_.base.errors)
+        if (e.fitted) input.tolerance[e.sensor] = tolerance(e.sensor);
+      input.progress = asked();
+      RoundResult round = motion_round(input);
+      if (stop_) return;
+      trace_.rounds.push_back(round.round);
+      if (!round.added) break;
+      current_ = std::move(round.better);
+      trace_.selected.push_back(trace_.effects[*round.added].label());
+      trace_.selected_effects.push_back(*round.added);
+      if (trace_.channel.empty()) trace_.channel = trace_.effects[*round.added].channel;
+      trace_.final = stage(current_, {});
+      judge();
+      kept.push_back({current_, trace_.final});
+      if (heldout_.empty()) reached();
+      if (trace_.kind == VerdictKind::explained) break;
+    }
+    keep_what_carries_over(kept);
+    if (trace_.kind != VerdictKind::explained) trace_.leftovers = leftovers(model_, data_, current_);
+    if (trace_.selected.empty() && !trace_.leftovers.empty()) trace_.channel = trace_.leftovers.front().sensor;
+    propose();
+  }
+
+  void judge() {
+    const double floor = trace_.sigma * trace_.sigma;
+    const double base = std::max(0.0, trace_.base.rmse * trace_.base.rmse - floor);
+    const double left = std::max(0.0, trace_.final.rmse * trace_.final.rmse - floor);
+    trace_.share_left = base > 0.0 ? std::min(1.0, left / base) : 0.0;
+    if (!more_than_noise(trace_.final, current_.residual, nullptr, nullptr, nullptr))
+      trace_.kind = VerdictKind::explained;
+    else
+      trace_.kind = trace_.share_left <= most_share_left ? VerdictKind::partly_explained : VerdictKind::not_explained;
+  }
+
+  /// What to measure next: what settles the members of the class of the effect that was named last among those that are not alone.
+  void propose() {
+    for (const MotionRound& round : trace_.rounds) {
+      if (round.added.empty() || round.classes.empty()) continue;
+      for (const std::vector<std::string>& members : round.classes) {
+        if (members.size() < 2 || std::find(members.begin(), members.end(), round.added) == members.end()) continue;
+        trace_.next_separates = members;
+        trace_.next_measurement.clear();
+        for (const MotionEffect& e : trace_.effects)
+          if (std::find(members.begin(), members.end(), e.label()) != members.end())
+            trace_.next_measurement +=
+                fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ", e.label(), e.independent_check);
+      }
+    }
+  }
+
+  const RecordSet& set_;
+  const MotionTraceOptions& options_;
+  bool stop_ = false;
+  MotionModel model_;
+  std::vector<std::size_t> fitted_, heldout_;
+  MotionData data_, heldout_data_;
+  MotionFit current_;
+  MotionTrace trace_;
+};
+
+}  // namespace
+
+MotionTrace trace_records(const RecordSet& set, const MotionTraceOptions& options) {
+  return Tracer(set, options).run();
+}
+
+}  // namespace snare::identification

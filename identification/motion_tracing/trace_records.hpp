@@ -1,0 +1,21 @@
+#pragma once
+
+#include "identification/motion_tracing/motion_trace.hpp"
+
+#include <functional>
+#include <string>
+
+namespace snare::identification {
+
+struct MotionTraceOptions {
+  bool effects = true;  ///< false: the base fit only
+  double significance = 0.01;
+  std::function<bool(const std::string& stage)> progress;  ///< false stops
+  std::function<void(const MotionTrace& part)> reached;    ///< whenever more of it is whole
+};
+
+/// Closes the loop of a scenario and its records.                                        theory.md (I.20)-(I.24)
+/// Throws base::InputError for records that cannot be compared with the scenario.
+[[nodiscard]] MotionTrace trace_records(const RecordSet& set, const MotionTraceOptions& options = {});
+
+}  // namespace snare::identification

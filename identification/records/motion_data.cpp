@@ -1,0 +1,74 @@
+#include "identification/records/motion_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
+  Eigen::VectorXd all(data.rows);
+  for (const ResidualPiece& piece : data.pieces) {
+    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) -
+                                             data.records.begin());
+    const RecordPrediction& p = predictions[at];
+    if (!p.usable()) return {};
+    all.segment(piece.begin, piece.size) = p.channels[piece.channel] / piece.scale;
+    if (residual)
+      all.segment(piece.begin, piece.size) =
+          data.set->records[piece.record].channels[piece.channel].values / piece.scale -
+          all.segment(piece.begin, piece.size);
+  }
+  return all;
+}
+
+}  // namespace
+
+Eigen::VectorXd MotionData::residual(const std::vector<RecordPrediction>& predictions) const {
+  return stacked(*this, predictions, true);
+}
+
+Eigen::VectorXd MotionData::signal(const std::vector<RecordPrediction>& predictions) const {
+  return stacked(*this, predictions, false);
+}
+
+std::vector<MotionSetting> together(std::vector<MotionSetting> settings, const std::vector<MotionSetting>& fixed) {
+  settings.insert(settings.end(), fixed.begin(), fixed.end());
+  return settings;
+}
+
+MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records, const ChannelScales& scales) {
+  MotionData data;
+  data.set = &set;
+  data.records = records;
+  for (const std::size_t r : records) {
+    for (std::size_t c = 0; c < set.records[r].channels.size(); ++c) {
+      const RecordChannel& channel = set.records[r].channels[c];
+      if (!channel.fitted) continue;
+      const double scale = channel.sigma.value_or(scales.contains(channel.sensor) ? scales.at(channel.sensor) : 1.0);
+      data.pieces.push_back({r, c, data.rows, channel.values.size(), scale});
+      data.rows += channel.values.size();
+    }
+  }
+  return data;
+}
+
+ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records) {
+  struct Sum {
+    double squares = 0.0, count = 0.0;
+  };
+  std::map<std::string, Sum> sums;
+  for (const std::size_t r : records) {
+    for (const RecordChannel& c : set.records[r].channels) {
+      sums[c.sensor].squares += (c.values.array() - c.values.mean()).square().sum();
+      sums[c.sensor].count += static_cast<double>(c.values.size());
+    }
+  }
+  ChannelScales scales;
+  for (const auto& [sensor, sum] : sums)
+    scales[sensor] = std::max(1e-300, std::sqrt(sum.squares / std::max(1.0, sum.count)));
+  return scales;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "identification/records/motion_model.hpp"
+#include "numerics/report.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// Standard deviations by which the channels are weighed, by sensor.
+using ChannelScales = std::map<std::string, double>;
+
+/// One stretch of a stacked residual: a fitted channel of a record.
+struct ResidualPiece {
+  std::size_t record = 0, channel = 0;  ///< indices in the set
+  Eigen::Index begin = 0, size = 0;
+  double scale = 1.0;
+};
+
+/// The readings that are compared.
+struct MotionData {
+  const RecordSet* set = nullptr;
+  std::vector<std::size_t> records;
+  std::vector<ResidualPiece> pieces;
+  Eigen::Index rows = 0;
+
+  /// (measured - predicted) / scale, piece by piece; empty where a prediction failed.
+  [[nodiscard]] Eigen::VectorXd residual(const std::vector<RecordPrediction>& predictions) const;
+  /// Predicted / scale, likewise.
+  [[nodiscard]] Eigen::VectorXd signal(const std::vector<RecordPrediction>& predictions) const;
+};
+[[nodiscard]] MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records,
+                                     const ChannelScales& scales);
+
+/// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones stay.
+[[nodiscard]] ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records);
+
+struct MotionFit {
+  std::vector<MotionSetting> settings;
+  std::vector<RecordPrediction> predictions;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale
+  Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
+  double chi2 = 0.0;           ///< sum of squares of the residual
+  long simulations = 0;        ///< that it took
+  int iterations = 0;
+  numerics::SolveReport report;
+};
+
+struct MotionFitOptions {
+  FitMethod method = FitMethod::gauss_newton;
+  int max_iterations = 30;
+  double tolerance = 1e-6;                                   ///< relative fall of chi2 below which the fit ends
+  bool derivatives = true;                                   ///< also where nothing is fitted any more: `jacobian`
+  std::vector<MotionSetting> fixed;                          ///< beside the fitted ones
+  std::function<bool(int iteration, double chi2)> progress;  ///< false stops
+};
+
+/// Settings that are fitted with those that are not.
+[[nodiscard]] std::vector<MotionSetting> together(std::vector<MotionSetting> settings,
+                                                  const std::vector<MotionSetting>& fixed);
+
+}  // namespace snare::identification

@@ -1,0 +1,247 @@
+#include "identification/records/motion_model.hpp"
+
+#include "base/errors.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "identification/records/sensor_signals.hpp"
+#include "scenario/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+using scenario::WireMotions;
+
+/// The one run of a scenario that lists what there is, with sensors.
+const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
+  const auto* motions = std::get_if<WireMotions>(&s.content);
+  const auto fail = [&](std::string why) -> void {
+    throw base::InputError({set.file.string(), 0, "scenario", set.scenario.string(), std::move(why)});
+  };
+  if (motions == nullptr || motions->runs.size() != 1 || motions->probe)
+    fail("must be a scenario that lists what there is (snare-scenario/2)");
+  if (motions->sensors.empty()) fail("must have [[sensors]]: a record is compared with what they read");
+  return *motions;
+}
+
+/// Long enough for a record, whatever the scenario's own duration.
+double duration_for(const MotionRecord& record, double interval) {
+  return (std::ceil(record.times[record.times.size() - 1] / interval) + 1.0) * interval;
+}
+
+}  // namespace
+
+MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
+    : set_(set), declared_(declared_scenario(set)), stop_(std::move(stop)) {
+  const scenario::Scenario read = scenario::read_scenario(set.scenario, set.set);
+  const WireMotions& motions = run_of(read, set);
+  std::string known;
+  for (const scenario::Sensor& s : motions.sensors) {
+    const std::vector<std::string> names = s.columns();
+    for (const std::string& name : names) {
+      columns_[name] = name;
+      known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", name);
+    }
+    if (names.size() == 1) columns_[s.name] = names.front();
+  }
+  std::vector<base::InputProblem> problems;
+  for (const MotionRecord& r : set.records) {
+    for (const RecordChannel& c : r.channels)
+      if (!columns_.contains(c.sensor))
+        problems.push_back({set.file.string(), 0, fmt::format("records[{}].columns.{}", r.name, c.column), c.sensor,
+                            "must be a column of the scenario's sensors: " + known});
+  }
+  for (const FreeNumber& f : set.free) {
+    // What stands in no file may still be a key; an override finds out.
+    std::vector<base::Override> overrides = set.set;
+    overrides.push_back({f.key, exact_text(declared_.number(f.key).value_or(f.scale.value_or(0.0)))});
+    try {
+      static_cast<void>(scenario::read_scenario(set.scenario, overrides));
+    } catch (const base::InputError& error) {
+      problems.push_back({set.file.string(), 0, "fit.free", f.key,
+                          "must be a number of the scenario: " + error.problems().front().message()});
+    }
+    if (f.lower && declared_.number(f.key).value_or(0.0) < *f.lower)
+      problems.push_back(
+          {set.file.string(), 0, "fit.numbers", f.key,
+           fmt::format("is declared as {:.9g}, below its bound", declared_.number(f.key).value_or(0.0))});
+    if (f.upper && declared_.number(f.key).value_or(0.0) > *f.upper)
+      problems.push_back(
+          {set.file.string(), 0, "fit.numbers", f.key,
+           fmt::format("is declared as {:.9g}, above its bound", declared_.number(f.key).value_or(0.0))});
+  }
+  // Keys of records must be right, too, before anything is written.
+  for (const MotionRecord& r : set.records) {
+    if (r.set.empty()) continue;
+    try {
+      std::vector<base::Override> overrides = set.set;
+      overrides.insert(overrides.end(), r.set.begin(), r.set.end());
+      static_cast<void>(scenario::read_scenario(set.scenario, overrides));
+    } catch (const base::InputError& error) {
+      problems.push_back(
+          {set.file.string(), 0, fmt::format("records[{}].set", r.name), "", error.problems().front().message()});
+    }
+  }
+  if (!problems.empty()) throw base::InputError(problems);
+  look_at_joints();
+}
+
+std::vector<MotionSetting> MotionModel::free(const std::vector<std::size_t>& records) const {
+  std::vector<MotionSetting> settings;
+  for (const FreeNumber& f : set_.free) {
+    MotionNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));
+    if (f.lower) number.lower = *f.lower;
+    if (f.upper) number.upper = *f.upper;
+    if (f.scale) number.scale = *f.scale;
+    if (!f.each) {
+      settings.push_back({number, number.declared});
+      continue;
+    }
+    for (const std::size_t r : records) {
+      number.record = r;
+      number.key = fmt::format("records[{}].{}", set_.records[r].name, f.key);
+      for (const base::Override& one : set_.records[r].set)
+        if (one.key == f.key) number.declared = std::stod(one.value);
+      settings.push_back({number, number.declared});
+    }
+  }
+  return settings;
+}
+
+std::string MotionModel::unit(const RecordChannel& channel) const {
+  const auto column = columns_.find(channel.sensor);
+  return column == columns_.end() ? "" : unit_of_key(column->second);
+}
+
+std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings,
+                                                      std::size_t record) const {
+  std::vector<base::Override> overrides = set_.set;
+  const MotionRecord& r = set_.records[record];
+  overrides.insert(overrides.end(), r.set.begin(), r.set.end());
+  for (const MotionSetting& s : settings) {
+    if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
+    for (base::Override& one : s.number.overrides(s.value)) overrides.push_back(std::move(one));
+  }
+  const double interval = declared_.number("output_interval_s").value_or(1e-3);
+  overrides.push_back({"duration_s", exact_text(duration_for(r, interval))});
+  return overrides;
+}
+
+std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Override>& overrides, std::size_t record,
+                                                  std::string& failure) const {
+  std::string key = std::to_string(record);
+  for (const base::Override& one : overrides) key += "\n" + one.key + "=" + one.value;
+  {
+    const std::scoped_lock lock(kept_guard_);
+    for (const auto& [of, run] : kept_)
+      if (of == key) return run;
+  }
+  const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides);
+  const WireMotions& motions = run_of(read, set_);
+  const scenario::NamedMotion& named = motions.runs.front();
+  coupling::MotionOptions options = named.options;
+  options.stop = stop_;
+  std::vector<coupling::MotionSample> samples;
+  ++simulations_;
+  const coupling::MotionResult result = coupling::simulate(named.motion, options, [&](const coupling::MotionSample& s) {
+    samples.push_back(s);
+    return false;
+  });
+  if (!result.report.usable()) {
+    failure = result.report.message.empty() ? "the integration stopped" : result.report.message;
+    return nullptr;
+  }
+  auto run = std::make_shared<const SensorRun>(read_sensors_of(motions.sensors, named.motion, samples));
+  constexpr std::size_t most_kept = 12;
+  const std::scoped_lock lock(kept_guard_);
+  kept_.emplace_back(key, run);
+  if (kept_.size() > most_kept) kept_.pop_front();
+  return run;
+}
+
+RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& settings, std::size_t record) const {
+  RecordPrediction prediction;
+  try {
+    const std::shared_ptr<const SensorRun> run = this->run(overrides_of(settings, record), record, prediction.failure);
+    if (run == nullptr) return prediction;
+    SignalChanges changes;
+    for (const MotionSetting& s : settings)
+      if (s.number.signal && (!s.number.record || *s.number.record == record)) s.number.signal(changes, s.value);
+    prediction.channels = signals_at(*run, set_.records[record], columns_, changes);
+  } catch (const base::InputError& error) {
+    prediction.failure = error.problems().front().message();
+  }
+  for (const Eigen::VectorXd& c : prediction.channels)
+    if (!c.allFinite()) prediction.failure = "the prediction is not finite";
+  return prediction;
+}
+
+std::vector<RecordPrediction> MotionModel::predict(const std::vector<MotionSetting>& settings,
+                                                   const std::vector<std::size_t>& records) const {
+  return predict_many({settings}, records).front();
+}
+
+std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
+    const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
+    const std::vector<RecordPrediction>* base, const std::vector<std::optional<std::size_t>>& only) const {
+  std::vector<std::vector<RecordPrediction>> all(settings.size(), std::vector<RecordPrediction>(records.size()));
+  struct Task {
+    std::size_t setting, record;
+  };
+  std::vector<Task> tasks;
+  for (std::size_t s = 0; s < settings.size(); ++s) {
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      if (base != nullptr && s < only.size() && only[s] && *only[s] != records[r])
+        all[s][r] = (*base)[r];
+      else
+        tasks.push_back({s, r});
+    }
+  }
+  base::parallel_for(tasks.size(), [&](std::size_t t) {
+    all[tasks[t].setting][tasks[t].record] = simulate(settings[tasks[t].setting], records[tasks[t].record]);
+  });
+  return all;
+}
+
+void MotionModel::look_at_joints() {
+  const std::size_t first = set_.used(false).front();
+  const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first));
+  const scenario::NamedMotion& run = run_of(read, set_).runs.front();
+  coupling::MotionOptions options = run.options;
+  options.stop = stop_;
+  struct Sum {
+    Eigen::VectorXd spring, drive, rate;
+  };
+  std::vector<Sum> sums;
+  for (const coupling::MotionArm& arm : run.motion.arms) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(arm.arm.motors());
+    sums.push_back({none, none, none});
+  }
+  double count = 0.0;
+  static_cast<void>(coupling::simulate(run.motion, options, [&](const coupling::MotionSample& s) {
+    for (std::size_t a = 0; a < sums.size(); ++a) {
+      sums[a].spring += s.arms[a].joint_torque.cwiseAbs2();
+      sums[a].drive += s.arms[a].drive_torque.cwiseAbs2();
+      sums[a].rate += s.arms[a].state.motor_rate.cwiseAbs2();
+    }
+    count += 1.0;
+    return false;
+  }));
+  if (count == 0.0) return;
+  for (std::size_t a = 0; a < sums.size(); ++a) {
+    const coupling::MotionArm& arm = run.motion.arms[a];
+    for (int j = 0; j < arm.arm.motors(); ++j) {
+      const multibody::ElasticJoint& joint = arm.arm.joints[base::at(j)];
+      joints_[arm.name + "::" + joint.name] = {std::sqrt(std::max(sums[a].spring[j], sums[a].drive[j]) / count),
+                                               std::sqrt(sums[a].rate[j] / count),
+                                               arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic};
+    }
+  }
+}
+
+}  // namespace snare::identification

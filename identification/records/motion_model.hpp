@@ -1,0 +1,93 @@
+#pragma once
+
+#include "identification/records/declared_scenario.hpp"
+#include "identification/records/motion_number.hpp"
+#include "identification/records/record_set.hpp"
+
+#include <Eigen/Core>
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+struct SensorRun;
+
+/// What the scenario says of the channels of one record, at the record's times.
+struct RecordPrediction {
+  std::vector<Eigen::VectorXd> channels;
+  std::string failure;  ///< why there is none; empty: there is
+
+  [[nodiscard]] bool usable() const { return failure.empty(); }
+};
+
+/// Numbers with their values.
+struct MotionSetting {
+  MotionNumber number;
+  double value = 0.0;
+};
+
+/// How lively the declared motion is, for the sizes at which effects are tried: root mean squares along the first record.
+struct JointUse {
+  double torque = 0.0, rate = 0.0;  ///< in the spring or of the drive, the larger [N m]; of the motor [rad/s]
+  bool slides = false;
+};
+
+/// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.20)
+class MotionModel {
+ public:
+  /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or that lacks one of the channels,
+  /// and for keys of free numbers that are none.
+  explicit MotionModel(const RecordSet& set, std::function<bool()> stop = {});
+
+  [[nodiscard]] const RecordSet& records() const { return set_; }
+  [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }
+  /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
+  [[nodiscard]] std::vector<MotionSetting> free(const std::vector<std::size_t>& records) const;
+  /// Unit of a channel's column, from the sensor's name: "mm".
+  [[nodiscard]] std::string unit(const RecordChannel& channel) const;
+  [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }
+  /// Full column of a channel's sensor.
+  [[nodiscard]] const std::string& column(const RecordChannel& channel) const { return columns_.at(channel.sensor); }
+
+  /// Predictions of these records. In parallel, the same for any number of threads.
+  [[nodiscard]] std::vector<RecordPrediction> predict(const std::vector<MotionSetting>& settings,
+                                                      const std::vector<std::size_t>& records) const;
+  /// The same for several settings at once: [setting][record]. Numbers of one record cost no simulation of the others: `base` are the predictions
+  /// at settings that differ in that number only, and are taken over where `only` says so.
+  [[nodiscard]] std::vector<std::vector<RecordPrediction>> predict_many(
+      const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
+      const std::vector<RecordPrediction>* base = nullptr,
+      const std::vector<std::optional<std::size_t>>& only = {}) const;
+
+  [[nodiscard]] long simulations() const { return simulations_; }
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+
+ private:
+  /// Null with `failure` set where the scenario cannot be simulated.
+  [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides, std::size_t record,
+                                                     std::string& failure) const;
+  [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record) const;
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings,
+                                                         std::size_t record) const;
+  void look_at_joints();
+
+  const RecordSet& set_;
+  DeclaredScenario declared_;
+  std::function<bool()> stop_;
+  std::map<std::string, std::string> columns_;  ///< full column of a sensor's short name
+  std::map<std::string, JointUse> joints_;
+  mutable std::atomic<long> simulations_ = 0;
+  /// Runs kept for settings that differ in the sensors only: the last few, by record and keys.
+  mutable std::mutex kept_guard_;
+  mutable std::deque<std::pair<std::string, std::shared_ptr<const SensorRun>>> kept_;
+};
+
+}  // namespace snare::identification

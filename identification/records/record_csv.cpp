@@ -1,0 +1,118 @@
+#include "identification/records/record_csv.hpp"
+
+#include "base/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr double most_at_end = 0.5;  ///< share of the readings that may stand at the largest or the smallest value
+constexpr double usual_gaps = 20.0;  ///< times the median interval
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Problems of the times, a few of each kind.
+void check_times(const RecordCsv& csv, const std::vector<double>& times, std::vector<base::InputProblem>& problems) {
+  constexpr std::size_t most_told = 3;
+  const auto tell = [&](double time, std::string requirement) {
+    problems.push_back(
+        {csv.file.string(), 0, csv.time_column, fmt::format("{:.9g}", time + csv.clock), std::move(requirement)});
+  };
+  std::size_t told = 0;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    steps.push_back(times[k] - times[k - 1]);
+    if (steps.back() > 0.0 || told >= most_told) continue;
+    ++told;
+    tell(times[k], steps.back() == 0.0
+                       ? "stands there twice: times must ascend"
+                       : fmt::format("comes after {:.9g}: times must ascend", times[k - 1] + csv.clock));
+  }
+  if (!times.empty() && times.front() < -1e-9)
+    tell(times.front(), fmt::format("must not be before clock_s = {:.9g}, when the scenario begins", csv.clock));
+  if (told > 0 || steps.empty()) return;
+  const double usual = median(steps);
+  const double most = csv.most_gap.value_or(usual_gaps * usual);
+  for (std::size_t k = 0; k < steps.size() && told < most_told; ++k) {
+    if (steps[k] <= most) continue;
+    ++told;
+    tell(times[k + 1],
+         fmt::format(
+             "comes {:.6g} s after the reading before, usual are {:.6g} s: part the record, or declare longest_gap_s",
+             steps[k], usual));
+  }
+}
+
+void check_values(const RecordCsv& csv, const std::string& column, const std::vector<double>& values,
+                  std::vector<base::InputProblem>& problems) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto tell = [&](double value, std::string requirement) {
+    problems.push_back({csv.file.string(), 0, column, fmt::format("{:.9g}", value), std::move(requirement)});
+  };
+  if (*low == *high) return tell(*low, "all readings are the same: nothing can be learned from them");
+  for (const double end : {*low, *high}) {
+    const auto count = std::count(values.begin(), values.end(), end);
+    if (static_cast<double>(count) > most_at_end * static_cast<double>(values.size()))
+      tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
+                            count, values.size()));
+  }
+}
+
+}  // namespace
+
+RecordReadings read_record_csv(const RecordCsv& csv) {
+  std::vector<base::CsvColumn> asked{{csv.time_column}};
+  for (const auto& [name, factor] : csv.columns) asked.push_back({.name = name, .unit = factor});
+  for (const auto& [name, value] : csv.rows) asked.push_back({name});
+  const base::CsvTable table = base::read_csv(csv.file, asked);
+  RecordReadings readings;
+  readings.values.resize(csv.columns.size());
+  const std::size_t first_filter = 1 + csv.columns.size();
+  long count = 0;
+  for (std::size_t i = 0; i < table.rows; ++i) {
+    bool taken = true;
+    for (std::size_t f = 0; f < csv.rows.size(); ++f)
+      taken = taken && table.columns[first_filter + f][i] == csv.rows[f].second;
+    const double time = table.columns[0][i];
+    if (!taken || time < csv.from || time > csv.to || count++ % csv.every != 0) continue;
+    readings.times.push_back(time - csv.clock);
+    for (std::size_t c = 0; c < csv.columns.size(); ++c) readings.values[c].push_back(table.columns[1 + c][i]);
+  }
+  std::vector<base::InputProblem> problems;
+  if (readings.times.size() < fewest_readings) {
+    problems.push_back({csv.file.string(), 0, "", "",
+                        fmt::format("{} readings, must be at least {}", readings.times.size(), fewest_readings)});
+  } else {
+    check_times(csv, readings.times, problems);
+    for (std::size_t c = 0; c < csv.columns.size(); ++c)
+      check_values(csv, csv.columns[c].first, readings.values[c], problems);
+  }
+  if (!problems.empty()) throw base::InputError(problems);
+  return readings;
+}
+
+std::vector<std::string> read_into(const std::function<RecordReadings()>& read, MotionRecord& record) {
+  std::vector<std::string> problems;
+  try {
+    const RecordReadings readings = read();
+    record.times =
+        Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(readings.times.size()));
+    for (std::size_t c = 0; c < record.channels.size(); ++c)
+      record.channels[c].values = Eigen::Map<const Eigen::VectorXd>(
+          readings.values[c].data(), static_cast<Eigen::Index>(readings.values[c].size()));
+  } catch (const base::InputError& error) {
+    for (const base::InputProblem& p : error.problems()) problems.push_back(p.message());
+  }
+  return problems;
+}
+
+}  // namespace snare::identification

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "base/toml_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// One column of a record: what a sensor of the scenario read, in the unit of the sensor's column.
+struct RecordChannel {
+  std::string
+      sensor;  ///< column of the scenario's telemetry: "gyro_x_deg_s", or the sensor's name where it has one column
+  std::string column;           ///< of the CSV file
+  bool fitted = true;           ///< false: compared and told, not fitted
+  std::optional<double> sigma;  ///< declared standard deviation of one reading
+  Eigen::VectorXd values;
+};
+
+/// A record in time of one run of the scenario.
+struct MotionRecord {
+  std::string name;
+  std::vector<base::Override> set;  ///< keys of the scenario that were otherwise in this run
+  Eigen::VectorXd times;            ///< on the scenario's clock [s], ascending, >= 0
+  std::vector<RecordChannel> channels;
+  bool heldout = false;  ///< never used for fitting or selection
+};
+
+/// A declared number that is fitted: its key in the scenario's or an arm's file, in the unit of the key.
+struct FreeNumber {
+  std::string key;
+  bool each = false;  ///< of every record for itself
+  std::optional<double> lower, upper, scale;
+};
+
+enum class FitMethod { gauss_newton, nelder_mead };
+
+/// A record file: records in time of runs of one scenario.                                     docs/record_file.md
+struct RecordSet {
+  std::filesystem::path file, scenario;
+  std::string title, source;
+  std::vector<base::Override> set;  ///< of the scenario, for all records: --set scenario.KEY=VALUE
+  std::vector<MotionRecord> records;
+  std::vector<FreeNumber> free;
+  FitMethod method = FitMethod::gauss_newton;
+  std::optional<double> tolerance;  ///< share of a channel's rms below which nothing is called missing
+  int most_effects = 4;
+
+  [[nodiscard]] std::vector<std::size_t> used(bool heldout) const;  ///< indices of the records of one kind
+};
+
+}  // namespace snare::identification

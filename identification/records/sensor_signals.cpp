@@ -1,0 +1,78 @@
+#include "identification/records/sensor_signals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+/// The low-pass filter of the first order over readings that are straight in between, exactly: with u the way from one reading to the
+/// next and T the lag, y' = (s - y)/T gives y = s - T s' + (y0 - s0 + T s') exp(-t/T).
+std::vector<double> lagged(const std::vector<double>& times, const std::vector<double>& values, double lag) {
+  if (!(lag > 0.0)) return values;
+  std::vector<double> filtered(values);
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double step = times[k] - times[k - 1];
+    const double slope = (values[k] - values[k - 1]) / step;
+    filtered[k] = values[k] - lag * slope + (filtered[k - 1] - values[k - 1] + lag * slope) * std::exp(-step / lag);
+  }
+  return filtered;
+}
+
+double value_at(const std::vector<double>& times, const std::vector<double>& values, double time) {
+  if (time <= times.front()) return values.front();
+  if (time >= times.back()) return values.back();
+  const auto after = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  const double share = (time - times[after - 1]) / (times[after] - times[after - 1]);
+  return values[after - 1] + share * (values[after] - values[after - 1]);
+}
+
+}  // namespace
+
+SensorRun read_sensors_of(const std::vector<scenario::Sensor>& sensors, const coupling::Motion& motion,
+                          const std::vector<coupling::MotionSample>& samples) {
+  SensorRun run;
+  for (scenario::Sensor quiet : sensors) {
+    quiet.noise = 0.0;
+    run.columns.push_back(quiet.columns());
+    run.readings.push_back(scenario::read_off(quiet, motion, samples));
+  }
+  return run;
+}
+
+std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
+                                        const std::map<std::string, std::string>& columns,
+                                        const SignalChanges& changes) {
+  std::vector<Eigen::VectorXd> result(record.channels.size());
+  for (std::size_t s = 0; s < run.readings.size(); ++s) {
+    const std::vector<std::string>& names = run.columns[s];
+    const scenario::Readings& readings = run.readings[s];
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+      const std::string& column = columns.at(record.channels[c].sensor);
+      const auto component = std::find(names.begin(), names.end(), column);
+      if (component == names.end()) continue;
+      SignalChange change;
+      for (const std::string& key : {std::string(), column}) {
+        if (const auto found = changes.find(key); found != changes.end()) {
+          change.gain *= found->second.gain;
+          change.bias += found->second.bias;
+          change.drift += found->second.drift;
+          change.delay += found->second.delay;
+          change.lag += found->second.lag;
+        }
+      }
+      const std::vector<double> values =
+          lagged(readings.times, readings.values[static_cast<std::size_t>(component - names.begin())], change.lag);
+      result[c].resize(record.times.size());
+      for (Eigen::Index i = 0; i < record.times.size(); ++i) {
+        const double t = record.times[i];
+        result[c][i] =
+            change.gain * value_at(readings.times, values, t - change.delay) + change.bias + change.drift * t;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace snare::identification
