@@ -7,8 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace snare::app {
 
@@ -173,6 +177,28 @@ void add_joint_plots(const FinishedMotion& run, ReportPage& page) {
   page.line_plot(motors);
 }
 
+/// Phases, first touches and tightness in their order.
+void add_time_line(const FinishedMotion& run, ReportPage& page) {
+  const coupling::Motion& motion = run.asked.motion;
+  std::vector<std::pair<double, std::string>> marks;
+  for (const coupling::PhaseBeginning& p : run.result.phases)
+    marks.emplace_back(p.time, "phase: " + motion.phases[base::at(p.phase)].name);
+  const std::vector<std::string> contacts = motion.contact_names();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (const auto first = touches_of(run.result, k).first) marks.emplace_back(*first, "first touch: " + contacts[k]);
+  }
+  const std::vector<coupling::WireFacts> wires = motion.wire_facts();
+  for (std::size_t k = 0; k < std::min(wires.size(), run.result.wires.size()); ++k) {
+    if (std::isfinite(run.result.wires[k].tight_at))
+      marks.emplace_back(run.result.wires[k].tight_at, "tight: " + wires[k].name);
+  }
+  if (marks.empty()) return;
+  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  Table table{"What happened", {"Time [s]"_number, "What"_text}, {}};
+  for (const auto& [time, what] : marks) table.rows.push_back({format_significant(time, 6), what});
+  page.table(table);
+}
+
 void add_list_plots(const FinishedMotion& run, ReportPage& page) {
   const coupling::Motion& motion = run.asked.motion;
   PlotSpecification forces{"Contact forces", {"time", "s"}, {"force", "N"}};
@@ -181,7 +207,14 @@ void add_list_plots(const FinishedMotion& run, ReportPage& page) {
     forces.curves.push_back(time_curve(contacts[k], static_cast<int>(k), run.samples,
                                        [k](const MotionSample& s) { return s.contacts[k].normal_force; }));
   }
-  page.line_plot(forces);
+  if (!contacts.empty()) page.line_plot(forces);
+  const std::vector<coupling::WireFacts> wires = motion.wire_facts();
+  PlotSpecification tensions{"Tension of the wires", {"time", "s"}, {"tension", "N"}};
+  for (std::size_t k = 0; k < wires.size(); ++k) {
+    tensions.curves.push_back(time_curve(wires[k].name, static_cast<int>(k), run.samples,
+                                         [k](const MotionSample& s) { return coupling::end_tension(s, k); }));
+  }
+  if (!wires.empty()) page.line_plot(tensions);
   if (motion.bodies.empty()) return;
   PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
@@ -202,6 +235,7 @@ void add_lists(const FinishedMotion& run, ReportPage& page) {
   add_contacts(run, page);
   add_strength({run}, page);
   add_left_out({run}, page);
+  add_time_line(run, page);
   page.heading("Time histories");
   add_list_plots(run, page);
   page.heading("The motion");
