@@ -10,8 +10,8 @@ namespace snare::identification {
 struct MotionTraceOptions {
   bool effects = true;  ///< false: the base fit only
   double significance = 0.01;
-  std::function<bool(const std::string& stage)> progress;  ///< false stops
-  std::function<void(const MotionTrace& part)> reached;    ///< whenever more of it is whole
+  std::function<bool(const std::string& stage)> progress = {};  ///< false stops
+  std::function<void(const MotionTrace& part)> reached = {};    ///< whenever more of it is whole
 };
 
 /// Closes the loop of a scenario and its records.                                        theory.md (I.20)-(I.24)

@@ -215,7 +215,9 @@ TEST(LawWire, LossesCloseTheBalance) {
     EXPECT_NEAR(r.energy.integrator / energy, 0.0, 1e-4);  // falls with the tolerances
     EXPECT_LT(r.momentum_error.norm(), 1e-8);
     EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
-    if (kind == LawWire::Kind::stretched) EXPECT_GT(r.energy.dissipated, 0.01 * energy);
+    if (kind == LawWire::Kind::stretched) {
+      EXPECT_GT(r.energy.dissipated, 0.01 * energy);
+    }
   }
 }
 

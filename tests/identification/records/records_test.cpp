@@ -152,7 +152,7 @@ TEST_F(Records, BadRecordsAreRefusedWithEverything) {
 TEST(ColouredNoise, FindsAnAutoregression) {
   RecordSet set;
   MotionRecord record;
-  record.channels.push_back({.sensor = "s"});
+  record.channels.emplace_back().sensor = "s";
   set.records.push_back(record);
   constexpr Eigen::Index n = 4000;
   MotionData data;
