@@ -50,7 +50,7 @@ class Command : public CommandFixture {
 TEST_F(Command, NewWritesAStartingSet) {
   const Result made = run("new capture --out my");
   EXPECT_EQ(made.status, 0) << made.err;
-  EXPECT_NE(made.out.find("next: snare simulate my/capture.toml"), std::string::npos) << made.out;
+  EXPECT_NE(made.err.find("next: snare simulate my/capture.toml"), std::string::npos) << made.err;
   const Result simulated =
       run("simulate my/capture.toml --out ran --quiet --set duration_s=0.005 --set "
           "snares[snare].wire.model=\"stretched\"");

@@ -257,7 +257,7 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"snares[snare].frame=\"rms::thumb\"", "snares[snare].frame = \"rms::thumb\", must be the name of a frame"},
       {"snares[snare].ring_radius_mm=0", "snares[snare].ring_radius_mm = 0, must be > 0"},
       {"snares[snare].wires=4", "snares[snare].heights_mm = [-4.0, 0.0, 4.0], must be an array of 4 numbers"},
-      {"snares[snare].wires=0", "snares[snare].wires = 0"},
+      {"snares[snare].wires=-1", "snares[snare].wires = -1"},
       {"snares[snare].turns=\"up\"", "snares[snare].turns = \"up\", must be \"left\" or \"right\""},
       {"snares[snare].ring.start_deg=400", "snares[snare].ring.start_deg = 400"},
       {"snares[snare].wire.length_mm=150", "snares[snare].wire.length_mm = 150, must be >= 1"},
