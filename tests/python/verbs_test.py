@@ -154,10 +154,12 @@ class Watching(unittest.TestCase):
         other = threading.Thread(target=count)
         other.start()
         begin = time.monotonic()
-        snare.trace(EXPERIMENT)
-        took = time.monotonic() - begin
-        done.set()
-        other.join()
+        try:
+            snare.trace(EXPERIMENT)
+        finally:
+            took = time.monotonic() - begin
+            done.set()
+            other.join()
         # Every millisecond if it never waits; a work that held the GIL would let it count once or twice.
         self.assertGreater(counted[0], 20 * took)
 
