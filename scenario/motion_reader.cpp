@@ -128,11 +128,6 @@ coupling::WireStrength read_strength(const TomlTable& table, const wire::WireSpe
   return coupling::wire_strength(wire, strength, ends_run);
 }
 
-bool read_quasi_static(const TomlTable& table) {
-  static constexpr Choice<bool> models[] = {{"full", false}, {"quasi_static", true}};
-  return table.has("model") && table.choice("model", models).value_or(false);
-}
-
 wire::Formulation read_formulation(const TomlTable& table) {
   static constexpr Choice<wire::Formulation> formulations[] = {{"vertices", wire::Formulation::vertices},
                                                                {"higher_order", wire::Formulation::higher_order}};

@@ -62,9 +62,6 @@ void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& o
 [[nodiscard]] coupling::ElasticFoundation read_foundation(const base::TomlTable& table);
 /// `strength_N` and `at_strength` of a wire.
 [[nodiscard]] coupling::WireStrength read_strength(const base::TomlTable& table, const wire::WireSpecification& wire);
-/// `model` of a wire: whether it is "quasi_static" instead of "full".
-[[nodiscard]] bool read_quasi_static(const base::TomlTable& table);
-
 /// `formulation` of a wire: how its bending is discretised.
 [[nodiscard]] wire::Formulation read_formulation(const base::TomlTable& table);
 

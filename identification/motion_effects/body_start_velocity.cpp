@@ -4,21 +4,12 @@ namespace snare::identification {
 
 /// Velocity of a body at the start.
 std::vector<MotionEffect> body_start_velocity_effects(const MotionModel& model) {
-  std::vector<MotionEffect> effects;
-  for (const std::string& name : model.declared().names("bodies")) {
-    const std::string key = "bodies[" + name + "].velocity_m_s";
-    MotionEffect effect{.name = "body_start_velocity",
-                        .place = name,
-                        .channel = "body",
-                        .meaning = "the body began with another velocity",
-                        .independent_check = "measure the velocity just before"};
-    for (const char* axis : {"[1]", "[2]", "[3]"}) {
-      if (const auto declared = model.declared().number(key + axis))
-        effect.numbers.push_back(number_at(key + axis, *declared, 1e-3));
-    }
-    if (!effect.numbers.empty()) effects.push_back(effect);
-  }
-  return effects;
+  return other_body_vector(model, "velocity_m_s",
+                           {.name = "body_start_velocity",
+                            .channel = "body",
+                            .meaning = "the body began with another velocity",
+                            .independent_check = "measure the velocity just before"},
+                           1e-3);
 }
 
 }  // namespace snare::identification

@@ -65,6 +65,22 @@ std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std
   return effects;
 }
 
+std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std::string& key, const MotionEffect& what,
+                                            double scale) {
+  std::vector<MotionEffect> effects;
+  for (const std::string& name : model.declared().names("bodies")) {
+    const std::string whole = "bodies[" + name + "]." + key;
+    MotionEffect effect = what;
+    effect.place = name;
+    for (const char* axis : {"[1]", "[2]", "[3]"}) {
+      if (const auto declared = model.declared().number(whole + axis))
+        effect.numbers.push_back(number_at(whole + axis, *declared, scale));
+    }
+    if (!effect.numbers.empty()) effects.push_back(effect);
+  }
+  return effects;
+}
+
 std::vector<ChannelPlace> channel_places(const MotionModel& model) {
   std::vector<ChannelPlace> places;
   const RecordSet& set = model.records();

@@ -44,6 +44,9 @@ struct JointPlace {
 /// The same of a number of every joint's file.
 [[nodiscard]] std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
                                                            const MotionEffect& what);
+/// The effect of a declared vector of three being another, tried in steps of `scale`, for every body that declares it: `bodies[NAME].KEY`.
+[[nodiscard]] std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std::string& key,
+                                                          const MotionEffect& what, double scale);
 
 /// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less their mean.
 struct ChannelPlace {

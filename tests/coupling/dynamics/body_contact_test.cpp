@@ -3,6 +3,7 @@
 #include "coupling/contact/revolved_solids.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
+#include "tests/support/motion_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,18 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr MotionCarrier body_of(int index) {
-  return {MotionCarrier::Kind::body, index, 0};
-}
-
-MotionBody block(const char* name, double mass, const Vector3d& moments) {
-  MotionBody body;
-  body.name = name;
-  body.properties.mass = mass;
-  body.properties.inertia = moments.asDiagonal();
-  return body;
-}
+using test::block;
+using test::body_of;
 
 MotionOptions fine(double duration) {
   MotionOptions o;

@@ -3,6 +3,7 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "tests/support/dae_jacobian.hpp"
+#include "tests/support/motion_bodies.hpp"
 #include "tests/support/same_bits.hpp"
 
 #include <gmock/gmock.h>
@@ -17,14 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-MotionBody block(const char* name, double mass, const Vector3d& moments) {
-  MotionBody body;
-  body.name = name;
-  body.properties.mass = mass;
-  body.properties.inertia = moments.asDiagonal();
-  return body;
-}
+using test::block;
+using test::body_of;
 
 MotionBushing bushing_between(MotionCarrier first, MotionCarrier second) {
   MotionBushing b;
@@ -33,10 +28,6 @@ MotionBushing bushing_between(MotionCarrier first, MotionCarrier second) {
   b.translational_stiffness = {2000.0, 3000.0, 5000.0};
   b.rotational_stiffness = {40.0, 50.0, 70.0};
   return b;
-}
-
-constexpr MotionCarrier body_of(int index) {
-  return {MotionCarrier::Kind::body, index, 0};
 }
 
 MotionOptions fine(double duration) {

@@ -3,6 +3,7 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "tests/support/dae_jacobian.hpp"
+#include "tests/support/motion_bodies.hpp"
 #include "tests/support/same_bits.hpp"
 
 #include <gtest/gtest.h>
@@ -16,18 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr MotionCarrier body_of(int index) {
-  return {MotionCarrier::Kind::body, index, 0};
-}
-
-MotionBody block(const char* name, double mass, const Vector3d& moments) {
-  MotionBody body;
-  body.name = name;
-  body.properties.mass = mass;
-  body.properties.inertia = moments.asDiagonal();
-  return body;
-}
+using test::block;
+using test::body_of;
 
 /// Wire of a ring of a radius, from azimuth 0 to theta, about a shaft along z that body 0 carries in the middle.
 LawWire ring_wire(double radius, double theta, double length) {
