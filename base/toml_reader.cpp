@@ -92,7 +92,11 @@ void TomlDocument::add(InputProblem problem) {
 }
 
 void TomlDocument::report(const TomlNode& at, std::string key, std::string requirement) {
-  add({at.overridden ? "--set" : file_, at.line, std::move(key), at.written, std::move(requirement)});
+  add({at.overridden ? "--set" : file_of(&at), at.line, std::move(key), at.written, std::move(requirement)});
+}
+
+std::string TomlDocument::file_of(const TomlNode* at) const {
+  return at != nullptr && at->part ? at->part->file : file_;
 }
 
 std::string TomlDocument::suggestion(std::string_view key, const Visit& visit) const {
@@ -158,7 +162,7 @@ void TomlTable::missing(std::string_view key, const std::string& requirement) co
   const Layer& layer = layers_.back();
   if (std::any_of(layers_.begin(), layers_.end(), [](const Layer& one) { return one.broken; })) return;
   const bool nowhere = std::all_of(layers_.begin(), layers_.end(), [](const Layer& one) { return !one.node; });
-  InputProblem problem{document_->file_, layer.node ? layer.node->line : 0, layer.address, "", ""};
+  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0, layer.address, "", ""};
   if (nowhere) {
     problem.requirement = "missing, must be a table";
   } else {
@@ -300,6 +304,11 @@ std::optional<std::size_t> TomlTable::choice_index(std::string_view key,
   return std::nullopt;
 }
 
+std::string TomlTable::scope() const {
+  const TomlNode* node = layers_.front().node;
+  return node != nullptr && node->part ? node->part->scope : std::string();
+}
+
 void require_schema(const TomlTable& root, std::string_view schema) {
   const Choice<bool> only[] = {{schema, true}};
   static_cast<void>(root.choice("schema", only));
@@ -335,8 +344,8 @@ void TomlTable::fail(std::string_view key, std::string requirement) const {
   const Found found = find(key);
   if (found.node != nullptr) return document_->report(*found.node, found.address, std::move(requirement));
   const Layer& layer = layers_.front();
-  InputProblem problem{document_->file_, layer.node ? layer.node->line : 0, dotted(layer.address, key), "",
-                       std::move(requirement)};
+  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0, dotted(layer.address, key),
+                       "", std::move(requirement)};
   document_->add(std::move(problem));
 }
 

@@ -65,6 +65,7 @@ class TomlDocument {
   };
 
   void report(const TomlNode& at, std::string key, std::string requirement);
+  [[nodiscard]] std::string file_of(const TomlNode* at) const;
   void report_unknown_keys();
   [[nodiscard]] std::string suggestion(std::string_view key, const Visit& visit) const;
 
@@ -132,6 +133,9 @@ class TomlTable {
   void fail(std::string_view key, std::string requirement) const;
   /// Reports one element of the array under a key, counted from 0: `fit.free[2]`.
   void fail_element(std::string_view key, std::size_t index, std::string requirement) const;
+
+  /// In which names of this table stand, of a file that another one includes; empty: in none.
+  [[nodiscard]] std::string scope() const;
 
   /// "series[s40]"; empty for the root.
   [[nodiscard]] const std::string& address() const { return layers_.front().address; }

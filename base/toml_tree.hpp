@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,20 +20,27 @@ struct Override {
 
 struct TomlEntry;
 
+/// A file whose tables stand in the tree of another one.
+struct TomlPart {
+  std::string file;   ///< stands in messages
+  std::string scope;  ///< in which its names stand: "SCOPE::name"
+};
+
 /// One value of a TOML file with the place it came from.
 struct TomlNode {
   enum class Kind { table, array, text, number, boolean, other };
 
   Kind kind = Kind::table;
-  std::vector<TomlEntry> entries;  ///< table
-  std::vector<TomlNode> items;     ///< array
-  std::string text;                ///< text
-  double number = 0.0;             ///< number; may be NaN or infinite
-  bool integer = false;            ///< the number was written as an integer (dates and times are `other`)
-  bool boolean = false;            ///< boolean
-  std::string written;             ///< as it stands in the file, shortened; empty for a table with a header
-  int line = 0;                    ///< 1-based; 0 for an overridden value
-  bool overridden = false;         ///< given by --set
+  std::vector<TomlEntry> entries;        ///< table
+  std::vector<TomlNode> items;           ///< array
+  std::string text;                      ///< text
+  double number = 0.0;                   ///< number; may be NaN or infinite
+  bool integer = false;                  ///< the number was written as an integer (dates and times are `other`)
+  bool boolean = false;                  ///< boolean
+  std::string written;                   ///< as it stands in the file, shortened; empty for a table with a header
+  int line = 0;                          ///< 1-based; 0 for an overridden value
+  bool overridden = false;               ///< given by --set
+  std::shared_ptr<const TomlPart> part;  ///< in which it is written; null: in the file itself
 
   /// Entry of a table, or null.
   [[nodiscard]] const TomlNode* find(std::string_view key) const noexcept;

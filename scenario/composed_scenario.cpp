@@ -231,6 +231,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   run.name = root.text("title");
   run.model = "wire";
   Composition c{document, folder, arms};
+  static_cast<void>(root.has("include"));  // what it lists has been put in its place
   read_motion_options(root, run.options);
   c.motion.gravity = read_vector_or_zero(root.table("gravity"), "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
   c.damping = read_damping(root.table("damping"));
@@ -249,6 +250,8 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   snares.add_wires();
   read_shapes(c);
   snares.add_walls();
+  for (const DeclaredWire& w : c.wires)
+    if (w.law) c.motion.law_wires.push_back(law_in_place(w));  // before what asks for contacts by name
   read_contacts(c);
   read_bushings(c);
   read_loads(c);
@@ -267,12 +270,8 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.input = c.input + document.canonical();
   motions.duration = run.options.duration;
   document.finish();
-  for (DeclaredWire& w : c.wires) {
-    if (w.law)
-      c.motion.law_wires.push_back(law_in_place(w));
-    else
-      c.motion.wires.push_back(at_rest(std::move(w)));
-  }
+  for (DeclaredWire& w : c.wires)
+    if (!w.law) c.motion.wires.push_back(at_rest(std::move(w)));
   motions.model_keys = std::move(c.model_keys);
   run.motion = std::move(c.motion);
   motions.runs.push_back(std::move(run));

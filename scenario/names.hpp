@@ -19,7 +19,9 @@ class Names {
   /// The next index under the name of a table; a name that is taken is reported.
   std::string take(const base::TomlTable& table) {
     std::string name = table.text("name");
-    if (name.find("::") != std::string::npos)
+    const std::string scope = table.scope();
+    const std::size_t own = scope.empty() || name.empty() ? 0 : scope.size() + 2;
+    if (name.find("::", own) != std::string::npos)
       table.fail("name", "must not have \"::\", which parts names of what belongs together");
     if (!add(name)) table.fail("name", fmt::format("is taken by another {}", what_));
     return name;

@@ -1,11 +1,11 @@
 #include "scenario/scenario.hpp"
 
-#include "base/files.hpp"
 #include "base/toml_reader.hpp"
 #include "scenario/arm_contact_scenario.hpp"
 #include "scenario/arm_reader.hpp"
 #include "scenario/composed_scenario.hpp"
 #include "scenario/contact_scenario.hpp"
+#include "scenario/include.hpp"
 
 #include <fmt/format.h>
 
@@ -94,9 +94,9 @@ void check_lists(const base::TomlTable& root) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
-  const TomlNode written = base::parse_toml(file.string(), base::read_text(file, TomlDocument::size_limit));
+  std::vector<base::Override> own = overrides;  // less those of the list of parts, and those of the arms' files
+  const TomlNode written = read_with_parts(file, own);
   const SplitOverrides split_overrides = split(overrides);
-  std::vector<base::Override> own = overrides;  // less those of the arms' files
   const ArmOverrides arms = take_arm_overrides(own);
   TomlNode looked_at = written;
   std::vector<base::InputProblem> ignored;  // the document tells them

@@ -200,7 +200,8 @@ ShapePoints read_shape_points(const TomlTable& table, const std::filesystem::pat
     case ShapeKind::knife_edge:
     case ShapeKind::capsule: {
       const double half = 0.5 * number("length_mm", size);
-      for (const double z : {-half, half}) result.points.emplace_back(0.0, 0.0, z);
+      const int along = table.integer_or("axis_points", 2, 2, 1000);
+      for (int k = 0; k < along; ++k) result.points.emplace_back(0.0, 0.0, half * (2.0 * k / (along - 1) - 1.0));
       if (*kind == ShapeKind::capsule) result.radius = number("radius_mm", size);
       break;
     }
