@@ -74,7 +74,7 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::WireMotions
   if (motions.output.paraview) {
     for (const FinishedMotion& run : finished) {
       write_paraview(options.out, motions.probe ? run.asked.name : "motion",
-                     paraview_frames(run.asked.motion, run.samples));
+                     MotionPictures(run.asked.motion, run.samples, motions.drawn).paraview());
     }
   }
   if (partial) console.complain("interrupted: the results are a part of what was asked for");

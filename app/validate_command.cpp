@@ -6,6 +6,7 @@
 #include "base/files.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
+#include "validation/capture_checks.hpp"
 #include "validation/contact_law_checks.hpp"
 #include "validation/distil_checks.hpp"
 #include "validation/friction_checks.hpp"
@@ -112,7 +113,8 @@ std::vector<validation::Check> all_checks() {
        {validation::static_wire_checks(), validation::distil_checks(), validation::motion_checks(),
         validation::motion_accuracy_checks(), validation::friction_checks(), validation::contact_law_checks(),
         validation::air_table_checks(), validation::arm_checks(data_directory() / "arms"),
-        validation::linked_motion_checks(data_directory()), validation::tracing_checks(measured)}) {
+        validation::linked_motion_checks(data_directory()), validation::capture_checks(data_directory()),
+        validation::tracing_checks(measured)}) {
     checks.insert(checks.end(), some.begin(), some.end());
   }
   return checks;

@@ -85,6 +85,7 @@ void read_shapes(Composition& c) {
     const PlacedShape placed{table, {frame->carrier, frame->X_WF * shape.X_BS}, shape.shape};
     c.shapes.try_emplace(name, placed);
     set_shaft(c, name, placed, shape.friction, on);
+    if (shape.shape) c.drawn.push_back({name, placed.on.carrier, placed.on.X_WF, shape.shape->drawing()});
   }
   require_shafts(c);
 }
@@ -273,6 +274,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   for (DeclaredWire& w : c.wires)
     if (!w.law) c.motion.wires.push_back(at_rest(std::move(w)));
   motions.model_keys = std::move(c.model_keys);
+  motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
   motions.runs.push_back(std::move(run));
   return motions;

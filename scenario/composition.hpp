@@ -4,6 +4,7 @@
 #include "scenario/list_items.hpp"
 #include "scenario/names.hpp"
 #include "scenario/placement.hpp"
+#include "scenario/world.hpp"
 
 #include <filesystem>
 #include <map>
@@ -50,6 +51,7 @@ struct Composition {
   std::map<std::string, SnareWires> snares = {};
   std::map<std::string, PlacedShape> shapes = {};
   std::vector<std::string> model_keys = {};  ///< of the wires
+  std::vector<DrawnLines> drawn = {};
 
   /// The joint under a key, reported when there is none.
   [[nodiscard]] const MotorJoint* joint(const base::TomlTable& table, std::string_view key) const;

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 namespace snare::scenario {
@@ -49,6 +50,25 @@ struct Snares::Item {
   SnareJoint ring = {};
   std::optional<SnareJoint> carriage = {};
   std::optional<DeclaredWire> wire = {};
+
+  /// Of the place of a wire on the fixed ring.
+  [[nodiscard]] double azimuth(std::size_t k) const {
+    return first_azimuth +
+           sense * 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
+  }
+
+  /// A ring with a spoke at the place of every wire, so that its turning can be seen.
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> ring_drawing() const {
+    constexpr int corners = 72;
+    std::vector<Eigen::Matrix3Xd> lines{coupling::circle_drawing(radius, 0.0, corners)};
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      const Vector3d outward(std::cos(azimuth(k)), std::sin(azimuth(k)), 0.0);
+      Eigen::Matrix3Xd spoke(3, 2);
+      spoke << radius * outward + heights[k] * Vector3d::UnitZ(), 1.1 * radius * outward;
+      lines.push_back(spoke);
+    }
+    return lines;
+  }
 };
 
 namespace {
@@ -67,7 +87,7 @@ SnareJoint read_joint(const TomlTable& table, const std::string& name, bool slid
   if (stiffness > 0.0 && damping >= 0.0) j.joint.spring = multibody::DeflectionLaw::linear(stiffness, damping);
   j.joint.back_drive = table.number_or(slides ? "back_drive_N" : "back_drive_Nm", 0.0, Range::from(0.0, 1e9));
   j.start = slides ? table.number_or("start_mm", 0.0, Range::from(-1e4, 1e4), mm)
-                   : table.number_or("start_deg", 115.0, Range::from(0.0, 360.0), degree);
+                   : table.number_or("start_deg", 115.0 * degree, Range::from(0.0, 360.0), degree);
   j.drive = multibody::Drive::locked();
   return j;
 }
@@ -171,8 +191,11 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
   for (const char* own : {"housing", "carriage", "fixed", "turning"}) {
     const int f = tree.find_frame(item.name + "::" + own);
     if (f < 0) continue;
-    c_.placement.add(item.name + "::" + own,
-                     {{coupling::MotionCarrier::Kind::arm, index, f}, multibody::frame_pose(tree, now, f)});
+    const PlacedFrame placed{{coupling::MotionCarrier::Kind::arm, index, f}, multibody::frame_pose(tree, now, f)};
+    c_.placement.add(item.name + "::" + own, placed);
+    const bool is_ring = std::string_view(own) == "fixed" || std::string_view(own) == "turning";
+    if (is_ring && item.wire)
+      c_.drawn.push_back({item.name + "::" + own, placed.carrier, placed.X_WF, item.ring_drawing()});
   }
 }
 
@@ -189,8 +212,7 @@ void Snares::add_wires() {
     for (std::size_t k = 0; k < count; ++k) {
       DeclaredWire w = *item.wire;
       w.wire.name = fmt::format("{}::wire_{}", item.name, k + 1);
-      const double azimuth = item.first_azimuth +
-                             item.sense * 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
+      const double azimuth = item.azimuth(k);
       const Vector3d mount = AngleAxisd(azimuth, Vector3d::UnitZ()) * Vector3d(item.radius, 0.0, 0.0) +
                              item.heights[k] * Vector3d::UnitZ();
       w.from = fixed->X_WF.p + fixed->X_WF.R * mount;
@@ -226,8 +248,8 @@ void Snares::add_walls() {
     if (!item.wire || !item.table.has("wall")) continue;
     const TomlTable table = item.table.table("wall");
     const double inner = table.number("radius_mm", Range::above(0.0, 1e4), mm);
-    const double length = table.number_or("length_mm", 60.0, Range::above(0.0, 1e5), mm);
-    const double thickness = table.number_or("thickness_mm", 5.0, Range::above(0.0, 1e3), mm);
+    const double length = table.number_or("length_mm", 60.0 * mm, Range::above(0.0, 1e5), mm);
+    const double thickness = table.number_or("thickness_mm", 5.0 * mm, Range::above(0.0, 1e3), mm);
     const double mass = table.number_or("mass_kg", 5.0, Range::above(0.0, 1e6));
     const double least =
         std::max(item.radius, item.radius * std::cos(0.5 * item.ring.start) + arc_bow(item.radius, item.ring.start)) +
@@ -241,6 +263,7 @@ void Snares::add_walls() {
     if (!housing || !(inner > 0.0) || !(length > 0.0) || !(thickness > 0.0)) continue;
     wall.shape = coupling::hollow_cylinder(inner, inner + thickness, length, 0.0);
     c_.add_shape(item.name + "::wall", wall, *housing, mass, c_.snares[item.name].wires);
+    c_.drawn.push_back({item.name + "::wall", housing->carrier, housing->X_WF, wall.shape->drawing()});
   }
 }
 

@@ -31,6 +31,14 @@ struct Probe {
   double distance = 0.0;                            ///< to the wire at the start [m]
 };
 
+/// What pictures show of a shape or a ring: lines that a carrier takes along.
+struct DrawnLines {
+  std::string name;
+  coupling::MotionCarrier carrier;
+  multibody::Pose X_WS;                 ///< of the lines' frame at the start
+  std::vector<Eigen::Matrix3Xd> lines;  ///< in that frame [m]
+};
+
 /// Motions with wires, run one after the other: kinds "contact" and "arm_contact".
 struct WireMotions {
   /// Canonical text of everything that was read, files beside it too: equal for equal scenarios.
@@ -45,6 +53,7 @@ struct WireMotions {
   std::vector<Sensor> sensors;
   std::optional<CaptureTest> capture;
   std::vector<std::string> model_keys;  ///< of the models of a composed scenario's wires, as for `--set`
+  std::vector<DrawnLines> drawn;        ///< of a composed scenario
   std::vector<NamedMotion> runs;
 };
 

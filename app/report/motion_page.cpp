@@ -178,22 +178,26 @@ void add_joint_plots(const FinishedMotion& run, ReportPage& page) {
 }
 
 /// Phases, first touches and tightness in their order.
-void add_time_line(const FinishedMotion& run, ReportPage& page) {
+std::vector<SceneMark> marks_of(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
-  std::vector<std::pair<double, std::string>> marks;
+  std::vector<SceneMark> marks;
   for (const coupling::PhaseBeginning& p : run.result.phases)
-    marks.emplace_back(p.time, "phase: " + motion.phases[base::at(p.phase)].name);
+    marks.push_back({p.time, "phase: " + motion.phases[base::at(p.phase)].name});
   const std::vector<std::string> contacts = motion.contact_names();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (const auto first = touches_of(run.result, k).first) marks.emplace_back(*first, "first touch: " + contacts[k]);
+    if (const auto first = touches_of(run.result, k).first) marks.push_back({*first, "first touch: " + contacts[k]});
   }
   const std::vector<coupling::WireFacts> wires = motion.wire_facts();
   for (std::size_t k = 0; k < std::min(wires.size(), run.result.wires.size()); ++k) {
     if (std::isfinite(run.result.wires[k].tight_at))
-      marks.emplace_back(run.result.wires[k].tight_at, "tight: " + wires[k].name);
+      marks.push_back({run.result.wires[k].tight_at, "tight: " + wires[k].name});
   }
+  std::stable_sort(marks.begin(), marks.end(), [](const SceneMark& a, const SceneMark& b) { return a.time < b.time; });
+  return marks;
+}
+
+void add_time_line(const std::vector<SceneMark>& marks, ReportPage& page) {
   if (marks.empty()) return;
-  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   Table table{"What happened", {"Time [s]"_number, "What"_text}, {}};
   for (const auto& [time, what] : marks) table.rows.push_back({format_significant(time, 6), what});
   page.table(table);
@@ -214,6 +218,13 @@ void add_list_plots(const FinishedMotion& run, ReportPage& page) {
     tensions.curves.push_back(time_curve(wires[k].name, static_cast<int>(k), run.samples,
                                          [k](const MotionSample& s) { return coupling::end_tension(s, k); }));
   }
+  for (std::size_t k = 0; k < wires.size(); ++k) {
+    const double strength = wires[k].strength.breaking_tension;
+    if (!std::isfinite(strength) || (k > 0 && strength == wires[k - 1].strength.breaking_tension)) continue;
+    const Values ends{run.samples.front().time, run.samples.back().time};
+    tensions.curves.push_back(
+        make_curve("strength", ends, {strength, strength}, CurveStyle::dashes, static_cast<int>(wires.size())));
+  }
   if (!wires.empty()) page.line_plot(tensions);
   if (motion.bodies.empty()) return;
   PlotSpecification speeds{"Speeds of the bodies", {"time", "s"}, {"speed", "m/s"}};
@@ -224,22 +235,18 @@ void add_list_plots(const FinishedMotion& run, ReportPage& page) {
   page.line_plot(speeds);
 }
 
-void add_views(const FinishedMotion& run, ReportPage& page) {
-  for (const View view : {View::along_z, View::along_x})
-    page.animation(animation_of(run.asked.motion, run.samples, view));
-}
-
 /// Bodies, wires and shapes in lists.
-void add_lists(const FinishedMotion& run, ReportPage& page) {
+void add_lists(const scenario::WireMotions& motions, const FinishedMotion& run, ReportPage& page) {
   add_balance(run.result, page);
   add_contacts(run, page);
   add_strength({run}, page);
   add_left_out({run}, page);
-  add_time_line(run, page);
+  const std::vector<SceneMark> marks = marks_of(run);
+  add_time_line(marks, page);
+  page.heading("The motion");
+  page.scene(MotionPictures(run.asked.motion, run.samples, motions.drawn).scene(marks));
   page.heading("Time histories");
   add_list_plots(run, page);
-  page.heading("The motion");
-  add_views(run, page);
 }
 
 /// One body that meets one wire, with an arm or without.
@@ -256,7 +263,7 @@ void add_probe_on_wire(const scenario::Probe& probe, const std::vector<FinishedM
   page.heading("The contact");
   for (const FinishedMotion& run : finished) {
     page.animation(animation_of(probe, run.asked.name, run.samples));
-    if (with_arm) add_views(run, page);
+    if (with_arm) page.scene(MotionPictures(run.asked.motion, run.samples, {}).scene({}));
   }
 }
 
@@ -281,7 +288,7 @@ std::string motion_page(const scenario::Scenario& asked, const scenario::WireMot
   if (motions.probe)
     add_probe_on_wire(*motions.probe, finished, page);
   else
-    add_lists(finished.front(), page);
+    add_lists(motions, finished.front(), page);
   page.footer(written_by(version, "history.csv and summary.json"));
   return page.html();
 }

@@ -1,6 +1,10 @@
 #include "app/report/motion_pictures.hpp"
 
+#include "base/index.hpp"
+#include "multibody/kinematics.hpp"
+
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstddef>
@@ -9,8 +13,11 @@
 
 namespace snare::app {
 
+using base::at;
+using coupling::MotionCarrier;
 using coupling::MotionSample;
 using Eigen::Vector3d;
+using multibody::Pose;
 
 namespace {
 
@@ -28,52 +35,58 @@ std::string label_of(const MotionSample& s) {
   return fmt::format("t = {:.4f} s, {:.3g} N", s.time, force);
 }
 
-AnimationFrame::Line polyline(const Eigen::Matrix3Xd& points, Eigen::Index across) {
+/// Seen along z.
+AnimationFrame::Line polyline(const Eigen::Matrix3Xd& points) {
   AnimationFrame::Line line;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    line.insert(line.end(), {mm_per_m * points(across, i), mm_per_m * points(1, i)});
+    line.insert(line.end(), {mm_per_m * points(0, i), mm_per_m * points(1, i)});
   return line;
 }
 
 /// From the base to the outermost body of every chain, and on to its frames.
-std::vector<AnimationFrame::Line> skeleton(const multibody::Tree& tree, const Eigen::VectorXd& q, Eigen::Index across) {
-  multibody::Kinematics kinematics(tree);
-  multibody::place(tree, q, kinematics);
-  const auto pose = [&](int body) { return kinematics.X_WB[static_cast<std::size_t>(body)]; };
+std::vector<Eigen::Matrix3Xd> skeleton(const multibody::Tree& tree, const multibody::Kinematics& kinematics) {
+  const auto pose = [&](int body) { return kinematics.X_WB[at(body)]; };
   std::set<int> inner;
   for (const multibody::TreeBody& b : tree.bodies()) inner.insert(b.parent);
-  std::vector<AnimationFrame::Line> lines;
+  std::vector<Eigen::Matrix3Xd> lines;
   for (int end = 0; end < tree.size(); ++end) {
     if (inner.contains(end)) continue;
     std::vector<Vector3d> chain;
     for (int i = end; i >= 0; i = tree.body(i).parent) chain.push_back(pose(i).p);
     std::reverse(chain.begin(), chain.end());
-    lines.push_back(polyline(
-        Eigen::Map<const Eigen::Matrix3Xd>(chain.front().data(), 3, static_cast<Eigen::Index>(chain.size())), across));
+    lines.emplace_back(
+        Eigen::Map<const Eigen::Matrix3Xd>(chain.front().data(), 3, static_cast<Eigen::Index>(chain.size())));
     for (const multibody::TreeFrame& f : tree.frames()) {
       if (f.body != end) continue;
       Eigen::Matrix3Xd line(3, 2);
       line << pose(end).p, (pose(end) * f.X_BF).p;
-      lines.push_back(polyline(line, across));
+      lines.push_back(line);
     }
   }
   return lines;
 }
 
-/// Lines of the shapes of every body, in the body's frame.
-std::vector<std::vector<Eigen::Matrix3Xd>> shapes_of(const coupling::Motion& motion) {
-  std::vector<std::vector<Eigen::Matrix3Xd>> lines(motion.bodies.size());
-  std::set<std::pair<int, const coupling::ContactShape*>> drawn;  // one shape may meet several wires
-  for (const coupling::MotionContact& c : motion.contacts) {
-    if (!drawn.emplace(c.body, c.shape.get()).second) continue;
-    for (const Eigen::Matrix3Xd& line : c.shape->drawing())
-      lines[static_cast<std::size_t>(c.body)].emplace_back((c.X_BS.R * line).colwise() + c.X_BS.p);
-  }
-  return lines;
+Eigen::Matrix3Xd placed(const Pose& X, const Eigen::Matrix3Xd& line) {
+  return (X.R * line).colwise() + X.p;
 }
 
-Eigen::Matrix3Xd in_world(const multibody::RigidBodyState& body, const Eigen::Matrix3Xd& line) {
-  return (body.orientation.toRotationMatrix() * line).colwise() + body.position;
+std::vector<double> coordinates_mm(const Eigen::Matrix3Xd& line) {
+  const Eigen::Matrix3Xd mm = mm_per_m * line;
+  return {mm.data(), mm.data() + mm.size()};
+}
+
+/// The shapes of the contacts, on their bodies, each once: one may meet several wires.
+std::vector<scenario::DrawnLines> shapes_of(const coupling::Motion& motion) {
+  std::vector<scenario::DrawnLines> drawn;
+  std::set<std::pair<int, const coupling::ContactShape*>> known;
+  for (const coupling::MotionContact& c : motion.contacts) {
+    if (!known.emplace(c.body, c.shape.get()).second) continue;
+    drawn.push_back({motion.bodies[at(c.body)].name,
+                     {MotionCarrier::Kind::body, c.body, 0},
+                     scenario::pose_of(motion.bodies[at(c.body)].start) * c.X_BS,
+                     c.shape->drawing()});
+  }
+  return drawn;
 }
 
 }  // namespace
@@ -90,60 +103,119 @@ AnimationSpecification animation_of(const scenario::Probe& probe, const std::str
   for (std::size_t k = 0; k < samples.size(); k += stride(samples)) {
     const MotionSample& s = samples[k];
     AnimationFrame frame{label_of(s), {{}, {}, {}}};
-    for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines[0].push_back(polyline(w, 0));
+    for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines[0].push_back(polyline(w));
     const multibody::RigidBodyState& b = s.bodies.front();
     const Vector3d axis = b.position + b.orientation * probe.place;
-    frame.outlines[1].push_back(polyline(circle.colwise() + axis, 0));
+    frame.outlines[1].push_back(polyline(circle.colwise() + axis));
     Eigen::Matrix3Xd way(3, 2);
     way << axis, b.position;
-    frame.outlines[2] = {polyline(way, 0)};
+    frame.outlines[2] = {polyline(way)};
     animation.frames.push_back(std::move(frame));
   }
   return animation;
 }
 
-AnimationSpecification animation_of(const coupling::Motion& motion, const std::vector<MotionSample>& samples,
-                                    View view) {
-  const bool along_z = view == View::along_z;
-  const Eigen::Index across = along_z ? 0 : 2;
-  AnimationSpecification animation{
-      along_z ? "Seen along z: x to the right, y up" : "Seen along x: z to the right, y up",
-      {},
-      {},
-      motion.arms.empty() ? "To scale; of the bodies their shapes, and their centres of mass as small crosses."
-                          : "To scale; of the bodies their shapes, and their centres of mass as small crosses; the arm "
-                            "from joint to joint."};
-  const std::vector<std::vector<Eigen::Matrix3Xd>> shapes = shapes_of(motion);
-  const double cross = motion.arms.empty() ? 2.0 : 100.0;  // half its size, that it may be seen beside an arm [mm]
-  for (std::size_t k = 0; k < samples.size(); k += stride(samples)) {
-    const MotionSample& s = samples[k];
-    AnimationFrame frame{label_of(s), {}};
-    for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines.push_back({polyline(w, across)});
-    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-      const double x = mm_per_m * s.bodies[b].position[across];
-      const double y = mm_per_m * s.bodies[b].position.y();
-      std::vector<AnimationFrame::Line> lines{{x - cross, y, x + cross, y}, {x, y - cross, x, y + cross}};
-      for (const Eigen::Matrix3Xd& line : shapes[b]) lines.push_back(polyline(in_world(s.bodies[b], line), across));
-      frame.outlines.push_back(std::move(lines));
+/// Where carriers are at one time.
+class MotionPictures::Moment {
+ public:
+  Moment(const coupling::Motion& motion, const std::vector<multibody::RigidBodyState>& bodies,
+         const std::vector<const Eigen::VectorXd*>& arms)
+      : bodies_(bodies) {
+    for (std::size_t a = 0; a < arms.size(); ++a) {
+      trees_.push_back(&motion.arms[a].arm.tree);
+      kinematics_.emplace_back(*trees_.back());
+      multibody::place(*trees_.back(), *arms[a], kinematics_.back());
+    }
+  }
+
+  static Moment at_start(const coupling::Motion& motion, std::vector<multibody::RigidBodyState>& bodies) {
+    for (const coupling::MotionBody& b : motion.bodies) bodies.push_back(b.start);
+    std::vector<const Eigen::VectorXd*> arms;
+    for (const coupling::MotionArm& a : motion.arms) arms.push_back(&a.start.q);
+    return {motion, bodies, arms};
+  }
+
+  static Moment of(const coupling::Motion& motion, const MotionSample& sample) {
+    std::vector<const Eigen::VectorXd*> arms;
+    for (const MotionSample::Arm& a : sample.arms) arms.push_back(&a.state.q);
+    return {motion, sample.bodies, arms};
+  }
+
+  [[nodiscard]] Pose pose(const MotionCarrier& carrier) const {
+    switch (carrier.kind) {
+      case MotionCarrier::Kind::body:
+        return scenario::pose_of(bodies_[at(carrier.index)]);
+      case MotionCarrier::Kind::arm:
+        return multibody::frame_pose(*trees_[at(carrier.index)], kinematics_[at(carrier.index)], carrier.frame);
+      case MotionCarrier::Kind::world:
+        break;
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> arm(std::size_t a) const { return skeleton(*trees_[a], kinematics_[a]); }
+
+ private:
+  const std::vector<multibody::RigidBodyState>& bodies_;
+  std::vector<const multibody::Tree*> trees_;
+  std::vector<multibody::Kinematics> kinematics_;
+};
+
+MotionPictures::MotionPictures(const coupling::Motion& motion, const std::vector<MotionSample>& samples,
+                               std::vector<scenario::DrawnLines> drawn)
+    : motion_(motion), samples_(samples) {
+  std::vector<multibody::RigidBodyState> bodies;
+  const Moment start = Moment::at_start(motion, bodies);
+  if (drawn.empty()) drawn = shapes_of(motion);
+  for (scenario::DrawnLines& d : drawn) {
+    const Pose X_CS = start.pose(d.carrier).inverse() * d.X_WS;
+    for (Eigen::Matrix3Xd& line : d.lines) line = placed(X_CS, line);
+    carried_.push_back({std::move(d.name), d.carrier, std::move(d.lines)});
+  }
+}
+
+SceneSpecification MotionPictures::scene(std::vector<SceneMark> marks) const {
+  SceneSpecification scene;
+  scene.title = "The motion";
+  scene.marks = std::move(marks);
+  for (const coupling::WireFacts& w : motion_.wire_facts()) scene.moving.push_back({w.name, SceneItem::Kind::wire});
+  for (const coupling::MotionArm& a : motion_.arms) scene.moving.push_back({a.name, SceneItem::Kind::arm});
+  for (const Carried& c : carried_) {
+    SceneItem item{c.name, SceneItem::Kind::solid};
+    for (const Eigen::Matrix3Xd& line : c.lines) item.lines.push_back(coordinates_mm(line));
+    scene.carried.push_back(std::move(item));
+  }
+  for (std::size_t k = 0; k < samples_.size(); k += stride(samples_)) {
+    const MotionSample& s = samples_[k];
+    const Moment moment = Moment::of(motion_, s);
+    SceneFrame frame{s.time, label_of(s)};
+    for (const Eigen::Matrix3Xd& w : s.wires) frame.moving.push_back({coordinates_mm(w)});
+    for (std::size_t a = 0; a < s.arms.size(); ++a) {
+      std::vector<std::vector<double>>& lines = frame.moving.emplace_back();
+      for (const Eigen::Matrix3Xd& line : moment.arm(a)) lines.push_back(coordinates_mm(line));
+    }
+    for (const Carried& c : carried_) {
+      const Pose X = moment.pose(c.carrier);
+      const Eigen::Quaterniond q(X.R);
+      const Vector3d p = mm_per_m * X.p;
+      frame.poses.push_back({p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
+    }
+    scene.frames.push_back(std::move(frame));
+  }
+  return scene;
+}
+
+std::vector<ParaviewFrame> MotionPictures::paraview() const {
+  std::vector<ParaviewFrame> frames;
+  for (const MotionSample& s : samples_) {
+    const Moment moment = Moment::of(motion_, s);
+    frames.push_back({s.time, s.wires});
+    for (const Carried& c : carried_) {
+      for (const Eigen::Matrix3Xd& line : c.lines)
+        frames.back().polylines.push_back(placed(moment.pose(c.carrier), line));
     }
     for (std::size_t a = 0; a < s.arms.size(); ++a)
-      frame.outlines.push_back(skeleton(motion.arms[a].arm.tree, s.arms[a].state.q, across));
-    animation.frames.push_back(std::move(frame));
-  }
-  for (const auto& w : motion.wire_facts()) animation.names.push_back(w.name);
-  for (const auto& b : motion.bodies) animation.names.push_back(b.name);
-  for (const auto& a : motion.arms) animation.names.push_back(a.name);
-  return animation;
-}
-
-std::vector<ParaviewFrame> paraview_frames(const coupling::Motion& motion, const std::vector<MotionSample>& samples) {
-  const std::vector<std::vector<Eigen::Matrix3Xd>> shapes = shapes_of(motion);
-  std::vector<ParaviewFrame> frames;
-  for (const MotionSample& s : samples) {
-    frames.push_back({s.time, s.wires});
-    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-      for (const Eigen::Matrix3Xd& line : shapes[b]) frames.back().polylines.push_back(in_world(s.bodies[b], line));
-    }
+      for (Eigen::Matrix3Xd& line : moment.arm(a)) frames.back().polylines.push_back(std::move(line));
   }
   return frames;
 }

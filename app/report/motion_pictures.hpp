@@ -9,22 +9,34 @@
 
 namespace snare::app {
 
-/// How the world is looked at; y is up.
-enum class View {
-  along_z,  ///< x to the right
-  along_x   ///< z to the right
-};
-
 /// Wire, probe and the way to the body's centre of mass, seen along z, to scale.
 [[nodiscard]] AnimationSpecification animation_of(const scenario::Probe& probe, const std::string& model,
                                                   const std::vector<coupling::MotionSample>& samples);
 
-/// Wires, bodies (centres of mass and shapes) and arms (lines from joint to joint), to scale.
-[[nodiscard]] AnimationSpecification animation_of(const coupling::Motion& motion,
-                                                  const std::vector<coupling::MotionSample>& samples, View view);
+/// Pictures of a motion: wires, bodies, shapes, rings, and arms from joint to joint.
+class MotionPictures {
+ public:
+  /// `drawn`: what carriers take along; empty: the shapes of the motion's contacts. The motion and the samples must outlive this.
+  MotionPictures(const coupling::Motion& motion, const std::vector<coupling::MotionSample>& samples,
+                 std::vector<scenario::DrawnLines> drawn);
 
-/// The wires, then the shapes of the bodies.
-[[nodiscard]] std::vector<ParaviewFrame> paraview_frames(const coupling::Motion& motion,
-                                                         const std::vector<coupling::MotionSample>& samples);
+  /// To be turned by the reader; `marks` are times at which something happened.
+  [[nodiscard]] SceneSpecification scene(std::vector<SceneMark> marks) const;
+
+  /// The wires, then what carriers take along.
+  [[nodiscard]] std::vector<ParaviewFrame> paraview() const;
+
+ private:
+  struct Carried {
+    std::string name;
+    coupling::MotionCarrier carrier;
+    std::vector<Eigen::Matrix3Xd> lines;  ///< in the carrier's frame [m]
+  };
+  class Moment;
+
+  const coupling::Motion& motion_;
+  const std::vector<coupling::MotionSample>& samples_;
+  std::vector<Carried> carried_;
+};
 
 }  // namespace snare::app

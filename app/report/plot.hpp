@@ -98,4 +98,34 @@ struct AnimationSpecification {
   std::string note = {};
 };
 
+/// A time at which something happened.
+struct SceneMark {
+  double time = 0.0;  ///< [s]
+  std::string text;
+};
+
+/// Something that is drawn in three dimensions.
+struct SceneItem {
+  enum class Kind { wire, arm, solid };
+  std::string name;
+  Kind kind = Kind::solid;
+  std::vector<std::vector<double>> lines = {};  ///< of one that is carried, in its own frame: x0, y0, z0, x1, ... [mm]
+};
+
+struct SceneFrame {
+  double time = 0.0;                                          ///< [s]
+  std::string label;                                          ///< "t = 0.120 s"
+  std::vector<std::vector<std::vector<double>>> moving = {};  ///< of each item that changes its shape its lines [mm]
+  std::vector<std::vector<double>> poses = {};  ///< of each that is carried: place [mm], quaternion x, y, z, w
+};
+
+/// A motion in three dimensions, which the reader turns, magnifies and plays.
+struct SceneSpecification {
+  std::string title;
+  std::vector<SceneItem> moving;   ///< change their shape: wires, arms
+  std::vector<SceneItem> carried;  ///< keep it
+  std::vector<SceneMark> marks;
+  std::vector<SceneFrame> frames;
+};
+
 }  // namespace snare::app

@@ -133,4 +133,54 @@ json animation_data(const AnimationSpecification& animation) {
           {"frames", frames}};
 }
 
+namespace {
+
+/// Numbers of a scene to a hundredth of a millimetre, or of a quaternion to 1e-6.
+json scene_numbers(const std::vector<double>& values, double step, const std::string& title) {
+  json shortened = json::array();
+  for (const double value : values) {
+    if (!std::isfinite(value))
+      throw std::invalid_argument(fmt::format("scene \"{}\": a coordinate is {}", title, value));
+    const double rounded = std::round(value / step) * step;
+    shortened.push_back(std::stod(fmt::format("{:.6f}", rounded)));
+  }
+  return shortened;
+}
+
+}  // namespace
+
+json scene_data(const SceneSpecification& scene) {
+  constexpr double hundredth = 0.01, fine = 1e-6;
+  static constexpr const char* kinds[] = {"wire", "arm", "solid"};  // of SceneItem::Kind
+  const auto lines_of = [&](const std::vector<std::vector<double>>& lines) {
+    json all = json::array();
+    for (const std::vector<double>& line : lines) all.push_back(scene_numbers(line, hundredth, scene.title));
+    return all;
+  };
+  const auto items_of = [&](const std::vector<SceneItem>& items) {
+    json all = json::array();
+    for (const SceneItem& item : items)
+      all.push_back(
+          {{"name", item.name}, {"kind", kinds[static_cast<std::size_t>(item.kind)]}, {"lines", lines_of(item.lines)}});
+    return all;
+  };
+  json data = {{"moving", items_of(scene.moving)},
+               {"carried", items_of(scene.carried)},
+               {"marks", json::array()},
+               {"frames", json::array()}};
+  for (const SceneMark& mark : scene.marks) data["marks"].push_back({{"time", mark.time}, {"text", mark.text}});
+  for (const SceneFrame& frame : scene.frames) {
+    require_length(frame.moving.size(), scene.moving.size(), "scene '" + scene.title + "': lines");
+    require_length(frame.poses.size(), scene.carried.size(), "scene '" + scene.title + "': poses");
+    json moving = json::array(), poses = json::array();
+    for (const auto& lines : frame.moving) moving.push_back(lines_of(lines));
+    for (const std::vector<double>& pose : frame.poses) {
+      require_length(pose.size(), 7, "scene '" + scene.title + "': a pose");
+      poses.push_back(scene_numbers(pose, fine, scene.title));
+    }
+    data["frames"].push_back({{"time", frame.time}, {"label", frame.label}, {"moving", moving}, {"poses", poses}});
+  }
+  return data;
+}
+
 }  // namespace snare::app

@@ -168,6 +168,22 @@ void ReportPage::animation(const AnimationSpecification& animation) {
   body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
 }
 
+void ReportPage::scene(const SceneSpecification& scene) {
+  if (scene.frames.empty()) return;
+  close_plots();
+  spatial_ = true;
+  body_ += fmt::format(
+      "<figure class=\"scene\"><figcaption>{}</figcaption><div class=\"stage\"></div><div class=\"marks\"></div>"
+      "<p><button type=\"button\" class=\"play\">play</button> <input type=\"range\" min=\"0\" value=\"0\" "
+      "style=\"width:60%\"> <output></output></p>"
+      "<p><button type=\"button\" class=\"near\">to the wires</button> <button type=\"button\" class=\"far\">show "
+      "all</button> <label><input type=\"checkbox\" checked> follow the wires</label></p>"
+      "<p class=\"note\">Drag to turn, with the right button to shift; wheel or two fingers to come nearer. A mark on "
+      "the "
+      "time line leads to its moment.</p><script type=\"application/json\">{}</script></figure>\n",
+      escape_html(scene.title), embedded_json(scene_data(scene)));
+}
+
 void ReportPage::footer(std::string_view text) {
   footer_ = text;
 }
@@ -201,6 +217,10 @@ std::string ReportPage::html() const {
                         report_assets::d3_script, report_assets::plot_script);
   }
   if (animated_) page += fmt::format("<script>\n{}</script>\n", report_assets::animation_script);
+  if (spatial_) {
+    page += fmt::format("<script>\n/*\n{}*/\n{}\n{}\n</script>\n<script>\n{}</script>\n", report_assets::three_notice,
+                        report_assets::three_script, report_assets::orbit_script, report_assets::scene_script);
+  }
   page += "</body>\n</html>\n";
   return page;
 }

@@ -90,6 +90,9 @@ class ReportPage {
   /// Without frames it is left out.
   void animation(const AnimationSpecification& animation);
 
+  /// The same of a scene, drawn by three.js, or flat where the browser has no WebGL.
+  void scene(const SceneSpecification& scene);
+
   /// A drawing that is whole as it stands, e.g. of heat_map(); not escaped.
   void drawing(std::string_view svg);
 
@@ -109,6 +112,7 @@ class ReportPage {
   std::optional<PlotWidth> plots_open_;  ///< width of the plots of the row being filled
   int plot_count_ = 0;
   bool animated_ = false;
+  bool spatial_ = false;
 };
 
 /// First sentences of the small print of a page beside `files`, e.g. "trace.json and curves.csv".

@@ -106,7 +106,7 @@ TEST_F(SimulateCommand, GrappleShaftBetweenWires) {
   EXPECT_NE(contents("out/history.csv").find("target vy_m_s"), std::string::npos);
   EXPECT_NE(contents("out/history.csv").find("shaft on lower normal_N"), std::string::npos);
   EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
-  EXPECT_NE(contents("out/report.html").find("class=\"animation\""), std::string::npos);
+  EXPECT_NE(contents("out/report.html").find("class=\"scene\""), std::string::npos);
 }
 
 // Wires that cross stand among the contacts.

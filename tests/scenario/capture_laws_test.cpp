@@ -209,29 +209,6 @@ TEST_F(CaptureLaws, LoadsComeFromATableToo) {
   EXPECT_NEAR(declared.x(), (3.0 * 0.002 - 10.0 * 0.01 * 0.02) / 500.0, 1e-10);  // less the pull of the tie
 }
 
-// A carriage that follows a quintic by 125 mm in 2 s pulls a visitor that a stiff ball joint holds; the plate, 120 mm away, meets
-// the face when 10 s^3 - 15 s^4 + 6 s^5 = 120/125. The joint gives by the visitor's inertia, here some micrometres.
-TEST_F(CaptureLaws, RigidizingMeetsTheFaceInTime) {
-  WireMotions motions =
-      read_file(shipped / "ssrms_rigidize.toml",
-                {"snares[snare].frame=\"world\"", "bodies[visitor].velocity_m_s=[0.0,0.0,0.0]",
-                 "bodies[visitor].spin_rad_s=[0.0,0.0,0.0]",
-                 "bushings[ball joint].translational_stiffness_N_m=[1.0e8,1.0e8,1.0e8]",
-                 "bushings[ball joint].translational_damping_Ns_m=[1.0e5,1.0e5,1.0e5]", "duration_s=7.0"});
-  const coupling::MotionResult r = coupling::simulate(motions.runs[0].motion, motions.runs[0].options, {});
-  ASSERT_TRUE(r.report.usable()) << r.report.message;
-  double low = 0.5, high = 1.0;
-  for (int i = 0; i < 60; ++i) {
-    const double s = 0.5 * (low + high);
-    (s * s * s * (10.0 - 15.0 * s + 6.0 * s * s) < 120.0 / 125.0 ? low : high) = s;
-  }
-  const auto touch = std::find_if(r.events.begin(), r.events.end(), [](const coupling::MotionEvent& e) {
-    return e.kind == coupling::MotionEvent::Kind::touch;
-  });
-  ASSERT_NE(touch, r.events.end());
-  EXPECT_NEAR(touch->time, 5.0 + 2.0 * low, 1e-3);
-}
-
 // The shipped capture with strings in place of its wires: caught, in the order of the full wires (see the file), and the balances.
 TEST_F(CaptureLaws, StringsCatchAsTheWiresDo) {
   const WireMotions motions =

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <filesystem>
@@ -204,6 +205,20 @@ TEST_F(Compositions, PutEverythingWhereItBelongs) {
   EXPECT_EQ(all.sensors.size(), 2u);
   ASSERT_TRUE(all.capture);
   EXPECT_EQ(all.capture->wires, (std::vector<int>{1, 2, 3}));
+}
+
+TEST_F(Compositions, HaveDefaultsInTheUnitsOfTheFile) {
+  const WireMotions all = read({}, with("[snares.ring]\nstart_deg = 115.0\n", ""));
+  EXPECT_NEAR(all.runs.front().motion.arms[0].start.motor[7], 115.0 * std::numbers::pi / 180.0, 1e-12);
+  // The wall is 60 mm long and 5 mm thick.
+  Eigen::AlignedBox3d box;
+  for (const DrawnLines& d : all.drawn) {
+    if (d.name != "snare::wall") continue;
+    for (const Eigen::Matrix3Xd& line : d.lines)
+      for (Eigen::Index i = 0; i < line.cols(); ++i) box.extend(line.col(i));
+  }
+  EXPECT_NEAR(box.sizes().z(), 0.06, 1e-12);
+  EXPECT_NEAR(box.sizes().x(), 2.0 * (0.112 + 0.005), 1e-12);
 }
 
 TEST_F(Compositions, RunAllOfItInOneSystem) {

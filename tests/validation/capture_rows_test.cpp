@@ -1,0 +1,27 @@
+// The rows of the captures by snares; `snare validate` has all.
+
+#include "validation/capture_checks.hpp"
+
+#include "tests/validation/row_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace snare::validation {
+namespace {
+
+const std::string data = std::string(SNARE_SOURCE_DIR) + "/data";
+
+TEST(CaptureRows, RingIsTightAsTheClosedForm) {
+  expect_within(tight_ring_rows(data));
+}
+TEST(CaptureRows, RigidizingMeetsTheFaceInTime) {
+  expect_within(rigidizing_rows(data));
+}
+TEST(SlowCaptureRows, StringsKeepTheirNumbersAndBalances) {
+  expect_within(snare_capture_rows(data));
+}
+
+}  // namespace
+}  // namespace snare::validation

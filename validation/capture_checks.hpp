@@ -1,0 +1,19 @@
+#pragma once
+
+#include "validation/suite.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace snare::validation {
+
+/// Captures by snares whose wires are strings: the ring's closed form, rigidizing, the shipped capture against finer tolerances and
+/// the conservation laws.
+[[nodiscard]] std::vector<Check> capture_checks(const std::filesystem::path& data);
+
+/// Rows of `capture_checks`.
+[[nodiscard]] std::vector<Row> tight_ring_rows(const std::filesystem::path& data);
+[[nodiscard]] std::vector<Row> rigidizing_rows(const std::filesystem::path& data);
+[[nodiscard]] std::vector<Row> snare_capture_rows(const std::filesystem::path& data);
+
+}  // namespace snare::validation
