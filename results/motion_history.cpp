@@ -169,8 +169,7 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
     const multibody::ElasticArm& arm = motion.arms[a].arm;
     for (int j = 0; j < arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.joints[at(j)];
-      const bool own = joint.name.find("::") != std::string::npos;
-      const std::string name = own ? joint.name : fmt::format("{}::{}", motion.arms[a].name, joint.name);
+      const std::string name = joint_name(motion, a, j);
       const bool slides = arm.tree.body(joint.body).joint == multibody::JointKind::prismatic;
       const double unit = slides ? base::mm : degree;
       const char* angle = slides ? "mm" : "deg";

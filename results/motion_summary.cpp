@@ -234,6 +234,36 @@ json lists_json(const FinishedMotion& run) {
   return summary;
 }
 
+/// Least, largest and last of what every column of the sensors has read.
+json sensors_json(const scenario::WireMotions& motions, const FinishedMotion& run) {
+  json all = json::object();
+  for (const scenario::Sensor& sensor : motions.sensors) {
+    const scenario::Readings readings = scenario::read_off(sensor, run.asked.motion, run.samples);
+    const std::vector<std::string> columns = sensor.columns();
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const std::vector<double>& values = readings.values[k];
+      if (values.empty()) continue;
+      const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+      all[columns[k]] = {{"least", *least}, {"largest", *largest}, {"last", values.back()}};
+    }
+  }
+  return all;
+}
+
+/// Largest torque in every joint, or force where it slides, at the output times.
+json peak_torques(const FinishedMotion& run) {
+  json all = json::object();
+  const coupling::Motion& motion = run.asked.motion;
+  for (std::size_t a = 0; a < motion.arms.size(); ++a) {
+    for (int j = 0; j < motion.arms[a].arm.motors(); ++j) {
+      double peak = 0.0;
+      for (const MotionSample& s : run.samples) peak = std::max(peak, std::abs(s.arms[a].joint_torque[j]));
+      all[joint_name(motion, a, j)] = peak;
+    }
+  }
+  return all;
+}
+
 json head(const scenario::Scenario& asked) {
   return {{"schema", "snare-summary/1"},
           {"kind", asked.kind},
@@ -263,6 +293,7 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
     outcome["peak_force_N"][contacts[k]] = run.result.peak_force[k];
     outcome["impulse_Ns"][contacts[k]] = vector_json(run.result.impulse[k]);
   }
+  outcome["peak_torque_Nm"] = peak_torques(run);
   for (const coupling::PhaseBeginning& p : run.result.phases)
     outcome["events"].push_back({{"time_s", p.time}, {"what", "phase"}, {"phase", motion.phases[at(p.phase)].name}});
   if (!motions.capture) return outcome;
@@ -282,6 +313,7 @@ json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions
   if (!motions.probe) {
     summary.update(lists_json(finished.front()));
     if (motions.composed) summary["outcome"] = outcome_json(motions, finished.front());
+    if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished.front());
     return summary;
   }
   summary["models"] = json::array();
