@@ -56,6 +56,11 @@ class PatternValues {
     const int slot = pattern_.slot(row, column);
     if (slot >= 0) values_[static_cast<std::size_t>(slot)] += value;
   }
+  /// A stretch of a column from a row on, all of which the pattern has.
+  void add(int first_row, int column, const Eigen::Ref<const Eigen::VectorXd>& stretch) const {
+    const int slot = pattern_.slot(first_row, column);
+    if (slot >= 0) Eigen::Map<Eigen::VectorXd>(values_.data() + slot, stretch.size()) += stretch;
+  }
 
  private:
   const SparseMatrix& pattern_;

@@ -38,11 +38,10 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
     q.push_back(frame.coordinates());
     v.push_back(frame.velocities());
   }
+  // The rows of a carrier follow each other.
   const auto add = [&into](const std::vector<int>& rows, const std::vector<int>& columns, const MatrixXd& block) {
-    for (Index j = 0; j < block.cols(); ++j) {
-      for (Index i = 0; i < block.rows(); ++i)
-        into.add(rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)], -block(i, j));
-    }
+    for (Index j = 0; j < block.cols(); ++j)
+      into.add(rows.front(), columns[static_cast<std::size_t>(j)], -block.col(j));
   };
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (!frames_[i].moves_freely()) continue;

@@ -69,10 +69,7 @@ MovingFrame::State MovingFrame::state(const VectorView& y) const {
     s.angular = X_WB.R * y.segment<3>(body_->spin());
     s.linear = y.segment<3>(body_->velocity()) + s.angular.cross(X_WB.R * X_CF_.p);
   } else if (arm_ != nullptr) {
-    const multibody::Tree& tree = arm_->arm().tree;
-    multibody::Kinematics kinematics(tree);
-    multibody::place(tree, y.segment(arm_->coordinates(), tree.coordinates()), kinematics);
-    multibody::set_moving(tree, y.segment(arm_->velocities(), tree.velocities()), kinematics);
+    const multibody::Kinematics& kinematics = arm_->kinematics(y);
     const Pose& X_WB = kinematics.X_WB[static_cast<std::size_t>(tree_body_)];
     const multibody::Twist& V = kinematics.V_B[static_cast<std::size_t>(tree_body_)];
     s.X_WF = X_WB * X_CF_;
@@ -95,10 +92,8 @@ Matrix6X MovingFrame::jacobian(const VectorView& y) const {
     return J;
   }
   if (arm_ == nullptr) return Matrix6X::Zero(6, 0);
-  const multibody::Tree& tree = arm_->arm().tree;
-  multibody::Kinematics kinematics(tree);
-  multibody::place(tree, y.segment(arm_->coordinates(), tree.coordinates()), kinematics);
-  return multibody::point_jacobian(tree, kinematics, tree_body_,
+  const multibody::Kinematics& kinematics = arm_->kinematics(y);
+  return multibody::point_jacobian(arm_->arm().tree, kinematics, tree_body_,
                                    (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p);
 }
 

@@ -55,6 +55,7 @@ ElasticArmPart::ElasticArmPart(const ElasticArm& arm, std::vector<Drive> drives,
       workspace_(arm.tree),
       derivatives_(arm.tree),
       kinematics_(arm.tree),
+      seen_(arm.tree),
       q_values_(arm.tree.coordinates()),
       v_values_(arm.tree.velocities()),
       a_values_(arm.tree.velocities()) {
@@ -189,6 +190,20 @@ ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y,
     t.drive_by_rate = t.motor_loss_slope + t.gear_damping;
   }
   return t;
+}
+
+const Kinematics& ElasticArmPart::kinematics(numerics::VectorView y) const {
+  const auto q = y.segment(q_, arm_.tree.coordinates()), v = y.segment(v_, arm_.tree.velocities());
+  const bool placed = seen_q_.size() == q.size() && seen_q_ == q;
+  if (!placed) {
+    seen_q_ = q;
+    place(arm_.tree, seen_q_, seen_);
+  }
+  if (!placed || seen_v_ != v) {
+    seen_v_ = v;
+    set_moving(arm_.tree, seen_v_, seen_);
+  }
+  return seen_;
 }
 
 double ElasticArmPart::drive_torque(double time, numerics::VectorView y, int joint) const {

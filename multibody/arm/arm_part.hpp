@@ -125,6 +125,9 @@ class ElasticArmPart : public numerics::DaePart {
   [[nodiscard]] std::vector<double> breaks() const;
 
   [[nodiscard]] const ElasticArm& arm() const { return arm_; }
+  /// Poses and velocities of the tree at y. Kept until another y is asked for: many frames of an arm are asked for at one.
+  [[nodiscard]] const Kinematics& kinematics(numerics::VectorView y) const;
+
   [[nodiscard]] int coordinates() const { return q_; }  ///< first of the coordinates
   [[nodiscard]] int velocities() const { return v_; }   ///< first of the velocities
 
@@ -176,6 +179,8 @@ class ElasticArmPart : public numerics::DaePart {
   DynamicsWorkspace workspace_;
   InverseDynamicsDerivatives derivatives_;
   Kinematics kinematics_;
+  mutable Kinematics seen_;  // of kinematics(), at seen_q_ and seen_v_
+  mutable Eigen::VectorXd seen_q_, seen_v_;
   std::vector<Wrench> wrenches_;  // empty while no load acts
   Eigen::VectorXd q_values_, v_values_, a_values_;
 
