@@ -1,9 +1,6 @@
 #pragma once
 
-#include "app/motion_checkpoint.hpp"
-#include "base/archive.hpp"
 #include "base/errors.hpp"
-#include "base/files.hpp"
 #include "identification/records/record_file.hpp"
 #include "identification/ring_down/ring_down_file.hpp"
 #include "multibody/arm/arm_file.hpp"
@@ -24,34 +21,32 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <system_error>
 
 namespace snare::fuzz {
 
-/// A folder with what files name beside themselves, for this process; the arms and records of the tests of ranges.
+/// A folder for this process, with what the files of tests/ranges and data/scenarios name beside and above themselves.
 inline const std::filesystem::path& folder_of_files() {
   static const struct Folder {
-    Folder() : path(std::filesystem::temp_directory_path() / ("snare_fuzz_" + std::to_string(::getpid()))) {
+    Folder() {
       namespace fs = std::filesystem;
       const fs::path source = SNARE_SOURCE_DIR;
-      fs::create_directories(path);
-      for (const char* name : {"tests/ranges/swing.toml", "tests/ranges/swing.csv", "tests/ranges/readings.toml",
-                               "tests/ranges/readings.csv", "data/records/pendulum.urdf", "data/arms/jemrms_like.toml",
-                               "data/arms/jemrms_like.urdf", "data/experiments/ringdown.csv"})
-        fs::copy_file(source / name, path / fs::path(name).filename(), fs::copy_options::overwrite_existing);
-      // The scenario of the swing names its arm in another folder.
-      std::string swing = base::read_text(path / "swing.toml");
-      const std::string far = "../../data/records/pendulum_arm.toml";
-      swing.replace(swing.find(far), far.size(), "pendulum_arm.toml");
-      base::write_text(path / "swing.toml", swing);
-      fs::copy_file(source / "data/records/pendulum_arm.toml", path / "pendulum_arm.toml",
-                    fs::copy_options::overwrite_existing);
+      const auto copy = [&](const fs::path& from, const fs::path& to) {
+        fs::create_directories(top / to);
+        fs::copy(source / from, top / to, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+      };
+      copy("tests/ranges", "tests/ranges");
+      for (const char* arms : {"data/arms", "tests/arms", "tests/ranges"}) copy("data/arms", arms);
+      copy("data/records", "data/records");
+      copy("data/experiments", "tests/experiments");
+      fs::copy(source / "data/experiments/ringdown.csv", path, fs::copy_options::overwrite_existing);
     }
     ~Folder() {
       std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
+      std::filesystem::remove_all(top, ignored);
     }
-    std::filesystem::path path;
+    std::filesystem::path top = std::filesystem::temp_directory_path() / ("snare_fuzz_" + std::to_string(::getpid()));
+    std::filesystem::path path = top / "tests/ranges";
   } folder;
   return folder.path;
 }
@@ -72,30 +67,32 @@ bool read_bytes_as_file(std::string_view bytes, const char* name, const Read& re
 }
 
 inline bool read_bytes_as_scenario(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "scenario.toml",
+  return read_bytes_as_file(bytes, "fuzz_scenario.toml",
                             [](const auto& f) { static_cast<void>(scenario::read_scenario(f)); });
 }
 
 inline bool read_bytes_as_record(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "record.toml",
+  return read_bytes_as_file(bytes, "fuzz_record.toml",
                             [](const auto& f) { static_cast<void>(identification::read_records(f)); });
 }
 
 inline bool read_bytes_as_sweep(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "sweep.toml", [](const auto& f) { static_cast<void>(study::read_sweep_file(f)); });
+  return read_bytes_as_file(bytes, "fuzz_sweep.toml",
+                            [](const auto& f) { static_cast<void>(study::read_sweep_file(f)); });
 }
 
 inline bool read_bytes_as_ring_down(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "ringdown.toml",
+  return read_bytes_as_file(bytes, "fuzz_ringdown.toml",
                             [](const auto& f) { static_cast<void>(identification::read_ring_down_file(f)); });
 }
 
 inline bool read_bytes_as_wire(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "wire.toml", [](const auto& f) { static_cast<void>(reduction::read_wire_file(f)); });
+  return read_bytes_as_file(bytes, "fuzz_wire.toml",
+                            [](const auto& f) { static_cast<void>(reduction::read_wire_file(f)); });
 }
 
 inline bool read_bytes_as_arm(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "arm.toml", [](const auto& f) { static_cast<void>(multibody::read_arm(f)); });
+  return read_bytes_as_file(bytes, "fuzz_arm.toml", [](const auto& f) { static_cast<void>(multibody::read_arm(f)); });
 }
 
 inline bool read_bytes_as_law(std::string_view bytes) {
@@ -112,22 +109,6 @@ inline bool read_bytes_as_journal(std::string_view bytes) {
       if (const auto line = journal.result(k)) static_cast<void>(study::record_of(*line));
     }
   });
-}
-
-/// What a checkpoint holds, behind a head that is right: the checksum keeps all else out. It must be read or refused.
-inline bool read_bytes_as_checkpoint(std::string_view bytes) {
-  const std::filesystem::path file = folder_of_files() / "checkpoint.bin";
-  static const std::string head = [&file] {
-    app::MotionProgress nothing;
-    app::write_motion_checkpoint(file, "input", nothing);
-    std::string text = base::read_text(file);
-    text.resize(text.find('\n') + 1 + sizeof(std::uint64_t));
-    return text;
-  }();
-  const std::uint64_t sum = base::fingerprint(bytes);
-  std::ofstream(file, std::ios::binary) << head << std::string_view(reinterpret_cast<const char*>(&sum), sizeof sum)
-                                        << bytes;
-  return app::read_motion_checkpoint(file, "input").progress.has_value();
 }
 
 }  // namespace snare::fuzz
