@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <atomic>
+
 namespace snare::app {
 
 using namespace results;
@@ -64,26 +66,34 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
 
   const ResultFolder folder(options, {"law.json", "table.csv", "report.html", "distil.journal"});
   const std::filesystem::path journal = options.out / "distil.journal";
+  std::atomic<bool> journalled = true;
   const KeepWhenInterrupted keeping(
-      [&journal] {
+      [&journal, &journalled]() -> std::string {
+        if (!journalled) return "what was finished is not kept: the journal could not be written";
         return fmt::format("the curves that were finished are kept in {}; the same command goes on", journal.string());
       },
       options.json ? "snare-law/1" : "");
-  const reduction::Distillation result =
-      reduction::distil(wire, journal, [&](std::size_t finished, std::size_t wanted) {
+  const reduction::Distillation result = reduction::distil(
+      wire, journal,
+      [&](std::size_t finished, std::size_t wanted) {
         console.progress(fmt::format("curve {} of {}", finished, wanted));
         return !interrupted();
+      },
+      [&](const std::string& what) {
+        journalled = false;
+        console.complain(what + "; goes on, but a run that is interrupted begins anew");
       });
   console.end_progress();
   begin_writing();
   if (!result.report.usable()) {
-    console.complain(
-        fmt::format("{}; the curves that were reached are kept in {}", result.report.message, journal.string()));
+    console.complain(journalled ? fmt::format("{}; the curves that were reached are kept in {}", result.report.message,
+                                              journal.string())
+                                : result.report.message + "; nothing is kept: the journal could not be written");
     if (options.json) {
       const nlohmann::json word{{"schema", "snare-law/1"},
                                 {"interrupted", result.report.termination == numerics::Termination::interrupted},
                                 {"stopped", result.report.message},
-                                {"kept", journal.string()}};
+                                {"kept", journalled ? nlohmann::json(journal.string()) : nlohmann::json()}};
       print(word.dump(1) + "\n");
     }
     return ExitStatus::solver_stopped;

@@ -69,7 +69,12 @@ class ByteReader {
 
   template <class Value>
   ByteReader& operator()(Value& value) {
-    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      unsigned char byte = 0;
+      take(&byte, 1);
+      if (byte > 1) throw std::runtime_error("a yes or no that is neither");
+      value = byte == 1;
+    } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
       take(&value, sizeof value);
     } else {
       fields(*this, value);

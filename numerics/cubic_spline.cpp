@@ -3,9 +3,12 @@
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace snare::numerics {
@@ -87,6 +90,10 @@ Eigen::MatrixXd slopes_of(const std::vector<double>& knots, const Eigen::MatrixX
   }
   const SplineEquations equations = spline_equations(knots, upper);
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(equations.left);
+  if (factor.info() !=
+      Eigen::Success)  // knots that roundings do not tell from each other; solving would read what is not there
+    throw std::domain_error(
+        fmt::format("a spline's {} knots from {} to {} lie too close", n, knots.front(), knots.back()));
   return factor.solve(Eigen::MatrixXd(equations.right * values));
 }
 

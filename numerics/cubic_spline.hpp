@@ -32,7 +32,7 @@ enum class SplineEnd {
 class HermiteCurve {
  public:
   HermiteCurve(std::vector<double> knots, std::vector<double> values, std::vector<double> slopes);
-  /// Through values with the slopes of the C2 spline.
+  /// Through values with the slopes of the C2 spline. Throws std::domain_error where knots lie too close for roundings.
   HermiteCurve(std::vector<double> knots, std::vector<double> values);
 
   [[nodiscard]] double value(double x) const noexcept;

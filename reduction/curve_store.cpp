@@ -1,7 +1,6 @@
 #include "reduction/curve_store.hpp"
 
 #include "base/archive.hpp"
-#include "base/files.hpp"
 #include "base/parallel.hpp"
 #include "coupling/statics/push_solver.hpp"
 
@@ -9,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <mutex>
@@ -78,11 +78,12 @@ std::vector<double> numbers_in(std::string_view text) {
 }  // namespace
 
 CurveStore::CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
-                       std::filesystem::path journal)
+                       std::filesystem::path journal, JournalTrouble trouble)
     : wire_(std::move(wire)),
       settings_(settings),
       travel_(std::move(travel)),
       journal_(std::move(journal)),
+      trouble_(std::move(trouble)),
       identity_(identity(wire_, settings_, travel_)) {
   if (!journal_.empty() && std::filesystem::exists(journal_)) read_journal();
 }
@@ -113,6 +114,25 @@ void CurveStore::read_journal() {
     curves_.emplace(CurvePlace{n[0], n[1]},
                     PushedCurve{{n.begin() + 6, unloading - 1}, {unloading, n.end()}, n[2], n[3], n[4], true, {}});
   }
+}
+
+void CurveStore::give_up_journal() {
+  const std::string why = std::generic_category().message(errno);
+  if (trouble_) trouble_(fmt::format("{}: cannot be written: {}", journal_.string(), why));
+  journal_.clear();
+}
+
+base::FileHandle CurveStore::open_journal() {
+  base::FileHandle file;
+  if (journal_.empty()) return file;
+  if (journal_.has_parent_path()) std::filesystem::create_directories(journal_.parent_path());
+  file.reset(std::fopen(journal_.c_str(), "ab"));
+  constexpr char line_feed = '\n';  // ends a torn line
+  if (!file || std::fwrite(&line_feed, 1, 1, file.get()) != 1) {
+    give_up_journal();
+    file.reset();
+  }
+  return file;
 }
 
 PushedCurve CurveStore::solve(const CurvePlace& place) const {
@@ -170,13 +190,7 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, 
     if (curves_.contains(place) && curves_.at(place).complete) continue;
     if (std::find(wanted.begin(), wanted.end(), place) == wanted.end()) wanted.push_back(place);
   }
-  base::FileHandle journal;
-  if (!journal_.empty() && !wanted.empty()) {
-    if (journal_.has_parent_path()) std::filesystem::create_directories(journal_.parent_path());
-    journal.reset(std::fopen(journal_.c_str(), "ab"));
-    if (!journal) throw std::system_error(errno, std::generic_category(), journal_.string());
-    std::fputs("\n", journal.get());  // ends a torn line
-  }
+  base::FileHandle journal = wanted.empty() ? base::FileHandle() : open_journal();
   std::vector<PushedCurve> results(wanted.size());
   std::atomic<bool> stop{false};
   std::size_t finished = 0;
@@ -188,12 +202,15 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, 
     ++finished;
     if (journal && curve.complete) {
       const std::string line = journal_line(identity_, wanted[k], curve);
-      std::fwrite(line.data(), 1, line.size(), journal.get());
-      std::fflush(journal.get());
+      if (std::fwrite(line.data(), 1, line.size(), journal.get()) != line.size() || std::fflush(journal.get()) != 0) {
+        give_up_journal();
+        journal.reset();
+      }
     }
     results[k] = std::move(curve);
     if (observer && !observer(finished, wanted.size())) stop = true;
   });
+  if (journal && std::fclose(journal.release()) != 0) give_up_journal();
   numerics::SolveReport report;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     if (results[k].loading.empty() && results[k].stopped.empty()) continue;  // not begun

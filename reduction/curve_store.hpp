@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/files.hpp"
 #include "numerics/report.hpp"
 #include "reduction/wire_file.hpp"
 
@@ -35,14 +36,18 @@ struct PushedCurve {
 /// Told after every curve: finished and wanted ones. false stops the sampling.
 using SamplingObserver = std::function<bool(std::size_t finished, std::size_t wanted)>;
 
+/// Told what a journal that cannot be written suffers.
+using JournalTrouble = std::function<void(const std::string& what)>;
+
 /// Curves of one case of a wire, each solved once, in parallel, and journalled: a run that was killed goes on
 /// from the journal, and gives the same bytes, because numbers in it read back to the same doubles.
 class CurveStore {
  public:
   /// travel: ascending from 0 [m]. journal: file to which finished curves are appended; none when empty. What it
   /// holds of the same case and settings is used; a torn last line and curves of other cases are passed over.
+  /// trouble: is told once why the journal cannot be written; the curves are computed all the same.
   CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
-             std::filesystem::path journal = {});
+             std::filesystem::path journal = {}, JournalTrouble trouble = {});
 
   /// Solves those of the places that are not known yet, by OpenMP over curves. Not usable when the observer stopped it
   /// or a curve did not reach the end of the travel; what was reached is kept.
@@ -61,11 +66,15 @@ class CurveStore {
  private:
   [[nodiscard]] PushedCurve solve(const CurvePlace& place) const;
   void read_journal();
+  /// Opened for what is to be appended; null where it cannot be, or could not before.
+  [[nodiscard]] base::FileHandle open_journal();
+  void give_up_journal();
 
   WireCase wire_;
   DistilSettings settings_;
   std::vector<double> travel_;
-  std::filesystem::path journal_;
+  std::filesystem::path journal_;  // empty: none
+  JournalTrouble trouble_;
   std::string identity_;  // of the case and the settings: hash in hexadecimal digits
   std::map<CurvePlace, PushedCurve> curves_;
   std::size_t solved_ = 0;

@@ -77,10 +77,11 @@ numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings&
 
 }  // namespace
 
-Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer) {
+Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer,
+                    const JournalTrouble& trouble) {
   Distillation result;
   for (const WireCase& wire : file.cases) {
-    CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal);
+    CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal, trouble);
     DistilledCase one;
     one.wire = wire;
     const double span = wire.test.mount.span;

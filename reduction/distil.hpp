@@ -53,9 +53,10 @@ struct Distillation {
   numerics::SolveReport report;      ///< not usable: the last case is missing
 };
 
-/// Distils every case of a wire file. journal: where finished curves are kept until the end; none when empty.
+/// Distils every case of a wire file. journal: where finished curves are kept until the end; none when empty. trouble: see
+/// CurveStore; once a case at most.
 [[nodiscard]] Distillation distil(const WireFile& file, const std::filesystem::path& journal = {},
-                                  const SamplingObserver& observer = {});
+                                  const SamplingObserver& observer = {}, const JournalTrouble& trouble = {});
 
 /// The laws at some positions from curves of the nominal slack; they are sampled where they are not known.
 [[nodiscard]] numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>& places,

@@ -63,7 +63,7 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   const double span = nominal.test.mount.span;
   const auto in_mm = [](double metres) { return fmt::format("{:.6g}", metres / mm); };
   if (table.has("travel_mm"))
-    nominal.travel.high = table.number("travel_mm", Range::above(0.0, 1000.0), mm);
+    nominal.travel.high = table.number("travel_mm", Range::from(1e-6, 1000.0), mm);
   else if (travel_known)
     nominal.travel.high = default_travel(nominal.test);
 

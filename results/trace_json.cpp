@@ -170,7 +170,10 @@ json numbers_json(const std::vector<FittedNumber>& numbers) {
   return result;
 }
 
-json trace_json(const identification::Experiment& experiment, const Trace& trace) {
+namespace {
+
+/// All but the series with their readings.
+json findings_document(const identification::Experiment& experiment, const Trace& trace) {
   const bool any = !trace.rounds.empty();
   json seconds = json::object();
   for (const auto& [what, time] : trace.seconds) seconds[what] = time;
@@ -239,6 +242,13 @@ json trace_json(const identification::Experiment& experiment, const Trace& trace
   } else {
     result["next_experiment"] = {{"what", ""}, {"separates", json::array()}};
   }
+  return result;
+}
+
+}  // namespace
+
+json trace_json(const identification::Experiment& experiment, const Trace& trace) {
+  json result = findings_document(experiment, trace);
   for (std::size_t k = 0; k < trace.series.size(); ++k) result["series"].push_back(series_json(trace, k));
   return result;
 }
@@ -258,7 +268,8 @@ identification::TraceOptions fitting_options() {
 }
 
 json fit_json(const identification::Experiment& experiment, const Trace& trace) {
-  const json whole = trace_document(experiment, trace);
+  json whole = findings_document(experiment, trace);
+  whole["warnings"] = trace_warnings(experiment, trace);
   json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
   for (const char* key :
        {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N", "warnings"}) {

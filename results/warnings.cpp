@@ -64,7 +64,12 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
 
 std::vector<std::string> trace_warnings(const identification::Experiment& experiment,
                                         const identification::Trace& trace) {
-  const identification::Model model(trace.series, experiment.solver, false);
+  std::vector<identification::Series> series = trace.series;
+  for (identification::Series& s : series) {  // the wires are asked, not what was read
+    s.readings.reset();
+    s.test.travel.clear();
+  }
+  const identification::Model model(std::move(series), experiment.solver, false);
   return push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model");
 }
 

@@ -144,6 +144,7 @@ std::string literal(const Variable& variable, double value) {
 
 bool is_correlation(const Eigen::MatrixXd& matrix) {
   if (matrix.rows() != matrix.cols() || !matrix.allFinite()) return false;
+  if (matrix.size() == 0) return true;  // of no variables, of which the file is told elsewhere
   if (matrix != matrix.transpose() || (matrix.diagonal().array() != 1.0).any()) return false;
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   constexpr double least = 1e-12;  // of a pivot: below it the variables are one

@@ -200,7 +200,7 @@ void add_laws(ReportPage& page, const Trace& trace) {
     drawn.push_back(series.name);
     const double scatter = series.law->scatter();
     std::vector<Cell> row{series.name, shown(series.law->r_squared), measured(scatter)};
-    for (const auto* model : {&trace.declared_predictions, &trace.base_predictions, &trace.final_predictions}) {
+    for (const auto* model : {&trace.declared_predictions, &trace.base_predictions, &trace.final_predictions.get()}) {
       const auto rms = known(law_distance(trace, k, *model));
       row.emplace_back(measured(rms), rms && *rms <= scatter ? Tone::good : Tone::plain);
     }

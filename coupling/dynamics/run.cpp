@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <span>
 #include <utility>
 
 namespace snare::coupling {
 
+using Eigen::Vector3d;
 using Eigen::VectorXd;
 using numerics::DaePoint;
 
@@ -106,18 +108,65 @@ void MotionRun::require_apart() {
   if (!problems.empty()) throw base::InputError(problems);
 }
 
+namespace {
+
+bool all_finite(const std::vector<Vector3d>& vectors) {
+  return std::ranges::all_of(vectors, [](const Vector3d& v) { return v.allFinite(); });
+}
+
+/// Of what becomes columns of a history.
+bool all_finite(const MotionSample& s) {
+  const auto of_body = [](const multibody::RigidBodyState& b) {
+    return b.position.allFinite() && b.orientation.coeffs().allFinite() && b.velocity.allFinite() && b.spin.allFinite();
+  };
+  const auto of_contact = [](const ContactSample& c) {
+    return std::isfinite(c.gap) && c.force.allFinite() && std::isfinite(c.normal_force) && c.point.allFinite() &&
+           std::isfinite(c.arc) && std::isfinite(c.slip_speed);
+  };
+  const auto of_arm = [](const MotionSample::Arm& a) {
+    return a.state.q.allFinite() && a.state.v.allFinite() && a.state.motor.allFinite() &&
+           a.state.motor_rate.allFinite() && a.joint_torque.allFinite() && a.drive_torque.allFinite();
+  };
+  const auto of_wrench = [](const multibody::Wrench& w) { return w.moment.allFinite() && w.force.allFinite(); };
+  const auto of_bushing = [&](const MotionSample::Bushing& b) {
+    return b.shift.allFinite() && b.turn.allFinite() && of_wrench(b.on_second);
+  };
+  const EnergyBalance& e = s.energy;
+  return std::isfinite(e.kinetic + e.strain + e.potential + e.dissipated + e.work + e.integrator) &&
+         s.momentum.allFinite() && s.angular_momentum.allFinite() && std::ranges::all_of(s.bodies, of_body) &&
+         std::ranges::all_of(s.contacts, of_contact) &&
+         std::ranges::all_of(s.wires, [](const Eigen::Matrix3Xd& x) { return x.allFinite(); }) &&
+         all_finite(s.mount_forces) && std::ranges::all_of(s.law_tensions, [](double t) { return std::isfinite(t); }) &&
+         std::ranges::all_of(s.arms, of_arm) && std::ranges::all_of(s.welds, of_wrench) &&
+         std::ranges::all_of(s.bushings, of_bushing);
+}
+
+}  // namespace
+
+bool MotionRun::give(const MotionSample& sample) {
+  if (all_finite(sample)) return observer_(sample);
+  if (sample.time == 0.0) {
+    throw base::InputError(
+        {"", 0, "start", "",
+         "must have finite forces and accelerations: a mass is too small, or a force, a stiffness, a "
+         "speed or a length too large to be computed with"});
+  }
+  not_finite_ = true;
+  return true;
+}
+
 bool MotionRun::write_until(double time) {
   if (!observer_) return false;
   while (static_cast<double>(sums_.samples) * options_.output_interval <= time) {
     const double t = static_cast<double>(sums_.samples) * options_.output_interval;
     ++sums_.samples;
     if (t == time_) {
-      if (observer_(sample({t, y_, rate_}, integrals_))) return true;
+      if (give(sample({t, y_, rate_}, integrals_))) return true;
       continue;
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    if (observer_(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
+    if (give(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
   }
   return false;
 }
@@ -242,7 +291,10 @@ MotionResult MotionRun::go(double limit) {
     report.termination = numerics::Termination::iteration_limit;
     report.message = *broken_;
   }
-  if (stopped && report.usable()) {
+  if (not_finite_) {
+    report.termination = numerics::Termination::not_finite;
+    report.message = fmt::format("a result is not finite at {:.9g} s", time_);
+  } else if (stopped && report.usable()) {
     report.termination = numerics::Termination::interrupted;
     report.message = fmt::format("stopped on request at {:.9g} s", time_);
   }

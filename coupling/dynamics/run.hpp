@@ -58,6 +58,9 @@ class MotionRun {
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
   void require_apart();
   [[nodiscard]] bool write_until(double time);
+  /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends the run; the first one
+  /// throws base::InputError.
+  [[nodiscard]] bool give(const MotionSample& sample);
   void pass(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
@@ -121,6 +124,7 @@ class MotionRun {
   double time_ = 0.0;
   MotionSums sums_;
   std::optional<std::string> broken_;  // a wire at its strength
+  bool not_finite_ = false;            // a sample was not given
   bool over_ = false;                  // a phase has ended the run
 };
 

@@ -1,8 +1,57 @@
 #include "coupling/statics/push_solver.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace snare::coupling {
+
+namespace {
+
+/// The values that are extrapolated, beside the derivatives of the force.
+constexpr std::array extrapolated_values{&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
+                                         &PushPoint::tension_right, &PushPoint::contact_coordinate};
+
+/// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
+struct CoarsePoint {
+  explicit CoarsePoint(PushPoint& p)
+      : travel(p.travel),
+        force_by(std::move(p.force_by)),
+        iterations(p.iterations),
+        unstable_modes(p.unstable_modes),
+        in_contact(p.in_contact),
+        slipping(p.slipping) {
+    for (std::size_t v = 0; v < values.size(); ++v) values[v] = p.*extrapolated_values[v];
+  }
+  [[nodiscard]] bool same_state(const PushPoint& p) const {
+    return in_contact == p.in_contact && slipping == p.slipping && unstable_modes == p.unstable_modes;
+  }
+
+  double travel;
+  std::array<double, extrapolated_values.size()> values{};
+  std::vector<double> force_by;
+  int iterations, unstable_modes;
+  bool in_contact, slipping;
+};
+
+struct CoarseCurve {
+  explicit CoarseCurve(PushCurve curve)
+      : natural_height(curve.natural_height),
+        touch_height(curve.touch_height),
+        newton_iterations(curve.newton_iterations),
+        report(std::move(curve.report)) {
+    points.reserve(curve.points.size());
+    for (PushPoint& p : curve.points) points.emplace_back(p);
+  }
+
+  double natural_height, touch_height;
+  int newton_iterations;
+  numerics::SolveReport report;
+  std::vector<CoarsePoint> points;
+};
+
+}  // namespace
 
 ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
   ExtrapolatedCurve result;
@@ -14,10 +63,10 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   coarse_options.progress = nullptr;
   coarse_options.examine_out_of_plane = false;
   coarse_options.examine_rates = false;
-  const PushCurve half = solve_push(test, coarse_options, 2);
-  const PushCurve quarter = solve_push(test, coarse_options, 4);
+  const CoarseCurve half(solve_push(test, coarse_options, 2));
+  const CoarseCurve quarter(solve_push(test, coarse_options, 4));
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
-  for (const PushCurve* coarse : {&half, &quarter}) {
+  for (const CoarseCurve* coarse : {&half, &quarter}) {
     if (coarse->report.termination != numerics::Termination::interrupted) continue;
     result.curve.report = coarse->report;  // the forces of the fine mesh stay as they are
     return result;
@@ -34,12 +83,9 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
   std::size_t in_half = 0;
   std::size_t in_quarter = 0;
-  const auto find = [](const std::vector<PushPoint>& points, std::size_t from, double travel) {
+  const auto find = [](const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
     while (from < points.size() && points[from].travel != travel) ++from;
     return from;
-  };
-  const auto same_state = [](const PushPoint& a, const PushPoint& b) {
-    return a.in_contact == b.in_contact && a.slipping == b.slipping && a.unstable_modes == b.unstable_modes;
   };
   for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
     PushPoint& p = result.curve.points[i];
@@ -48,14 +94,15 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     if (j == half.points.size() || k == quarter.points.size()) continue;
     in_half = j + 1;
     in_quarter = k + 1;
-    const PushPoint& h = half.points[j];
-    const PushPoint& q = quarter.points[k];
+    const CoarsePoint& h = half.points[j];
+    const CoarsePoint& q = quarter.points[k];
     p.iterations += h.iterations + q.iterations;
-    if (!same_state(p, h) || !same_state(p, q)) continue;
-    const double third_order = (32.0 * p.force - 12.0 * h.force + q.force) / 21.0;
-    for (double PushPoint::*value : {&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
-                                     &PushPoint::tension_right, &PushPoint::contact_coordinate}) {
-      p.*value = extrapolated(p.*value, h.*value, q.*value);
+    if (!h.same_state(p) || !q.same_state(p)) continue;
+    static_assert(extrapolated_values[0] == &PushPoint::force);
+    const double third_order = (32.0 * p.force - 12.0 * h.values[0] + q.values[0]) / 21.0;
+    for (std::size_t v = 0; v < extrapolated_values.size(); ++v) {
+      double& value = p.*extrapolated_values[v];
+      value = extrapolated(value, h.values[v], q.values[v]);
     }
     for (std::size_t v = 0; v < p.force_by.size(); ++v) {
       p.force_by[v] = extrapolated(p.force_by[v], h.force_by[v], q.force_by[v]);

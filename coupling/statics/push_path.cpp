@@ -51,6 +51,7 @@ PushCurve PushPath::run(const std::vector<double>& travel) {
     return std::move(curve_);
   }
   curve_.events.push_back({PushEvent::Kind::first_touch, 0.0});
+  curve_.points.reserve(travel.size());
   for (const double target : travel) {
     if (target == 0.0 && curve_.points.empty() && record_touch()) continue;
     if (numerics::SolveReport report = follow_to(target); !report.usable()) {

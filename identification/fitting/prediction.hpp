@@ -7,7 +7,9 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace snare::identification {
@@ -21,6 +23,27 @@ struct Prediction {
   std::vector<double> viscous_stiffness;  ///< see coupling::PushPoint, one a displacement [N/m]
   ReadingModel reading;                   ///< as it was predicted with
   std::size_t before_touch = 0;           ///< points that lie before first touch: they have no entry in `curve`
+};
+
+/// Predictions of every series of which copies share what they hold: those of a million readings are large.
+class SharedPredictions {
+ public:
+  SharedPredictions() = default;
+  SharedPredictions(std::vector<Prediction> predictions)
+      : predictions_(std::make_shared<const std::vector<Prediction>>(std::move(predictions))) {}
+  operator const std::vector<Prediction>&() const { return get(); }
+  [[nodiscard]] const std::vector<Prediction>& get() const {
+    static const std::vector<Prediction> none;
+    return predictions_ ? *predictions_ : none;
+  }
+  [[nodiscard]] bool empty() const { return get().empty(); }
+  [[nodiscard]] std::size_t size() const { return get().size(); }
+  const Prediction& operator[](std::size_t series) const { return get()[series]; }
+  [[nodiscard]] auto begin() const { return get().begin(); }
+  [[nodiscard]] auto end() const { return get().end(); }
+
+ private:
+  std::shared_ptr<const std::vector<Prediction>> predictions_;
 };
 
 struct PredictionOptions {

@@ -5,6 +5,7 @@
 namespace snare::identification {
 
 Projection::Projection(const Eigen::MatrixXd& jacobian) {
+  basis_.resize(jacobian.rows(), 0);
   if (jacobian.cols() == 0) return;
   Eigen::MatrixXd scaled = jacobian;
   for (Eigen::Index k = 0; k < scaled.cols(); ++k) {

@@ -9,6 +9,8 @@ class Projection {
  public:
   explicit Projection(const Eigen::MatrixXd& jacobian);
   [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const;
+  /// Orthonormal columns of that span, as many rows as the Jacobian.
+  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
  private:
   Eigen::MatrixXd basis_;

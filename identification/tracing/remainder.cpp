@@ -5,6 +5,8 @@
 #include "identification/tracing/projection.hpp"
 #include "numerics/dense_solvers.hpp"
 
+#include <Eigen/SparseCore>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,8 +28,9 @@ struct CommonLeg {
   Eigen::Index hats = 0;
 };
 
-/// Columns of hat functions over the legs of all conditions, as forces [N], the data's series one below the other.
-Eigen::MatrixXd hats_of(const Model& model, const Data& data) {
+/// Columns of hat functions over the legs of all conditions, as forces [N], the data's series one below the other: two
+/// entries a row at most.
+Eigen::SparseMatrix<double> hats_of(const Model& model, const Data& data) {
   std::vector<Series> fitted;
   std::vector<Eigen::Index> row_of;
   Eigen::Index rows = 0;
@@ -64,37 +67,43 @@ Eigen::MatrixXd hats_of(const Model& model, const Data& data) {
       columns += commons[c].hats;
     }
   }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows, columns);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * static_cast<std::size_t>(rows));
   for (const Place& place : places) {
     const CommonLeg& common = commons[place.common];
     const std::vector<double>& d = measured_displacement(fitted[place.series]);
     for (std::size_t i = place.leg.begin; i < place.leg.end; ++i) {
       const Eigen::Index row = row_of[place.series] + static_cast<Eigen::Index>(i);
       if (common.hats == 1 || !(common.high > common.low)) {
-        result(row, common.first) = 1.0;
+        entries.emplace_back(row, common.first, 1.0);
         continue;
       }
       const double at =
           std::clamp((d[i] - common.low) / (common.high - common.low), 0.0, 1.0) * static_cast<double>(common.hats - 1);
       const auto j = std::min(static_cast<Eigen::Index>(at), common.hats - 2);
       const double part = at - static_cast<double>(j);
-      result(row, common.first + j) = 1.0 - part;
-      result(row, common.first + j + 1) = part;
+      entries.emplace_back(row, common.first + j, 1.0 - part);
+      entries.emplace_back(row, common.first + j + 1, part);
     }
   }
+  Eigen::SparseMatrix<double> result(rows, columns);
+  result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
 
-/// Columns over all series, whitened.
-Eigen::MatrixXd whiten(const Data& data, const Eigen::MatrixXd& columns) {
+/// Columns over all series, whitened. One at a time: of a million readings all together are large.
+Eigen::MatrixXd whiten(const Data& data, const Eigen::SparseMatrix<double>& columns) {
   Eigen::MatrixXd result(data.rows(), columns.cols());
-  Eigen::Index row = 0;
-  Eigen::Index reading = 0;
-  for (const std::size_t k : data.series) {
-    const Eigen::Index n = data.measured[k].size();
-    result.middleRows(row, data.rows_of(k)) = data.noise.whiten(k, columns.middleRows(reading, n));
-    row += data.rows_of(k);
-    reading += n;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    const Eigen::VectorXd column = columns.col(c);
+    Eigen::Index row = 0;
+    Eigen::Index reading = 0;
+    for (const std::size_t k : data.series) {
+      const Eigen::Index n = data.measured[k].size();
+      result.col(c).segment(row, data.rows_of(k)) = data.noise.whiten(k, column.segment(reading, n));
+      row += data.rows_of(k);
+      reading += n;
+    }
   }
   return result;
 }
@@ -121,16 +130,29 @@ double Remainder::inflation() const {
 Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
   Remainder result;
   if (fit.residual.size() != data.rows()) return result;
-  const Eigen::MatrixXd hats = hats_of(model, data);
-  const Eigen::MatrixXd white = whiten(data, hats);
+  const Eigen::SparseMatrix<double> hats = hats_of(model, data);
+  Eigen::MatrixXd white = whiten(data, hats);  // scaled to columns of length one
   Eigen::VectorXd scale(white.cols());
-  for (Eigen::Index k = 0; k < scale.size(); ++k) scale[k] = 1.0 / std::max(white.col(k).norm(), 1e-300);
-  const Eigen::MatrixXd scaled = white * scale.asDiagonal();
-  const numerics::ThinSvd svd = numerics::thin_svd(Projection(fit.jacobian).without(scaled));
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    scale[k] = 1.0 / std::max(white.col(k).norm(), 1e-300);
+    white.col(k) *= scale[k];
+  }
+  // A = (1 - B B^T) W, B the basis of the Jacobian: A^T A = W^T W - (B^T W)^T (B^T W) = V S^2 V^T and U^T r = S^-1 V^T A^T r.
+  // As many rows as readings are in W alone. What is asked for is well above the roundings of the squares.
+  const Projection fitted(fit.jacobian);
+  const Eigen::MatrixXd& basis = fitted.basis();
+  const Eigen::MatrixXd inside = basis.transpose() * white;
+  const numerics::SymmetricEigen eigen =
+      numerics::symmetric_eigen(white.transpose() * white - inside.transpose() * inside);
+  const Eigen::Index n = eigen.values.size();
   Eigen::Index rank = 0;
-  while (rank < svd.s.size() && svd.s[rank] > least_part) ++rank;
+  while (rank < n && eigen.values[n - 1 - rank] > least_part * least_part) ++rank;
   if (rank == 0) return result;
-  const Eigen::VectorXd part = svd.U.leftCols(rank).transpose() * fit.residual;
+  const Eigen::MatrixXd v = eigen.vectors.rightCols(rank);
+  const Eigen::VectorXd s = eigen.values.tail(rank).cwiseSqrt();
+  const Eigen::VectorXd along =
+      white.transpose() * fit.residual - inside.transpose() * (basis.transpose() * fit.residual);
+  const Eigen::VectorXd part = s.cwiseInverse().asDiagonal() * (v.transpose() * along);
   const double q = part.squaredNorm();
   const auto d = static_cast<double>(rank);
   result.directions = d;
@@ -138,9 +160,8 @@ Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
   result.p = fisher_tail(result.ratio, d, data.noise.dof);
   if (!(q > 0.0)) return result;
   // The function: values of the hats, and the fitted numbers c moved along so that it has nothing in their directions.
-  const Eigen::VectorXd values =
-      scale.asDiagonal() * (svd.V.leftCols(rank) * svd.s.head(rank).cwiseInverse().asDiagonal() * part);
-  Eigen::VectorXd function = hats * values;
+  const Eigen::VectorXd values = v * s.cwiseInverse().asDiagonal() * part;
+  Eigen::VectorXd function = hats * (scale.asDiagonal() * values);
   if (fit.jacobian.cols() > 0) {
     function -= plain_jacobian(data, fit, hats.rows()) * numerics::least_squares(fit.jacobian, white * values);
   }

@@ -51,10 +51,22 @@ Data data_of(const std::vector<Series>& fitted) {
   return data;
 }
 
+/// What is kept of models that are not the final one.
+std::vector<Prediction> forces_only(const std::vector<Prediction>& predictions) {
+  std::vector<Prediction> result;
+  for (const Prediction& p : predictions) {
+    result.emplace_back();
+    result.back().force = p.force;
+    result.back().reading = p.reading;
+    result.back().before_touch = p.before_touch;
+  }
+  return result;
+}
+
 /// A trace under way.
 class Tracer {
  public:
-  Tracer(const Experiment& experiment, const TraceOptions& options, const Division& series);
+  Tracer(const Experiment& experiment, const TraceOptions& options, Division series);
   Trace run();
 
  private:
@@ -84,25 +96,26 @@ class Tracer {
   Model all_;        // of every series, on the mesh asked for
   Data data_;
   Fit base_;
-  Fit current_;                       // with the effects added so far
-  Fit final_;                         // what is selected
-  ResidualTests tests_;               // of current_
-  std::vector<std::string> added_;    // effects, and the class of each
-  std::vector<std::size_t> numbers_;  // of each
+  SharedPredictions base_predictions_;  // whole, until another model is chosen
+  Fit current_;                         // with the effects added so far
+  Fit final_;                           // what is selected
+  ResidualTests tests_;                 // of current_
+  std::vector<std::string> added_;      // effects, and the class of each
+  std::vector<std::size_t> numbers_;    // of each
   std::vector<std::vector<std::string>> classes_;
   std::vector<ChannelFunction> functions_;  // of the base model's residual, once asked for
   std::vector<RoundFits> rounds_;           // in which an effect was added
 };
 
-Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, const Division& series)
+Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Division series)
     : experiment_(experiment),
       options_(options),
       progress_(options.progress),
-      model_(series.fitted, for_search(experiment.solver)),
+      model_(std::move(series.fitted), for_search(experiment.solver)),
       heldout_(series.heldout, for_search(experiment.solver)),
       all_(series.all, experiment.solver, false),
-      data_(data_of(series.fitted)) {
-  result_.series = series.all;
+      data_(data_of(model_.series())) {
+  result_.series = std::move(series.all);
   result_.from_laws = series.from_laws;
   result_.heldout = series.is_heldout;
 }
@@ -129,9 +142,13 @@ void Tracer::look_at_base() {
     declared.residual = data_.residual(declared.evaluation);
     declared.chi2 = declared.residual.squaredNorm();
     result_.declared = error_of(declared, result_.declared_predictions);
+    result_.declared_predictions = forces_only(result_.declared_predictions);
   }
   result_.base_tests = test_residuals(model_, data_, base_);
-  result_.base = error_of(base_, result_.base_predictions);
+  std::vector<Prediction> predictions;
+  result_.base = error_of(base_, predictions);
+  result_.base_predictions = forces_only(predictions);
+  base_predictions_ = std::move(predictions);
 }
 
 // The trace as it would be without what is still to come.
@@ -144,7 +161,7 @@ void Tracer::tell_part() const {
     part.final_settings = base_.settings;
     part.final_tests = part.base_tests;
     part.final = part.base;
-    part.final_predictions = part.base_predictions;
+    part.final_predictions = base_predictions_;
   }
   options_.reached(part);
 }
@@ -328,10 +345,13 @@ void Tracer::compare_models() {
   if (result_.selected.empty()) {
     result_.final_tests = result_.base_tests;
     result_.final = result_.base;
-    result_.final_predictions = result_.base_predictions;
+    result_.final_predictions = base_predictions_;
   } else {
+    base_predictions_ = {};
     result_.final_tests = test_residuals(model_, data_, final_);
-    result_.final = error_of(final_, result_.final_predictions);
+    std::vector<Prediction> predictions;
+    result_.final = error_of(final_, predictions);
+    result_.final_predictions = std::move(predictions);
   }
   for (const Prediction& p : result_.final_predictions) {
     for (const double e : p.curve.discretisation_error) result_.mesh_error = std::max(result_.mesh_error, e);

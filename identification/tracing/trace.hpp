@@ -22,8 +22,9 @@ struct Trace {
   std::size_t rows = 0;     ///< readings, and numbers of published fits, that are fitted
   double mesh_error = 0.0;  ///< largest discretisation error of the final model [N]
   ModelError declared, base, final;
-  std::vector<Setting> final_settings;  ///< of the final model: see Model::apply
-  std::vector<Prediction> declared_predictions, base_predictions, final_predictions;  ///< one a series
+  std::vector<Setting> final_settings;                             ///< of the final model: see Model::apply
+  std::vector<Prediction> declared_predictions, base_predictions;  ///< one a series: the forces, without their curves
+  SharedPredictions final_predictions;                             ///< one a series
   ResidualTests base_tests, final_tests;
   bool significant = false;  ///< the base model leaves something
   std::vector<Round> rounds;

@@ -37,7 +37,7 @@ TEST(TraceJson, WritesNullForWhatIsNotKnown) {
   identification::Trace trace = explained_trace();
   trace.noise.sigma.clear();
   trace.final.rmse = std::nan("");
-  trace.final_predictions.clear();
+  trace.final_predictions = {};
   trace.heldout_rmse.reset();
   trace.next.reset();
   const json t = trace_json(traced_experiment(), trace);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace snare::numerics {
@@ -37,6 +38,12 @@ TEST(CubicSpline, ConvergesAtFourthOrder) {
     return worst;
   };
   EXPECT_GT(error(10) / error(20), 13.0);
+}
+
+// Widths of which the reciprocals are no numbers: said, where solving went astray.
+TEST(CubicSpline, KnotsThatRoundingsDoNotTellApartAreRefused) {
+  const std::vector<double> knots{0.0, 1e-310, 2e-310, 3e-310, 4e-310}, values(5, 1.0);
+  EXPECT_THROW(HermiteCurve(knots, values), std::domain_error);
 }
 
 }  // namespace

@@ -27,6 +27,11 @@ VERBS = [
     ["simulate", DATA / "scenarios/grapple_shaft.toml", "duration_s=0.02", "wires[lower].elements=12",
      "wires[right].elements=12", "wires[left].elements=12"],
     ["simulate", DATA / "scenarios/jemrms_step.toml", "duration_s=2.0"],
+    ["simulate", ROOT / "tests/ranges/composed.toml", "duration_s=0.01"],
+    ["compare", DATA / "scenarios/snare_on_pin.toml", "duration_s=0.02", "snares[snare].wire.elements=12", "phases[close].at_s=0"],
+    ["sweep", ROOT / "tests/ranges/sweep.toml", "cases=24"],
+    ["fit", ROOT / "tests/ranges/record.toml"],
+    ["trace", ROOT / "tests/ranges/record.toml", "fit.most_effects=1"],
 ]
 CLOCK = {"wall_s", "real_time_factor", "seconds", "seconds_per_evaluation"}
 
@@ -43,7 +48,7 @@ def files(folder):
     for file in sorted(folder.rglob("*")):
         if file.suffix == ".json":
             result[file.name] = json.dumps(timeless(json.loads(file.read_text())))
-        elif file.is_file():
+        elif file.is_file() and file.suffix != ".journal":  # of a sweep: cases as they end, with their times
             result[file.name] = "" if file.suffix == ".html" else file.read_bytes()
     return result
 

@@ -140,6 +140,7 @@ TEST(Design, ContradictingCorrelationsAreNone) {
   EXPECT_TRUE(is_correlation(Eigen::MatrixXd{{1.0, 0.9}, {0.9, 1.0}}));
   EXPECT_FALSE(is_correlation(Eigen::MatrixXd{{1.0, 0.9, 0.9}, {0.9, 1.0, -0.9}, {0.9, -0.9, 1.0}}));
   EXPECT_FALSE(is_correlation(Eigen::MatrixXd{{1.0, 0.9}, {0.8, 1.0}}));
+  EXPECT_TRUE(is_correlation(Eigen::MatrixXd(0, 0)));
 }
 
 // The distribution function undoes the quantile, cut or not; its derivative's integral is what quantiles of a table say.

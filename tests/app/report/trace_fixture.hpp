@@ -59,7 +59,7 @@ inline identification::Trace explained_trace() {
   t.final = {0.1622, 0.0138, 1.331, {}, {stiffness, stress}};
   t.declared_predictions = {prediction({0.0, 20.0, 301.5}), prediction({0.0, 0.6, 2.1})};
   t.base_predictions = {prediction({0.0, 0.8, 2.7}), prediction({0.0, 0.4, 1.9})};
-  t.final_predictions = {prediction({0.0, 0.7, 2.8}), prediction({0.0, 0.5, 1.95})};
+  t.final_predictions = std::vector{prediction({0.0, 0.7, 2.8}), prediction({0.0, 0.5, 1.95})};
   t.base_tests = {0.35, 0.071, 7.9e-06, false};
   t.final_tests = {0.88, 0.083, 0.0099, false};
   t.significant = true;

@@ -239,7 +239,7 @@ TEST(TraceReport, ShowsWhatAnInterruptedRunKnows) {
   trace.selected.clear();
   trace.rounds.clear();
   trace.noise.sigma.clear();
-  trace.final_predictions.clear();
+  trace.final_predictions = {};
   trace.declared_predictions.pop_back();
   trace.heldout_rmse.reset();
   trace.left_out_rmse.reset();
@@ -276,7 +276,9 @@ TEST(TraceReport, ShowsWhatIsNotKnownAsADash) {
 
 TEST(TraceReport, NamesPlotAndCurveOfAValueThatIsNotFinite) {
   Trace trace = explained_trace();
-  trace.final_predictions[0].force[1] = nan;
+  std::vector<identification::Prediction> predictions = trace.final_predictions;
+  predictions[0].force[1] = nan;
+  trace.final_predictions = predictions;
   try {
     page_of(trace);
     FAIL() << "accepted";
