@@ -40,6 +40,9 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
   return again.chi2 < fit.chi2 ? again : fit;
 }
 
+/// Effects that do the same to these records leave the same misfit but for the accuracy of the integration; then the order of the catalogue decides.
+constexpr double the_same = 1e-4;
+
 /// Bayesian criterion of prewhitened residuals, up to what all models share.
 double bic(const MotionData& data, const ColouredNoise& noise, const MotionFit& fit) {
   return whitened(data, noise, fit.residual).squaredNorm() +
@@ -132,6 +135,12 @@ RoundResult motion_round(const RoundInput& in) {
     if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
     return fits[a].chi2 < fits[b].chi2;
   });
+  const auto may_be_named = [&](std::size_t k) { return candidates[k].refitted && candidates[k].why_not.empty(); };
+  for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
+    if (fits[order[k]].chi2 <= (1.0 + the_same) * fits[order[0]].chi2 &&
+        candidates[order[k]].score.effect < candidates[order[0]].score.effect)
+      std::swap(order[0], order[k]);
+
   std::vector<MotionCandidate> sorted;
   std::vector<MotionFit> sorted_fits;
   for (const std::size_t k : order) {

@@ -63,7 +63,7 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
     }
     trials[t].column = sum * (trials[t].scale / way);
     const double change = trial_share * trials[t].column.norm() / size;
-    trials[t].settled = change >= least_change && change <= most_change;
+    trials[t].settled = (change >= least_change && change <= most_change) || change == 0.0;  // nothing hangs on it
     if (!trials[t].settled) {
       const double factor = std::clamp(wanted_change / std::max(change, 1e-8), 1e-5, 1e5);
       trials[t].column *= factor;  // if this was the last pass

@@ -36,7 +36,7 @@ class MotionResiduals final : public ceres::CostFunction {
     if (jacobians != nullptr && jacobians[0] != nullptr) {
       using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
       Eigen::Map<RowMajor>(jacobians[0], num_residuals(), static_cast<Eigen::Index>(settings.size())) =
-          -signal_derivatives(model_, data_, settings, last_, fixed_);
+          -signal_derivatives(model_, data_, settings, last_, fixed_, Differences::forward);
     }
     return true;
   }
@@ -114,7 +114,8 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
 
 Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
                                    const std::vector<MotionSetting>& settings,
-                                   const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed) {
+                                   const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+                                   Differences differences) {
   std::vector<std::vector<MotionSetting>> points;
   std::vector<std::optional<std::size_t>> only;
   std::vector<std::pair<double, double>> steps;  // down, up
@@ -122,7 +123,8 @@ Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& d
     const MotionNumber& n = settings[k].number;
     const double step = step_share * n.scale;
     const double up = settings[k].value + step <= n.upper ? step : 0.0;
-    const double down = settings[k].value - step >= n.lower ? step : 0.0;
+    const bool both = differences == Differences::central || up == 0.0;
+    const double down = both && settings[k].value - step >= n.lower ? step : 0.0;
     steps.emplace_back(down, up);
     for (const double move : {-down, up}) {
       if (move == 0.0) continue;
@@ -167,10 +169,10 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
   fit.simulations = model.simulations() - before;
   fit.predictions = model.predict(together(fit.settings, options.fixed), data.records);
   fit.residual = data.residual(fit.predictions);
-  if (fit.residual.size() == 0) {
-    std::string why;
-    for (const RecordPrediction& p : fit.predictions)
-      if (!p.usable()) why = p.failure;
+  std::string why;
+  for (const RecordPrediction& p : fit.predictions)
+    if (!p.usable()) why = p.failure;
+  if (!why.empty()) {
     static_cast<void>(
         fit.report.end(model.stopped() ? numerics::Termination::interrupted : numerics::Termination::step_too_small,
                        model.stopped() ? "interrupted" : "the scenario cannot be simulated: " + why));
@@ -178,7 +180,7 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
     return fit;
   }
   fit.chi2 = fit.residual.squaredNorm();
-  if (options.derivatives && !model.stopped()) {
+  if (options.derivatives && data.rows > 0 && !model.stopped()) {
     fit.jacobian = signal_derivatives(model, data, fit.settings, fit.predictions, options.fixed);
     const ColouredNoise noise = coloured_noise(data, fit.residual);
     fit.covariance = sandwich(data, noise, fit.jacobian);
