@@ -27,6 +27,7 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
   }
   MotionFitOptions options;
   options.progress = in.progress;
+  options.tolerance = 1e-5;  // far below what tells effects apart
   MotionFit fit = fit_motion(in.model, in.data, start, options);
   if (fit.chi2 < in.current.chi2 || in.model.stopped()) return fit;
   // The first order led too far: begin beside null.

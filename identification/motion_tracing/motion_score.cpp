@@ -34,11 +34,13 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
     if (trials[t].settled) continue;
     const MotionNumber& n = effects[trials[t].effect].numbers[trials[t].number];
     const double step = trial_share * trials[t].scale;
-    for (const double move : {-step, step}) {
+    // To one side: the refit of what is promising takes the rest.
+    for (const double move : {step, -step}) {
       if (n.declared + move < n.lower || n.declared + move > n.upper) continue;
       points.push_back(all);
       points.back().push_back({n, n.declared + move});
       of.emplace_back(t, move);
+      break;
     }
   }
   const auto predictions = model.predict_many(points, data.records);
