@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace snare::identification {
@@ -14,30 +15,29 @@ namespace {
 
 constexpr std::size_t most_refits = 5;
 constexpr double promising = 0.3;  // of the best promise: what falls less is not refitted
+constexpr double least_fall = 1e-4;  // share of the misfit below which a refit has not moved
+constexpr int enough_iterations = 8;   // to compare effects; the one that is named is fitted to the end
 constexpr double apart = 2.0;      // deviates by which the misfits of two refits must differ to be told apart
 
-/// The model with the numbers of an effect beside those that are fitted.
+/// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
 MotionFit refit(const RoundInput& in, const MotionScore& score) {
-  std::vector<MotionSetting> start = in.current.settings;
   const MotionEffect& effect = in.effects[score.effect];
-  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
-    MotionNumber number = effect.numbers[k];
-    number.scale = score.scale[k];
-    start.push_back({number, score.start[k]});
-  }
-  MotionFitOptions options;
-  options.progress = in.progress;
-  options.tolerance = 1e-5;  // far below what tells effects apart
-  MotionFit fit = fit_motion(in.model, in.data, start, options);
-  if (fit.chi2 < in.current.chi2 || in.model.stopped()) return fit;
-  // The first order led too far: begin beside null.
-  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
-    MotionSetting& s = start[in.current.settings.size() + k];
-    s.value = std::clamp(
-        effect.numbers[k].declared + std::copysign(0.1 * s.number.scale, score.start[k] - effect.numbers[k].declared),
-        s.number.lower, s.number.upper);
-  }
-  MotionFit again = fit_motion(in.model, in.data, start, options);
+  const auto from = [&](const std::function<double(std::size_t)>& value) {
+    std::vector<MotionSetting> start = in.current.settings;
+    for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
+      MotionNumber number = effect.numbers[k];
+      number.scale = score.scale[k];
+      start.push_back({number, value(k)});
+    }
+    MotionFitOptions options;
+    options.progress = in.progress;
+    options.max_iterations = enough_iterations;
+    return fit_motion(in.model, in.data, start, options);
+  };
+  MotionFit fit = from([&](std::size_t k) { return effect.numbers[k].declared; });
+  if (fit.chi2 < (1.0 - least_fall) * in.current.chi2 || in.model.stopped()) return fit;
+  // Nothing shows next to null: begin where the score points.
+  MotionFit again = from([&](std::size_t k) { return score.start[k]; });
   return again.chi2 < fit.chi2 ? again : fit;
 }
 
@@ -170,6 +170,12 @@ RoundResult motion_round(const RoundInput& in) {
                                          : "explains most, and nothing else does as well";
   result.added = best.score.effect;
   result.better = std::move(fits.front());
+  if (!result.better.report.usable() && !in.model.stopped()) {
+    MotionFitOptions to_the_end;
+    to_the_end.progress = in.progress;
+    MotionFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
+    if (fit.chi2 < result.better.chi2) result.better = std::move(fit);
+  }
   return result;
 }
 

@@ -124,11 +124,14 @@ class Tracer {
     options.progress = asked();
     for (const MotionSetting& s : together(fit.settings, fixed))
       if (!s.number.record) options.fixed.push_back(s);
+    // From where the first model has led them: the same starts for all others.
+    if (heldout_starts_) return fit_motion(model_, heldout_data_, *heldout_starts_, options);
     std::vector<MotionSetting> own;
     for (const MotionSetting& s : model_.free(heldout_))
       if (s.number.record) own.push_back(s);
-    // The same starts for all models.
-    return fit_motion(model_, heldout_data_, own, options);
+    MotionFit fitted = fit_motion(model_, heldout_data_, own, options);
+    if (fitted.report.usable()) heldout_starts_ = fitted.settings;
+    return fitted;
   }
 
   MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
@@ -302,6 +305,7 @@ class Tracer {
   MotionModel model_;
   std::vector<std::size_t> fitted_, heldout_;
   MotionData data_, heldout_data_;
+  std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
   MotionFit current_;
   MotionTrace trace_;
 };

@@ -93,7 +93,7 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = 1e-8;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.initial_trust_region_radius = 1e4;
+  solver.initial_trust_region_radius = 1e8;  // start and rate of a swing hang together: damping would creep
   solver.logging_type = ceres::SILENT;
   solver.callbacks.push_back(&observer);
   solver.num_threads = 1;
