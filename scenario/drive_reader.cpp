@@ -31,9 +31,9 @@ struct Units {
   double unit;
 };
 constexpr Units of_angles{"to_deg",   "by_deg",    "rate_deg_s", "proportional_Nm_rad", "derivative_Nms_rad",
-                          "limit_Nm", "angle_deg", "torque_Nm", base::degree};
-constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proportional_N_m",
-                           "derivative_Ns_m", "limit_N", "position_mm", "force_N", base::mm};
+                          "limit_Nm", "angle_deg", "torque_Nm",  base::degree};
+constexpr Units of_lengths{"to_mm",       "by_mm",   "rate_mm_s", "proportional_N_m", "derivative_Ns_m", "limit_N",
+                           "position_mm", "force_N", base::mm};
 
 using CourseMaker = std::function<Course(double time, double from)>;
 
@@ -144,10 +144,10 @@ DriveMaker read_torque(const TomlTable& table, const std::filesystem::path& fold
   if (name.empty()) return made({0.0}, {0.0});
   try {
     using Presence = base::CsvColumn::Presence;
-    const base::CsvTable csv =
-        base::read_csv(folder / name, {{"time_s", Presence::required, Range::from(0.0, 1e6), 1.0,
-                                        base::CsvColumn::Order::non_decreasing},
-                                       {column, Presence::required, Range::from(-1e12, 1e12), factor}});
+    const base::CsvTable csv = base::read_csv(
+        folder / name,
+        {{"time_s", Presence::required, Range::from(0.0, 1e6), 1.0, base::CsvColumn::Order::non_decreasing},
+         {column, Presence::required, Range::from(-1e12, 1e12), factor}});
     std::vector<double> times, values;
     for (std::size_t k = 0; k < csv.rows; k += base::at(every)) {
       times.push_back(csv.columns[0][k]);

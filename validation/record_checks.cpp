@@ -44,10 +44,11 @@ std::vector<Row> drive_rows(const std::filesystem::path& file, const std::filesy
   const double before = t.base.heldout.empty() ? not_computed : t.base.heldout.front().rmse;
   const double after = t.final.heldout.empty() ? not_computed : t.final.heldout.front().rmse;
   // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes by 0.05 % of the force.
-  return {{group, "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of it)", "",
-           source, 0.17, relative_error(t.base), ErrorKind::absolute, 0.015},
-          {group, "force with what was found, of the readings: at most as published with asymmetric friction", "", source,
-           0.0, relative_error(t.final), ErrorKind::absolute, 0.0311},
+  return {{group,
+           "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of it)",
+           "", source, 0.17, relative_error(t.base), ErrorKind::absolute, 0.015},
+          {group, "force with what was found, of the readings: at most as published with asymmetric friction", "",
+           source, 0.0, relative_error(t.final), ErrorKind::absolute, 0.0311},
           yes(group, "dry friction is named first", source,
               !t.selected.empty() && t.selected.front().starts_with("joint_coulomb_friction (")),
           yes(group, "asymmetry of the friction is named, and nothing else", source,
@@ -78,9 +79,9 @@ std::vector<Check> record_checks(const std::filesystem::path& shipped, const std
     std::vector<Row> (*rows)(const std::filesystem::path&, const std::filesystem::path&);
   };
   std::vector<Check> checks;
-  for (const One& one : {One{"tracing of a measured drive", "emps.toml", "emps/emps.csv", drive_rows},
-                         One{"tracing of a measured pendulum", "pendulum.toml", "pendulum/free_swing.csv",
-                             pendulum_rows}}) {
+  for (const One& one :
+       {One{"tracing of a measured drive", "emps.toml", "emps/emps.csv", drive_rows},
+        One{"tracing of a measured pendulum", "pendulum.toml", "pendulum/free_swing.csv", pendulum_rows}}) {
     const std::filesystem::path file = shipped / "records" / one.file, csv = measured / one.csv;
     const bool there = std::filesystem::is_regular_file(csv);
     checks.push_back({one.name, [rows = one.rows, file, csv] { return rows(file, csv); },

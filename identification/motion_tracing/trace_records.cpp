@@ -136,8 +136,7 @@ class Tracer {
 
   MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
     const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
-    return motion_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr,
-                        heldout_data_);
+    return motion_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
   }
 
   /// Whether an error is more than noise, and more than is worth a name.

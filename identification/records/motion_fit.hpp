@@ -6,7 +6,7 @@
 
 namespace snare::identification {
 
-/// Least squares of the free simulation: (I.20). Gauss-Newton by Ceres (Levenberg-Marquardt, bounds) with central differences in parallel;
+/// Least squares of the free simulation: (I.20). Gauss-Newton (Levenberg-Marquardt, bounds) with differences in parallel;
 /// or Nelder and Mead's simplex by NLopt, without derivatives on its way.
 [[nodiscard]] MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vector<MotionSetting> start,
                                    const MotionFitOptions& options = {});

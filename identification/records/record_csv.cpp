@@ -85,8 +85,7 @@ void thin_out(const RecordCsv& csv, RecordReadings& readings, std::vector<base::
     if (!(csv.cutoff * interval < 0.5))
       return tell(fmt::format("must be below half the rate of the readings, {:.6g} Hz", 0.5 / interval));
     readings.filter.cutoff = csv.cutoff;
-    readings.filter.times =
-        Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(count));
+    readings.filter.times = Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(count));
     for (std::vector<double>& column : readings.values) {
       const Eigen::Map<Eigen::VectorXd> values(column.data(), static_cast<Eigen::Index>(count));
       const Eigen::VectorXd filtered = low_passed(values, interval, csv.cutoff);

@@ -24,9 +24,9 @@ struct RecordChannel {
 
 /// What was done to the readings of a record before they are compared, and is done to a prediction alike.    theory.md (I.25)
 struct RecordFilter {
-  double cutoff = 0.0;                ///< of the low-pass filter [Hz]; 0: none
-  Eigen::VectorXd times;              ///< of all readings, evenly spaced [s]
-  std::vector<Eigen::Index> kept;     ///< of these those that are compared
+  double cutoff = 0.0;             ///< of the low-pass filter [Hz]; 0: none
+  Eigen::VectorXd times;           ///< of all readings, evenly spaced [s]
+  std::vector<Eigen::Index> kept;  ///< of these those that are compared
 };
 
 /// A record in time of one run of the scenario.

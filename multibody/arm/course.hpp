@@ -29,7 +29,7 @@ struct Course {
   double ramp = 0.0;  ///< [s], in (0, duration/2]
   /// Values from 0 on, of level ends; `to` and `duration` follow from it.
   std::shared_ptr<const numerics::HermiteCurve> table;
-  bool smooth = false;  ///< the table is a C2 spline: nothing jumps at its inner knots
+  bool smooth = false;        ///< the table is a C2 spline: nothing jumps at its inner knots
   std::vector<double> stops;  ///< of a smooth table [s from its beginning]
 
   [[nodiscard]] double angle(double time) const;

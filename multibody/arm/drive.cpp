@@ -46,7 +46,8 @@ double Drive::demand(double time, double angle, double rate) const {
     return proportional * (course.angle(time) - angle) + derivative * (rate_share * course.rate(time) - rate);
   if (mode != DriveMode::torque || time < begin) return 0.0;
   const std::vector<double>& times = given->times;
-  const auto after = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time - begin) - times.begin());
+  const auto after =
+      static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time - begin) - times.begin());
   if (after == 0) return given->values.front();
   if (after == times.size()) return given->values.back();
   const double share = (time - begin - times[after - 1]) / (times[after] - times[after - 1]);
