@@ -11,8 +11,10 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double least_damping = 1e-12, first_damping = 1e-9, damping_when_refused = 1e-4;
-constexpr int most_tries = 10;
+// Numbers that hang together need small dampings: along their valley a larger one takes steps of nothing.
+constexpr double least_damping = 1e-12, first_damping = 1e-9;
+constexpr int most_tries = 12;
+constexpr int small_falls_to_end = 2;  // one alone may be a step that was held back
 
 /// Step that lowers |r + J s|^2 + mu |D s|^2 with s on the bounds where it would cross them; `held` numbers do not move.
 Eigen::VectorXd step_within(const BoundedProblem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& r,
@@ -64,6 +66,7 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
   }
   result.chi2 = r.squaredNorm();
   double damping = first_damping;
+  int small_falls = 0;
   while (true) {
     if (problem.progress && !problem.progress(result.iterations, result.chi2)) {
       result.end = BoundedEnd::stopped;
@@ -86,7 +89,7 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
       Eigen::VectorXd next = problem.residual(there.cwiseMax(problem.lower).cwiseMin(problem.upper));
       const double chi2 = next.size() == 0 ? std::numeric_limits<double>::infinity() : next.squaredNorm();
       if (!(chi2 < result.chi2)) {
-        damping = std::max(10.0 * damping, damping_when_refused);
+        damping *= 10.0;
         continue;
       }
       fall = result.chi2 - chi2;
@@ -95,7 +98,8 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
       r = std::move(next);
       result.chi2 = chi2;
     }
-    if (!(fall > tolerance * result.chi2)) return result;
+    small_falls = fall > tolerance * result.chi2 ? 0 : small_falls + 1;
+    if (!(fall > 0.0) || small_falls == small_falls_to_end) return result;
   }
 }
 
