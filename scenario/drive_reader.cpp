@@ -27,13 +27,13 @@ namespace {
 
 /// Keys of angles or of lengths.
 struct Units {
-  const char *to, *by, *rate, *stiffness, *damping, *limit, *column;
+  const char *to, *by, *rate, *stiffness, *damping, *limit, *column, *torque;
   double unit;
 };
 constexpr Units of_angles{"to_deg",   "by_deg",    "rate_deg_s", "proportional_Nm_rad", "derivative_Nms_rad",
-                          "limit_Nm", "angle_deg", base::degree};
-constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proportional_N_m",
-                           "derivative_Ns_m", "limit_N", "position_mm", base::mm};
+                          "limit_Nm", "angle_deg", "torque_Nm",  base::degree};
+constexpr Units of_lengths{"to_mm",       "by_mm",   "rate_mm_s", "proportional_N_m", "derivative_Ns_m", "limit_N",
+                           "position_mm", "force_N", base::mm};
 
 using CourseMaker = std::function<Course(double time, double from)>;
 
@@ -51,18 +51,6 @@ double smoothed(const std::vector<double>& times, const std::vector<double>& val
   for (std::size_t k = row; k < times.size() && times[k] - times[row] < width; ++k) add(k);
   for (std::size_t k = row; k-- > 0 && times[row] - times[k] < width;) add(k);
   return sum / weights;
-}
-
-/// Through values by the C2 spline: its acceleration has no jumps, as a motor needs whose torque is asked for. Between the values it may overshoot.
-Course smooth_course(double from, double begin, const std::vector<double>& times, const std::vector<double>& values) {
-  std::vector<double> rise(values);
-  for (double& value : rise) value -= values.front();
-  Course course(from, from + rise.back(), begin, times.back());
-  course.kind = multibody::CourseKind::table;
-  std::vector<double> slopes = numerics::HermiteCurve(times, rise).slopes();
-  slopes.front() = slopes.back() = 0.0;  // at rest at both ends
-  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise, slopes);
-  return course;
 }
 
 /// A course from a CSV of `time_s` and the position, counted from where the motor is when it begins, or from its zero.
@@ -94,7 +82,8 @@ CourseMaker table_course(const TomlTable& table, const std::filesystem::path& fo
     for (std::size_t k = 0; k < times.size(); ++k) input += fmt::format("{} {}\n", times[k], values[k]);
     return [times, values, from_zero, smooth](double time, double from) {
       const double begin = from_zero ? values.front() : from;
-      return smooth > 0.0 ? smooth_course(begin, time, times, values) : Course::through(begin, time, times, values);
+      return smooth > 0.0 ? Course::smoothly_through(begin, time, times, values)
+                          : Course::through(begin, time, times, values);
     };
   } catch (const base::InputError& error) {
     for (const base::InputProblem& problem : error.problems())
@@ -134,6 +123,46 @@ CourseMaker read_course(const TomlTable& table, const std::filesystem::path& fol
   return [=](double time, double from) { return Course(from, target(from), time, duration); };
 }
 
+/// A torque or a force over time: constant, or straight between the lines of a CSV of `time_s`.
+DriveMaker read_torque(const TomlTable& table, const std::filesystem::path& folder, const Units& u,
+                       std::string& input) {
+  const auto made = [](std::vector<double> times, std::vector<double> values) {
+    return [times = std::move(times), values = std::move(values)](double time, double) {
+      return Drive::with_torque(time, times, values);
+    };
+  };
+  if (!table.has("torque_file")) {
+    for (const char* key : {"torque_column", "torque_factor", "torque_every"})
+      if (table.has(key)) table.fail(key, "only beside torque_file");
+    return made({0.0}, {table.number(u.torque, Range::from(-1e12, 1e12))});
+  }
+  if (table.has(u.torque)) table.fail(u.torque, "cannot stand beside torque_file");
+  const std::string name = table.text("torque_file");
+  const std::string column = table.text_or("torque_column", u.torque);
+  const double factor = table.number_or("torque_factor", 1.0, Range::from(-1e9, 1e9));
+  const int every = table.integer_or("torque_every", 1, 1, 1000000);
+  if (name.empty()) return made({0.0}, {0.0});
+  try {
+    using Presence = base::CsvColumn::Presence;
+    const base::CsvTable csv = base::read_csv(
+        folder / name,
+        {{"time_s", Presence::required, Range::from(0.0, 1e6), 1.0, base::CsvColumn::Order::non_decreasing},
+         {column, Presence::required, Range::from(-1e12, 1e12), factor}});
+    std::vector<double> times, values;
+    for (std::size_t k = 0; k < csv.rows; k += base::at(every)) {
+      times.push_back(csv.columns[0][k]);
+      values.push_back(csv.columns[1][k]);
+      input += fmt::format("{} {}\n", times.back(), values.back());
+    }
+    if (!times.empty()) return made(std::move(times), std::move(values));
+    table.fail("torque_file", fmt::format("{} must have a line or more", name));
+  } catch (const base::InputError& error) {
+    for (const base::InputProblem& problem : error.problems())
+      table.fail("torque_file", fmt::format("{}: {}", problem.file, problem.requirement));
+  }
+  return made({0.0}, {0.0});
+}
+
 }  // namespace
 
 DriveMaker read_drive(const TomlTable& table, const std::filesystem::path& folder, const Drive& as_described,
@@ -141,6 +170,7 @@ DriveMaker read_drive(const TomlTable& table, const std::filesystem::path& folde
   static constexpr Choice<DriveMode> modes[] = {{"locked", DriveMode::locked},
                                                 {"servo", DriveMode::servo},
                                                 {"limp", DriveMode::limp},
+                                                {"torque", DriveMode::torque},
                                                 {"course", DriveMode::course}};
   const Units& u = slides ? of_lengths : of_angles;
   Drive drive;
@@ -161,6 +191,7 @@ DriveMaker read_drive(const TomlTable& table, const std::filesystem::path& folde
       d.course = Course::standing(angle);
       return d;
     };
+  if (drive.mode == DriveMode::torque) return read_torque(table, folder, u, input);
   const CourseMaker course = read_course(table, folder, u, input);
   return [drive, course](double time, double angle) {
     Drive d = drive;

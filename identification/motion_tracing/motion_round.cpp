@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace snare::identification {
@@ -13,32 +14,35 @@ namespace snare::identification {
 namespace {
 
 constexpr std::size_t most_refits = 5;
-constexpr double promising = 0.3;  // of the best promise: what falls less is not refitted
-constexpr double apart = 2.0;      // deviates by which the misfits of two refits must differ to be told apart
+constexpr double promising = 0.3;     // of the best promise: what falls less is not refitted
+constexpr double least_fall = 1e-4;   // share of the misfit below which a refit has not moved
+constexpr int enough_iterations = 8;  // to compare effects; the one that is named is fitted to the end
+constexpr double apart = 2.0;         // deviates by which the misfits of two refits must differ to be told apart
 
-/// The model with the numbers of an effect beside those that are fitted.
+/// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
 MotionFit refit(const RoundInput& in, const MotionScore& score) {
-  std::vector<MotionSetting> start = in.current.settings;
   const MotionEffect& effect = in.effects[score.effect];
-  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
-    MotionNumber number = effect.numbers[k];
-    number.scale = score.scale[k];
-    start.push_back({number, score.start[k]});
-  }
-  MotionFitOptions options;
-  options.progress = in.progress;
-  MotionFit fit = fit_motion(in.model, in.data, start, options);
-  if (fit.chi2 < in.current.chi2 || in.model.stopped()) return fit;
-  // The first order led too far: begin beside null.
-  for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
-    MotionSetting& s = start[in.current.settings.size() + k];
-    s.value = std::clamp(
-        effect.numbers[k].declared + std::copysign(0.1 * s.number.scale, score.start[k] - effect.numbers[k].declared),
-        s.number.lower, s.number.upper);
-  }
-  MotionFit again = fit_motion(in.model, in.data, start, options);
+  const auto from = [&](const std::function<double(std::size_t)>& value) {
+    std::vector<MotionSetting> start = in.current.settings;
+    for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
+      MotionNumber number = effect.numbers[k];
+      number.scale = score.scale[k];
+      start.push_back({number, value(k)});
+    }
+    MotionFitOptions options;
+    options.progress = in.progress;
+    options.max_iterations = enough_iterations;
+    return fit_motion(in.model, in.data, start, options);
+  };
+  MotionFit fit = from([&](std::size_t k) { return effect.numbers[k].declared; });
+  if (fit.chi2 < (1.0 - least_fall) * in.current.chi2 || in.model.stopped()) return fit;
+  // Nothing shows next to null: begin where the score points.
+  MotionFit again = from([&](std::size_t k) { return score.start[k]; });
   return again.chi2 < fit.chi2 ? again : fit;
 }
+
+/// Effects that do the same to these records leave the same misfit but for the accuracy of the integration; then the order of the catalogue decides.
+constexpr double the_same = 1e-4;
 
 /// Bayesian criterion of prewhitened residuals, up to what all models share.
 double bic(const MotionData& data, const ColouredNoise& noise, const MotionFit& fit) {
@@ -132,6 +136,12 @@ RoundResult motion_round(const RoundInput& in) {
     if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
     return fits[a].chi2 < fits[b].chi2;
   });
+  const auto may_be_named = [&](std::size_t k) { return candidates[k].refitted && candidates[k].why_not.empty(); };
+  for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
+    if (fits[order[k]].chi2 <= (1.0 + the_same) * fits[order[0]].chi2 &&
+        candidates[order[k]].score.effect < candidates[order[0]].score.effect)
+      std::swap(order[0], order[k]);
+
   std::vector<MotionCandidate> sorted;
   std::vector<MotionFit> sorted_fits;
   for (const std::size_t k : order) {
@@ -160,6 +170,12 @@ RoundResult motion_round(const RoundInput& in) {
                                          : "explains most, and nothing else does as well";
   result.added = best.score.effect;
   result.better = std::move(fits.front());
+  if (!result.better.report.usable() && !in.model.stopped()) {
+    MotionFitOptions to_the_end;
+    to_the_end.progress = in.progress;
+    MotionFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
+    if (fit.chi2 < result.better.chi2) result.better = std::move(fit);
+  }
   return result;
 }
 

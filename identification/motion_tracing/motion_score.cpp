@@ -34,11 +34,13 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
     if (trials[t].settled) continue;
     const MotionNumber& n = effects[trials[t].effect].numbers[trials[t].number];
     const double step = trial_share * trials[t].scale;
-    for (const double move : {-step, step}) {
+    // To one side: the refit of what is promising takes the rest.
+    for (const double move : {step, -step}) {
       if (n.declared + move < n.lower || n.declared + move > n.upper) continue;
       points.push_back(all);
       points.back().push_back({n, n.declared + move});
       of.emplace_back(t, move);
+      break;
     }
   }
   const auto predictions = model.predict_many(points, data.records);
@@ -63,7 +65,7 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
     }
     trials[t].column = sum * (trials[t].scale / way);
     const double change = trial_share * trials[t].column.norm() / size;
-    trials[t].settled = change >= least_change && change <= most_change;
+    trials[t].settled = (change >= least_change && change <= most_change) || change == 0.0;  // nothing hangs on it
     if (!trials[t].settled) {
       const double factor = std::clamp(wanted_change / std::max(change, 1e-8), 1e-5, 1e5);
       trials[t].column *= factor;  // if this was the last pass

@@ -124,17 +124,19 @@ class Tracer {
     options.progress = asked();
     for (const MotionSetting& s : together(fit.settings, fixed))
       if (!s.number.record) options.fixed.push_back(s);
+    // From where the first model has led them: the same starts for all others.
+    if (heldout_starts_) return fit_motion(model_, heldout_data_, *heldout_starts_, options);
     std::vector<MotionSetting> own;
     for (const MotionSetting& s : model_.free(heldout_))
       if (s.number.record) own.push_back(s);
-    // The same starts for all models.
-    return fit_motion(model_, heldout_data_, own, options);
+    MotionFit fitted = fit_motion(model_, heldout_data_, own, options);
+    if (fitted.report.usable()) heldout_starts_ = fitted.settings;
+    return fitted;
   }
 
   MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
     const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
-    return motion_stage(model_, data_, fit, heldout && heldout->residual.size() > 0 ? &*heldout : nullptr,
-                        heldout_data_);
+    return motion_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
   }
 
   /// Whether an error is more than noise, and more than is worth a name.
@@ -204,7 +206,7 @@ class Tracer {
   /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
   /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes.
   void keep_what_carries_over(std::vector<Reached>& kept) {
-    if (heldout_.empty() || kept.size() < 2 || stop_) return;
+    if (heldout_data_.rows == 0 || kept.size() < 2 || stop_) return;  // what is only watched does not choose
     const auto best = std::min_element(kept.begin(), kept.end(), [](const Reached& a, const Reached& b) {
       return a.stage.heldout_rmse < b.stage.heldout_rmse;
     });
@@ -222,6 +224,16 @@ class Tracer {
     trace_.share_left = 1.0;
     if (count > 0) judge();
     reached();
+  }
+
+  /// The next round begins at the sizes that were found to show, less as much as the residual has fallen.
+  void remember_sizes(const RoundResult& round) {
+    const double fallen = round.better.residual.norm() / std::max(1e-300, current_.residual.norm());
+    for (const MotionCandidate& c : round.round.candidates) {
+      std::vector<MotionNumber>& numbers = trace_.effects[c.score.effect].numbers;
+      for (std::size_t k = 0; k < std::min(numbers.size(), c.score.scale.size()); ++k)
+        if (c.score.scale[k] > 0.0) numbers[k].scale = fallen * c.score.scale[k];
+    }
   }
 
   void look_for_effects() {
@@ -242,6 +254,7 @@ class Tracer {
       if (stop_) return;
       trace_.rounds.push_back(round.round);
       if (!round.added) break;
+      remember_sizes(round);
       current_ = std::move(round.better);
       trace_.selected.push_back(trace_.effects[*round.added].label());
       trace_.selected_effects.push_back(*round.added);
@@ -249,7 +262,7 @@ class Tracer {
       trace_.final = stage(current_, {});
       judge();
       kept.push_back({current_, trace_.final});
-      if (heldout_.empty()) reached();
+      if (heldout_data_.rows == 0) reached();
       if (trace_.kind == VerdictKind::explained) break;
     }
     keep_what_carries_over(kept);
@@ -291,6 +304,7 @@ class Tracer {
   MotionModel model_;
   std::vector<std::size_t> fitted_, heldout_;
   MotionData data_, heldout_data_;
+  std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
   MotionFit current_;
   MotionTrace trace_;
 };

@@ -55,7 +55,7 @@ struct MotionFit {
 struct MotionFitOptions {
   FitMethod method = FitMethod::gauss_newton;
   int max_iterations = 30;
-  double tolerance = 1e-6;                                   ///< relative fall of chi2 below which the fit ends
+  double tolerance = 1e-5;                                   ///< relative fall of chi2 below which the fit ends
   bool derivatives = true;                                   ///< also where nothing is fitted any more: `jacobian`
   std::vector<MotionSetting> fixed;                          ///< beside the fitted ones
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops

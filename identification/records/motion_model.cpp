@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace snare::identification {
 
@@ -88,14 +89,34 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
+  for (const FreeNumber& f : set.free) bounds_[f.key] = lower_bound(f);
   look_at_joints();
+}
+
+double MotionModel::lower_bound(const FreeNumber& number) const {
+  const double declared = declared_.number(number.key).value_or(0.0);
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  constexpr double next_to_zero = 1e-6;  // of what is declared, where zero itself is refused
+  if (!(declared > 0.0)) return none;
+  const auto taken = [&](double value) {
+    std::vector<base::Override> overrides = set_.set;
+    overrides.push_back({number.key, exact_text(value)});
+    try {
+      static_cast<void>(scenario::read_scenario(set_.scenario, overrides));
+      return true;
+    } catch (const base::InputError&) {
+      return false;
+    }
+  };
+  if (taken(-declared)) return none;
+  return taken(0.0) ? 0.0 : next_to_zero * declared;
 }
 
 std::vector<MotionSetting> MotionModel::free(const std::vector<std::size_t>& records) const {
   std::vector<MotionSetting> settings;
   for (const FreeNumber& f : set_.free) {
     MotionNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));
-    if (f.lower) number.lower = *f.lower;
+    number.lower = f.lower.value_or(bounds_.at(f.key));
     if (f.upper) number.upper = *f.upper;
     if (f.scale) number.scale = *f.scale;
     if (!f.each) {

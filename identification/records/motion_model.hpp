@@ -78,12 +78,15 @@ class MotionModel {
   [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings,
                                                          std::size_t record) const;
   void look_at_joints();
+  /// Zero or next to it for a number > 0 whose reader takes none below.
+  [[nodiscard]] double lower_bound(const FreeNumber& number) const;
 
   const RecordSet& set_;
   DeclaredScenario declared_;
   std::function<bool()> stop_;
   std::map<std::string, std::string> columns_;  ///< full column of a sensor's short name
   std::map<std::string, JointUse> joints_;
+  std::map<std::string, double> bounds_;  ///< lower ones of the free numbers
   mutable std::atomic<long> simulations_ = 0;
   /// Runs kept for settings that differ in the sensors only: the last few, by record and keys.
   mutable std::mutex kept_guard_;

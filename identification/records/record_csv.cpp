@@ -1,6 +1,7 @@
 #include "identification/records/record_csv.hpp"
 
 #include "base/csv.hpp"
+#include "identification/records/low_pass.hpp"
 
 #include <fmt/format.h>
 
@@ -67,6 +68,41 @@ void check_values(const RecordCsv& csv, const std::string& column, const std::ve
   }
 }
 
+/// Low-pass filter, where one is asked, and of what is left each of so many.
+void thin_out(const RecordCsv& csv, RecordReadings& readings, std::vector<base::InputProblem>& problems) {
+  const std::size_t count = readings.times.size();
+  if (csv.cutoff > 0.0) {
+    const double interval = (readings.times.back() - readings.times.front()) / static_cast<double>(count - 1);
+    constexpr double even = 0.01;  // share of the interval
+    double off = 0.0;
+    for (std::size_t k = 0; k < count; ++k)
+      off = std::max(off, std::abs(readings.times[k] - readings.times.front() - static_cast<double>(k) * interval));
+    const auto tell = [&](std::string requirement) {
+      problems.push_back(
+          {csv.file.string(), 0, "lowpass_Hz", fmt::format("{:.6g}", csv.cutoff), std::move(requirement)});
+    };
+    if (!(off <= even * interval)) return tell("only for readings that are evenly spaced");
+    if (!(csv.cutoff * interval < 0.5))
+      return tell(fmt::format("must be below half the rate of the readings, {:.6g} Hz", 0.5 / interval));
+    readings.filter.cutoff = csv.cutoff;
+    readings.filter.times = Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(count));
+    for (std::vector<double>& column : readings.values) {
+      const Eigen::Map<Eigen::VectorXd> values(column.data(), static_cast<Eigen::Index>(count));
+      const Eigen::VectorXd filtered = low_passed(values, interval, csv.cutoff);
+      std::copy(filtered.begin(), filtered.end(), column.begin());
+    }
+  }
+  const auto thin = [&](std::vector<double>& values) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < values.size(); k += static_cast<std::size_t>(csv.every)) values[kept++] = values[k];
+    values.resize(kept);
+  };
+  for (std::size_t k = 0; k < count; k += static_cast<std::size_t>(csv.every))
+    readings.filter.kept.push_back(static_cast<Eigen::Index>(k));
+  thin(readings.times);
+  for (std::vector<double>& column : readings.values) thin(column);
+}
+
 }  // namespace
 
 RecordReadings read_record_csv(const RecordCsv& csv) {
@@ -77,24 +113,30 @@ RecordReadings read_record_csv(const RecordCsv& csv) {
   RecordReadings readings;
   readings.values.resize(csv.columns.size());
   const std::size_t first_filter = 1 + csv.columns.size();
-  long count = 0;
   for (std::size_t i = 0; i < table.rows; ++i) {
     bool taken = true;
     for (std::size_t f = 0; f < csv.rows.size(); ++f)
       taken = taken && table.columns[first_filter + f][i] == csv.rows[f].second;
     const double time = table.columns[0][i];
-    if (!taken || time < csv.from || time > csv.to || count++ % csv.every != 0) continue;
+    if (!taken || time < csv.from || time > csv.to) continue;
     readings.times.push_back(time - csv.clock);
     for (std::size_t c = 0; c < csv.columns.size(); ++c) readings.values[c].push_back(table.columns[1 + c][i]);
   }
   std::vector<base::InputProblem> problems;
-  if (readings.times.size() < fewest_readings) {
+  const auto few = [&] {
+    if (readings.times.size() >= fewest_readings) return false;
     problems.push_back({csv.file.string(), 0, "", "",
                         fmt::format("{} readings, must be at least {}", readings.times.size(), fewest_readings)});
-  } else {
+    return true;
+  };
+  if (!few()) {
     check_times(csv, readings.times, problems);
     for (std::size_t c = 0; c < csv.columns.size(); ++c)
       check_values(csv, csv.columns[c].first, readings.values[c], problems);
+    if (problems.empty()) {
+      thin_out(csv, readings, problems);
+      few();
+    }
   }
   if (!problems.empty()) throw base::InputError(problems);
   return readings;
@@ -106,6 +148,7 @@ std::vector<std::string> read_into(const std::function<RecordReadings()>& read, 
     const RecordReadings readings = read();
     record.times =
         Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(readings.times.size()));
+    record.filter = readings.filter;
     for (std::size_t c = 0; c < record.channels.size(); ++c)
       record.channels[c].values = Eigen::Map<const Eigen::VectorXd>(
           readings.values[c].data(), static_cast<Eigen::Index>(readings.values[c].size()));

@@ -22,6 +22,7 @@ struct RecordCsv {
          to = std::numeric_limits<double>::infinity();  ///< of the file's clock [s]
   double clock = 0.0;                                   ///< time of the file's clock at which the scenario begins [s]
   int every = 1;                                        ///< of the rows that are left, each of so many
+  double cutoff = 0.0;                                  ///< of a low-pass filter before [Hz]; 0: none
   std::optional<double> most_gap;  ///< longest time between two readings [s]; absent: 20 times the usual
 };
 
@@ -29,6 +30,7 @@ struct RecordCsv {
 struct RecordReadings {
   std::vector<double> times;
   std::vector<std::vector<double>> values;
+  RecordFilter filter;
 };
 
 /// Reads it. Throws InputError with everything that is wrong (at most a few of each kind): columns that are missing, cells that are no

@@ -68,6 +68,7 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
   csv.to = table.number_or("to_s", csv.to, Range::finite());
   csv.clock = table.number_or("clock_s", 0.0, Range::finite());
   csv.every = table.integer_or("every", 1, 1, 1000000);
+  if (table.has("lowpass_Hz")) csv.cutoff = table.number("lowpass_Hz", Range::above(0.0));
   csv.most_gap = table.optional_number("longest_gap_s", Range::above(0.0));
   if (csv.from >= csv.to) table.fail("to_s", "must be > from_s");
   if (table.has("rows")) {
@@ -101,8 +102,6 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
   for (std::size_t k = 0; k < watched.size(); ++k)
     if (std::none_of(columns->begin(), columns->end(), [&](const auto& e) { return e.key == watched[k]; }))
       table.fail_element("watched", k, "must be one of the columns");
-  if (std::none_of(record.channels.begin(), record.channels.end(), [](const auto& c) { return c.fitted; }))
-    table.fail("watched", "must leave a column to be fitted");
   if (csv.file.filename().empty()) return;
   const auto read = [&] { return read_record_csv(csv); };
   for (const std::string& problem : read_into(read, record)) table.fail("file", problem);
@@ -147,6 +146,12 @@ void read_fit(const TomlTable& table, RecordSet& set) {
     else
       record->heldout = true;
   }
+  const auto fitted = [](const MotionRecord& r) {
+    return r.heldout || std::any_of(r.channels.begin(), r.channels.end(), [](const auto& c) { return c.fitted; });
+  };
+  for (const MotionRecord& r : set.records)
+    if (!fitted(r))
+      table.fail("heldout", fmt::format("must name {}, or its `watched` must leave a column to be fitted", r.name));
   if (!set.records.empty() && set.used(false).empty()) table.fail("heldout", "must leave a record to be fitted");
   set.tolerance = table.optional_number("model_tolerance", Range::from(0.0, 1.0));
   set.most_effects = table.integer_or("most_effects", set.most_effects, 0, 10);

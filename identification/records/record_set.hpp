@@ -22,12 +22,20 @@ struct RecordChannel {
   Eigen::VectorXd values;
 };
 
+/// What was done to the readings of a record before they are compared, and is done to a prediction alike.    theory.md (I.25)
+struct RecordFilter {
+  double cutoff = 0.0;             ///< of the low-pass filter [Hz]; 0: none
+  Eigen::VectorXd times;           ///< of all readings, evenly spaced [s]
+  std::vector<Eigen::Index> kept;  ///< of these those that are compared
+};
+
 /// A record in time of one run of the scenario.
 struct MotionRecord {
   std::string name;
   std::vector<base::Override> set;  ///< keys of the scenario that were otherwise in this run
   Eigen::VectorXd times;            ///< on the scenario's clock [s], ascending, >= 0
   std::vector<RecordChannel> channels;
+  RecordFilter filter;
   bool heldout = false;  ///< never used for fitting or selection
 };
 

@@ -1,5 +1,7 @@
 #include "identification/records/sensor_signals.hpp"
 
+#include "identification/records/low_pass.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -64,12 +66,17 @@ std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord
       }
       const std::vector<double> values =
           lagged(readings.times, readings.values[static_cast<std::size_t>(component - names.begin())], change.lag);
-      result[c].resize(record.times.size());
-      for (Eigen::Index i = 0; i < record.times.size(); ++i) {
-        const double t = record.times[i];
+      const RecordFilter& filter = record.filter;
+      const Eigen::VectorXd& times = filter.cutoff > 0.0 ? filter.times : record.times;
+      result[c].resize(times.size());
+      for (Eigen::Index i = 0; i < times.size(); ++i) {
+        const double t = times[i];
         result[c][i] =
             change.gain * value_at(readings.times, values, t - change.delay) + change.bias + change.drift * t;
       }
+      if (!(filter.cutoff > 0.0)) continue;
+      const double interval = (times[times.size() - 1] - times[0]) / static_cast<double>(times.size() - 1);
+      result[c] = Eigen::VectorXd(low_passed(result[c], interval, filter.cutoff)(filter.kept));
     }
   }
   return result;

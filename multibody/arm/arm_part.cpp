@@ -182,6 +182,7 @@ ElasticArmPart::Terms ElasticArmPart::terms(double time, numerics::VectorView y,
       t.drive_by_rate = -drive.derivative;
     }
   }
+  if (drive.mode == DriveMode::torque) t.drive = drive.demand(inside(time), 0.0, 0.0);
   if (drive.mode == DriveMode::course) {
     t.drive = j.motor_inertia * drive.course.acceleration(inside(time)) + t.motor_loss - t.torque;
     t.drive_by_q = t.loss_by_deflection - t.torque_by_deflection;
@@ -209,6 +210,7 @@ const Kinematics& ElasticArmPart::kinematics(numerics::VectorView y) const {
 double ElasticArmPart::drive_torque(double time, numerics::VectorView y, int joint) const {
   const Drive& drive = drives_[at(joint)];
   if (drive.mode == DriveMode::course) return terms(time, y, joint).drive;
+  if (drive.mode == DriveMode::torque) return drive.demand(inside(time), 0.0, 0.0);
   if (drive.mode != DriveMode::servo) return 0.0;
   if (modes_[at(joint)].saturated != 0) return modes_[at(joint)].saturated * drive.limit;
   return drive.demand(inside(time), y[motor_ + joint], y[rate_ + joint]);

@@ -121,8 +121,8 @@ class ElasticArmPart : public numerics::DaePart {
 
   /// The integration stays within this time until told again: what jumps at its ends has its inner value there.
   void enter_interval(double begin, double end);
-  /// Times that the integration must stop at: ends of courses and of loads.
-  [[nodiscard]] std::vector<double> breaks() const;
+  /// The first time behind a time that the integration must stop at, an end of a course or of a load; infinity where there is none.
+  [[nodiscard]] double next_break(double time) const;
 
   [[nodiscard]] const ElasticArm& arm() const { return arm_; }
   /// Poses and velocities of the tree at y. Kept until another y is asked for: many frames of an arm are asked for at one.

@@ -4,8 +4,10 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace snare::multibody {
 
@@ -216,17 +218,14 @@ void ElasticArmPart::solve_rates(double time, numerics::VectorView y, numerics::
   rate.segment(v_, tree.velocities()) = -H.ldlt().solve(rows.segment(v_, tree.velocities()));
 }
 
-std::vector<double> ElasticArmPart::breaks() const {
-  std::vector<double> times;
-  for (const Drive& drive : drives_) {
-    if (drive.mode != DriveMode::servo && drive.mode != DriveMode::course) continue;
-    for (const double t : drive.course.breaks()) times.push_back(t);
-  }
+double ElasticArmPart::next_break(double time) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const Drive& drive : drives_) next = std::min(next, drive.next_break(time));
   for (const TimedLoad& load : loads_) {
-    times.push_back(load.begin);
-    times.push_back(load.begin + load.duration);
+    for (const double t : {load.begin, load.begin + load.duration})
+      if (t > time) next = std::min(next, t);
   }
-  return times;
+  return next;
 }
 
 }  // namespace snare::multibody

@@ -24,7 +24,7 @@ double ArmStepper::next_break(double time, double end) {
   const auto consider = [&](double t) {
     if (t > time && t < next) next = t;
   };
-  for (const double t : part_.breaks()) consider(t);
+  consider(part_.next_break(time));
   part_.watch_torque(-1, 0.0);
   if (next_switch_ == switches_.size()) return next;
   const DriveSwitch& change = switches_[next_switch_];

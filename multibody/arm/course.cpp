@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace snare::multibody {
 
@@ -37,6 +38,16 @@ bool runs(const Course& course, double time) {
 
 }  // namespace
 
+std::vector<double> ends_of_rest(const std::vector<double>& times, const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double level = 1e-9 * (*high - *low);
+  std::vector<double> ends;
+  for (std::size_t k = 1; k + 1 < values.size(); ++k)
+    if (std::abs(values[k] - values[k - 1]) <= level && std::abs(values[k + 1] - values[k]) > level)
+      ends.push_back(times[k]);
+  return ends;
+}
+
 double Course::angle(double time) const {
   if (time < begin) return from;
   if (!runs(*this, time)) return to;
@@ -63,9 +74,26 @@ std::vector<double> Course::breaks() const {
     times.push_back(begin + duration - ramp);
   }
   if (kind == CourseKind::table) {
-    for (const double knot : table->knots()) times.push_back(begin + knot);
+    for (const double knot : smooth ? stops : table->knots()) times.push_back(begin + knot);
   }
   return times;
+}
+
+double Course::next_break(double time) const {
+  double next = std::numeric_limits<double>::infinity();
+  const auto consider = [&](double t) {
+    if (t > time && t < next) next = t;
+  };
+  if (kind != CourseKind::table) {
+    for (const double t : breaks()) consider(t);
+    return next;
+  }
+  consider(begin);
+  consider(begin + duration);
+  const std::vector<double>& knots = smooth ? stops : table->knots();
+  const auto behind = std::partition_point(knots.begin(), knots.end(), [&](double k) { return begin + k <= time; });
+  if (behind != knots.end()) consider(begin + *behind);
+  return next;
 }
 
 Course Course::at_rate(double from, double to, double begin, double rate, double ramp) {
@@ -78,14 +106,38 @@ Course Course::at_rate(double from, double to, double begin, double rate, double
   return course;
 }
 
-Course Course::through(double from, double begin, const std::vector<double>& times, const std::vector<double>& values) {
-  std::vector<double> rise(values);
-  for (double& value : rise) value -= values.front();
-  std::vector<double> held = numerics::monotone_slopes(times, rise, numerics::HermiteCurve(times, rise).slopes());
-  held.front() = held.back() = 0.0;
+namespace {
+
+std::vector<double> less_the_first(std::vector<double> values) {
+  const double first = values.front();
+  for (double& value : values) value -= first;
+  return values;
+}
+
+/// Through values that begin at zero, at rest at both ends.
+Course table_course(double from, double begin, const std::vector<double>& times, const std::vector<double>& rise,
+                    std::vector<double> slopes) {
+  slopes.front() = slopes.back() = 0.0;
   Course course(from, from + rise.back(), begin, times.back());
   course.kind = CourseKind::table;
-  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise, held);
+  course.table = std::make_shared<const numerics::HermiteCurve>(times, rise, std::move(slopes));
+  return course;
+}
+
+}  // namespace
+
+Course Course::through(double from, double begin, const std::vector<double>& times, const std::vector<double>& values) {
+  const std::vector<double> rise = less_the_first(values);
+  return table_course(from, begin, times, rise,
+                      numerics::monotone_slopes(times, rise, numerics::HermiteCurve(times, rise).slopes()));
+}
+
+Course Course::smoothly_through(double from, double begin, const std::vector<double>& times,
+                                const std::vector<double>& values) {
+  const std::vector<double> rise = less_the_first(values);
+  Course course = table_course(from, begin, times, rise, numerics::HermiteCurve(times, rise).slopes());
+  course.smooth = true;
+  course.stops = ends_of_rest(times, rise);
   return course;
 }
 

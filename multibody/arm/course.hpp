@@ -14,6 +14,9 @@ enum class CourseKind {
   table     ///< r = from + the value of `table` at t - begin, from its first knot to its last
 };
 
+/// Of a line through values the times at which it leaves a level stretch: an integration that stops there cannot step over what follows.
+[[nodiscard]] std::vector<double> ends_of_rest(const std::vector<double>& times, const std::vector<double>& values);
+
 /// Where a motor is told to be: rate continuous, at rest before and after.
 struct Course {
   /// A quintic course, or with the defaults none.
@@ -26,6 +29,8 @@ struct Course {
   double ramp = 0.0;  ///< [s], in (0, duration/2]
   /// Values from 0 on, of level ends; `to` and `duration` follow from it.
   std::shared_ptr<const numerics::HermiteCurve> table;
+  bool smooth = false;        ///< the table is a C2 spline: nothing jumps at its inner knots
+  std::vector<double> stops;  ///< of a smooth table [s from its beginning]
 
   [[nodiscard]] double angle(double time) const;
   [[nodiscard]] double rate(double time) const;
@@ -33,6 +38,8 @@ struct Course {
   [[nodiscard]] double acceleration(double time) const;
   /// Times up to which the integration must go, not across: where the course begins, ends or changes its acceleration at once.
   [[nodiscard]] std::vector<double> breaks() const;
+  /// The first of them behind a time; infinity where there is none.
+  [[nodiscard]] double next_break(double time) const;
 
   /// Standing at an angle.
   [[nodiscard]] static Course standing(double angle) { return Course(angle, angle); }
@@ -41,6 +48,9 @@ struct Course {
   /// Through values at times from 0 on, at least two, strictly ascending; at rest at both ends, without overshoot between.
   [[nodiscard]] static Course through(double from, double begin, const std::vector<double>& times,
                                       const std::vector<double>& values);
+  /// The same by the C2 spline: its acceleration has no jumps, as a motor needs whose torque is asked for. Between the values it may overshoot.
+  [[nodiscard]] static Course smoothly_through(double from, double begin, const std::vector<double>& times,
+                                               const std::vector<double>& values);
 };
 
 }  // namespace snare::multibody

@@ -3,6 +3,7 @@
 #include "multibody/arm/course.hpp"
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ enum class DriveMode {
   locked,  ///< a brake: the motor does not turn
   servo,   ///< torque = clamp(kp (r - qm) + kd (s r' - qm'), +-limit)
   limp,    ///< no torque; the gear is driven back by the load
+  torque,  ///< a torque over time, whatever the motor does
   course   ///< the motor runs its course whatever it takes: qm' = r'
 };
 
@@ -23,17 +25,27 @@ struct Drive {
   double limit = std::numeric_limits<double>::infinity();  ///< [N m], > 0
   double rate_share = 1.0;                                 ///< s: of the course's rate that kd sees [-], 0 to 1
   Course course;
+  /// Of a torque: straight between values at times from 0 on [s, N m], and the last one held. At least one.
+  struct Torque {
+    std::vector<double> times, values;
+    std::vector<double> stops;  ///< where the integration must stop
+  };
+  std::shared_ptr<const Torque> given;
+  double begin = 0.0;  ///< time at which a given torque begins [s]; none before
 
   [[nodiscard]] static Drive locked();
   [[nodiscard]] static Drive limp();
+  [[nodiscard]] static Drive with_torque(double begin, std::vector<double> times, std::vector<double> values);
   [[nodiscard]] static Drive on_course(const Course& course);
   [[nodiscard]] static Drive holding(double angle, double proportional, double derivative,
                                      double limit = std::numeric_limits<double>::infinity());
 
   /// Whether the motor moves as told, whatever acts on it.
   [[nodiscard]] bool rules() const { return mode == DriveMode::locked || mode == DriveMode::course; }
-  /// Torque of the servo before its limit [N m].
+  /// Torque of the servo before its limit, or the given one [N m].
   [[nodiscard]] double demand(double time, double angle, double rate) const;
+  /// The first time behind a time at which the integration must stop; infinity where there is none.
+  [[nodiscard]] double next_break(double time) const;
 };
 
 /// All drives change at a time, or when the torque of a joint's spring first exceeds a size after that time.

@@ -303,7 +303,7 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"welds[ballast].frame=\"counterweight\"",
        "welds[ballast].frame = \"counterweight\", must not be on the body itself"},
       {"drives[1].joint=\"rms::elbow\"", "must be a joint, or an arm or a snare for all of theirs: "},
-      {"drives[1].mode=\"hold\"", "must be \"locked\", \"servo\", \"limp\" or \"course\""},
+      {"drives[1].mode=\"hold\"", "must be \"locked\", \"servo\", \"limp\", \"torque\" or \"course\""},
       {"drives[1].to_deg=5", "drives[1].to_deg = 5, unknown key"},
       {"phases[close].at_s=-1", "phases[close].at_s = -1, must be >= 0"},
       {"phases[tight].at_s=0.001", "must not be before that of an earlier phase"},

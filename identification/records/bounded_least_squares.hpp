@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+
+namespace snare::identification {
+
+/// Least squares of a residual r(x) within bounds, by Levenberg and Marquardt's method with an active set: theory.md (I.26). A step that
+/// would cross a bound ends on it in that number, and the others are solved for again: where it is left to a line search, numbers that belong
+/// together creep along the bound.
+struct BoundedProblem {
+  Eigen::VectorXd lower, upper;                                     ///< may be infinite
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> residual;  ///< empty: there is none at this place
+  std::function<Eigen::MatrixXd(const Eigen::VectorXd&)>
+      residual_jacobian;                                     ///< asked where `residual` was last accepted
+  std::function<bool(int iteration, double chi2)> progress;  ///< false stops
+};
+
+enum class BoundedEnd {
+  converged,        ///< the last step lowered the sum by less than its share `tolerance`, or no step lowers it
+  iteration_limit,  ///< it may fall further
+  stopped,          ///< by `progress`
+  no_start          ///< no residual at the start
+};
+
+struct BoundedResult {
+  Eigen::VectorXd x;
+  double chi2 = 0.0;
+  int iterations = 0;
+  BoundedEnd end = BoundedEnd::converged;
+};
+
+/// From a start, which is moved into the bounds. tolerance > 0, max_iterations >= 1.
+[[nodiscard]] BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::VectorXd& start,
+                                                  int max_iterations, double tolerance);
+
+}  // namespace snare::identification
