@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/options.hpp"
 
 namespace snare::test {
 
@@ -15,6 +16,18 @@ namespace snare::test {
 
 [[nodiscard]] constexpr coupling::MotionCarrier body_of(int index) {
   return {coupling::MotionCarrier::Kind::body, index, 0};
+}
+
+/// For comparison with closed forms [s].
+[[nodiscard]] inline coupling::MotionOptions fine(double duration, double output_interval) {
+  coupling::MotionOptions o;
+  o.duration = duration;
+  o.output_interval = output_interval;
+  o.relative_tolerance = 1e-9;
+  o.body_position_tolerance = o.angle_tolerance = 1e-11;
+  o.body_velocity_tolerance = o.spin_tolerance = 1e-9;
+  o.max_order = 5;
+  return o;
 }
 
 }  // namespace snare::test
