@@ -85,6 +85,7 @@ class Joined:
             own = (REPOSITORY / file).read_text().splitlines()
             lines += ["" if row in included else row for row in own]
             included |= {row for row in own if row.startswith("#include")}
+        self.folder = ["-iquote", str(REPOSITORY / files[0].parent)]  # where the compiler looks first
         folder = REPOSITORY / "build" / "tidy"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile("w", suffix=".cpp", dir=folder, delete=False) as out:
@@ -121,7 +122,7 @@ def fitting_together(files: list[pathlib.Path], flags: tuple[str, ...]) -> tuple
     while len(files) > 1:
         text = Joined(files)
         try:
-            messages = text.messages(run(["clang++", "-fsyntax-only", "-w", "-ferror-limit=0", *flags, str(text.path)]))
+            messages = text.messages(run(["clang++", "-fsyntax-only", "-w", "-ferror-limit=0", *flags, *text.folder, str(text.path)]))
         finally:
             text.path.unlink()
         bad = {place.split(":")[0] for place, message in messages if "error: " in message}
@@ -139,7 +140,7 @@ def findings(files: list[pathlib.Path], flags: tuple[str, ...], checks: str) -> 
     text = Joined(files)
     words = ["clang-tidy", "--quiet", f"--config-file={REPOSITORY / '.clang-tidy'}", *([f"--checks={checks}"] if checks else [])]
     try:
-        return text.messages(run([*words, str(text.path), "--", "-w", *flags]))
+        return text.messages(run([*words, str(text.path), "--", "-w", *flags, *text.folder]))
     finally:
         text.path.unlink()
 

@@ -32,14 +32,7 @@ MotionBushing bushing_between(MotionCarrier first, MotionCarrier second) {
 }
 
 TEST(Bushing, JacobianMatchesDifferences) {
-  multibody::ElasticArm model;
-  model.tree.add_moving(
-      0, "link", multibody::JointKind::revolute, Vector3d(1.0, 2.0, 0.5), {},
-      multibody::SpatialInertia::about_centre(4.0, {0.2, 0.1, 0.0}, 0.2 * Eigen::Matrix3d::Identity()));
-  multibody::ElasticJoint joint;
-  joint.motor_inertia = 1.0;
-  joint.spring = multibody::DeflectionLaw::linear(20.0, 1.0);
-  model.joints.push_back(joint);
+  const multibody::ElasticArm model = test::one_joint("link", Vector3d(1.0, 2.0, 0.5));
   multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
   const MotionOptions options;
   BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);

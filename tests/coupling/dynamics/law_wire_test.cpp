@@ -79,14 +79,7 @@ TEST(LawWire, RingHasTheClosedForm) {
 }
 
 TEST(LawWire, JacobianMatchesDifferences) {
-  multibody::ElasticArm model;
-  model.tree.add_moving(
-      0, "ring", multibody::JointKind::revolute, Vector3d(0.1, 0.05, 1.0).normalized(), {},
-      multibody::SpatialInertia::about_centre(4.0, {0.2, 0.1, 0.0}, 0.2 * Eigen::Matrix3d::Identity()));
-  multibody::ElasticJoint joint;
-  joint.motor_inertia = 1.0;
-  joint.spring = multibody::DeflectionLaw::linear(20.0, 1.0);
-  model.joints.push_back(joint);
+  const multibody::ElasticArm model = test::one_joint("ring", Vector3d(0.1, 0.05, 1.0).normalized());
   multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
   const MotionOptions options;
   BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);

@@ -159,7 +159,7 @@ wire::WireSpecification steel_wire(double length) {
 }
 
 /// Displacement of a vertex along y of the full wire, damped, from its rest with the given velocities.
-RingDown full_wire(wire::RodInMotion rod, const Eigen::Matrix3Xd& velocities, int vertex, double duration,
+RingDown full_wire(const wire::RodInMotion& rod, const Eigen::Matrix3Xd& velocities, int vertex, double duration,
                    double tolerance) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), velocities});
