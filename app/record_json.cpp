@@ -1,5 +1,6 @@
 #include "app/record_json.hpp"
 
+#include "results/finite_json.hpp"
 #include "results/version.hpp"
 
 #include <nlohmann/json.hpp>
@@ -19,13 +20,7 @@ using identification::MotionTrace;
 using identification::RecordSet;
 using identification::TracedNumber;
 using nlohmann::json;
-
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-json finite(const std::optional<double>& value) {
-  return value ? finite(*value) : json();
-}
+using results::finite;
 
 /// "rmse_N": with the unit of the fitted channels, where there is one; else over their scales.
 std::string with_unit(const char* name, const MotionTrace& trace) {

@@ -128,6 +128,7 @@ Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free,
 
 std::vector<std::vector<double>> forces_of(const std::vector<Prediction>& predictions) {
   std::vector<std::vector<double>> result;
+  result.reserve(predictions.size());
   for (const Prediction& p : predictions) result.push_back(p.force);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include "app/commands.hpp"
 #include "base/csv.hpp"
+#include "results/finite_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -391,7 +392,7 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
   if (answers.subset) {
     json levels = json::array();
     for (const auto& level : answers.subset->levels) {
-      levels.push_back({{"threshold", std::isfinite(level.threshold) ? json(level.threshold) : json()},
+      levels.push_back({{"threshold", results::finite(level.threshold)},
                         {"probability", level.probability},
                         {"variation", level.variation}});
     }

@@ -288,10 +288,13 @@ ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& opt
   struct Leave {
     study::Ranks* ranks;
     bool orderly = true;
+    explicit Leave(study::Ranks* all) : ranks(all) {}
+    Leave(const Leave&) = delete;
+    Leave& operator=(const Leave&) = delete;
     ~Leave() {
       if (ranks != nullptr && orderly) ranks->leave();
     }
-  } leaving{ranks.get()};
+  } leaving(ranks.get());
   std::optional<SweepStudy> study;
   try {
     study.emplace(file, overrides_of(options));

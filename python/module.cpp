@@ -41,6 +41,7 @@ PYBIND11_MODULE(_core, module) {
   input_error.doc() =
       "A file or an override is wrong. The message has a line a problem; `problems` has them as dictionaries of\n"
       "file, line, key, value and requirement.";
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for this signature
   py::register_exception_translator([](std::exception_ptr raised) {
     try {
       if (raised) std::rethrow_exception(raised);

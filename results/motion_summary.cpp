@@ -1,5 +1,6 @@
 #include "results/motion_summary.hpp"
 
+#include "results/finite_json.hpp"
 #include "results/version.hpp"
 #include "base/index.hpp"
 #include "base/units.hpp"
@@ -203,10 +204,6 @@ std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
   return first;
 }
 
-json finite_json(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
 /// Lists of bodies and contacts.
 json lists_json(const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
@@ -283,9 +280,9 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   for (std::size_t w = 0; w < wires.size(); ++w) {
     const coupling::WireFacts& wire = wires[w];
     outcome["first_touch_s"][wire.name] = time_json(first_touch(run, w));
-    outcome["strength_N"][wire.name] = finite_json(wire.strength.breaking_tension);
+    outcome["strength_N"][wire.name] = finite(wire.strength.breaking_tension);
     const bool watched = w < run.result.wires.size();
-    outcome["tight_s"][wire.name] = watched ? finite_json(run.result.wires[w].tight_at) : json();
+    outcome["tight_s"][wire.name] = watched ? finite(run.result.wires[w].tight_at) : json();
     outcome["peak_tension_N"][wire.name] = watched ? json(run.result.wires[w].peak_tension) : json();
   }
   const std::vector<std::string> contacts = motion.contact_names();

@@ -1,5 +1,6 @@
 #include "results/trace_json.hpp"
 
+#include "results/finite_json.hpp"
 #include "results/version.hpp"
 #include "results/warnings.hpp"
 #include "results/in_mm.hpp"
@@ -20,13 +21,6 @@ using identification::ModelError;
 using identification::Round;
 using identification::Trace;
 using nlohmann::json;
-
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-json finite(const std::optional<double>& value) {
-  return value ? finite(*value) : json();
-}
 
 /// Correlations of the fitted numbers by their keys; those without a standard error have none.
 json correlation_json(const std::vector<FittedNumber>& numbers) {

@@ -45,16 +45,18 @@ class Dispatcher {
 /// Runs a case; its result in one line. Must not throw.
 using RunCase = std::function<std::string(std::uint64_t index)>;
 
-/// Runs cases on threads of this machine until nothing is left to take. A case that ran while everything ended is not reported.
-/// wait: others have cases that may come back, so that nothing to take is not the end.
+/// What a thread does that finds nothing to take. wait: others have cases that may come back, so that this is not the end.
 enum class Idle { leave, wait };
+
+/// Runs cases on threads of this machine until nothing is left to take. A case that ran while everything ended is not reported.
 void run_cases(Dispatcher& dispatcher, int threads, const RunCase& run, Idle idle = Idle::leave);
 
-/// Runs a few given cases on threads of this machine; results in their order, an empty one where it was stopped before.
 struct TimedResult {
-  std::string result;
-  double seconds = 0.0;
+  std::string result;    ///< one line; empty: it was stopped before
+  double seconds = 0.0;  ///< [s]
 };
+
+/// Runs a few given cases on threads of this machine; results in their order.
 [[nodiscard]] std::vector<TimedResult> run_list(std::size_t count, int threads,
                                                 const std::function<std::string(std::size_t)>& run,
                                                 const std::function<bool()>& stop);

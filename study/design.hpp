@@ -46,6 +46,8 @@ class Design {
   /// Expects settings that the reader of the file has found right.
   Design(std::vector<Variable> variables, DesignSettings settings);
   ~Design();
+  Design(const Design&) = delete;
+  Design& operator=(const Design&) = delete;
   Design(Design&&) noexcept;
   Design& operator=(Design&&) noexcept;
 

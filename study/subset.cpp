@@ -104,7 +104,8 @@ void SubsetSimulation::end_level() {
   const double threshold = last ? 0.0 : next;
   const auto above = std::ranges::count_if(states, [&](const State* s) { return s->margin >= threshold; });
   const double probability = static_cast<double>(above) / static_cast<double>(states.size());
-  levels_.push_back({first_ ? far : threshold_, probability, variation_of(threshold, probability)});
+  const double from = first_ ? far : threshold_;
+  levels_.push_back({from, probability, variation_of(threshold, probability)});
   reached_ = last && above > 0;
   const bool stuck = !last && !first_ && !(next > threshold_);  // a margin of few values
   if (last || stuck || static_cast<int>(levels_.size()) >= settings_.most_levels) {

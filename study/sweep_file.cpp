@@ -398,6 +398,7 @@ class Reader {
       const auto found = std::ranges::find(fields, of, &Collected::name);
       if (found == fields.end() && !of.empty()) {
         std::vector<std::string> all;
+        all.reserve(fields.size());
         for (const Collected& f : fields) all.push_back(f.name);
         const std::string near = base::nearest_word(of, all);
         table.fail("of", near.empty() ? "must be a name of [collect]" : fmt::format("must be a name of [collect]; did you mean {}?", near));

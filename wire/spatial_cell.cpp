@@ -155,26 +155,29 @@ SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& 
   return cell;
 }
 
+namespace {
+
+/// by_c dc + sum_j by_kappa_j dkappa_j + by_tau dtau.
+PairGradient weighted_gradient(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after,
+                               double by_c, const Vector2d& by_kappa, double by_tau) {
+  PairGradient g;
+  if (cell.bends) add_cosine_gradient(cell.turn, cell.inverse, by_c, g);
+  if (cell.directed)
+    WeightedCurvature(cell.turn, before.directors, after.directors, by_kappa).add_gradient(cell.inverse, g);
+  if (cell.twists) add_twist_gradient(cell.turn, cell.inverse, by_tau, g);
+  return g;
+}
+
+}  // namespace
+
 // dE = dE/dc dc + sum_j dE/dkappa_j dkappa_j + dE/dtau dtau.
 PairGradient gradient_of(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
-  PairGradient g;
-  if (cell.bends) add_cosine_gradient(cell.turn, cell.inverse, cell.by_cosine, g);
-  if (cell.directed) {
-    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).add_gradient(cell.inverse, g);
-  }
-  if (cell.twists) add_twist_gradient(cell.turn, cell.inverse, cell.torque, g);
-  return g;
+  return weighted_gradient(cell, before, after, cell.by_cosine, cell.by_kappa, cell.torque);
 }
 
 // The same with d2E/dc dl, d2E/dkappa_j dl, d2E/dtau dl as factors.
 PairGradient gradient_by_length(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
-  PairGradient g;
-  if (cell.bends) add_cosine_gradient(cell.turn, cell.inverse, cell.cosine_by_length, g);
-  if (cell.directed) {
-    WeightedCurvature(cell.turn, before.directors, after.directors, cell.kappa_by_length).add_gradient(cell.inverse, g);
-  }
-  if (cell.twists) add_twist_gradient(cell.turn, cell.inverse, cell.torque_by_length, g);
-  return g;
+  return weighted_gradient(cell, before, after, cell.cosine_by_length, cell.kappa_by_length, cell.torque_by_length);
 }
 
 // d2E = dE/dc d2c + d2E/dc2 dc^2 + dE/dtau d2tau + d2E/dtau2 dtau^2

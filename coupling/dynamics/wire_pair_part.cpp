@@ -382,8 +382,8 @@ void WirePairPart::add_block(const Node& n, const LocalBlock& block, const numer
       }
     }
   }
-  for (int k = 0; has_bristle() && k < 4; ++k)
-    rows[base::at(row_of_bristle + k)] = columns[base::at(column_of_bristle + k)] = bristle_of(n, 0) + k;
+  for (std::size_t k = 0; has_bristle() && k < 4; ++k)
+    rows[row_of_bristle + k] = columns[column_of_bristle + k] = bristle_of(n, 0) + static_cast<int>(k);
   for (std::size_t j = 0; j < columns.size(); ++j) {
     if (columns[j] == none) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -18,10 +18,11 @@ struct Tally {
 
 void tally(const std::vector<double>& abscissa, const std::vector<double>& residual, const std::vector<int>& block,
            Tally& sum) {
-  const auto [low, high] = std::minmax_element(abscissa.begin(), abscissa.end());
-  const double width = (*high - *low) / steps;
+  const auto ends = std::minmax_element(abscissa.begin(), abscissa.end());
+  const double low = *ends.first;
+  const double width = (*ends.second - low) / steps;
   if (!(width > 0.0)) return;
-  const auto bin = [&](double x) { return std::clamp(static_cast<int>((x - *low) / width), 0, steps - 1); };
+  const auto bin = [&](double x) { return std::clamp(static_cast<int>((x - low) / width), 0, steps - 1); };
   for (const int half : {0, 1}) {
     std::vector<double> mean(steps, 0.0), count(steps, 0.0);
     for (std::size_t i = 0; i < residual.size(); ++i) {

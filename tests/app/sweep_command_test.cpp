@@ -1,4 +1,5 @@
 #include "tests/app/command_fixture.hpp"
+#include "tests/support/wire_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,25 +16,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* one_push = R"(schema = "snare-experiment/1"
-title  = "push"
-source = "a test"
-[wire]
-construction       = "solid"
-diameter_mm        = 1.5
-length_mm          = 180.0
-youngs_modulus_GPa = 193.0
-poisson_ratio      = 0.29
-density_kg_m3      = 7930.0
-[mount]
-kind    = "clamped"
-span_mm = 175.0
-[pusher]
-shape     = "cylinder"
-radius_mm = 6.0
-friction  = 0.0
-direction = "outward"
-[[series]]
+const std::string one_push = "schema = \"snare-experiment/1\"\ntitle = \"push\"\nsource = \"a test\"\n" +
+                             test::wire_tables("180.0") + R"([[series]]
 name = "middle"
 contact_position_mm = 87.5
 travel_mm = 0.5
@@ -147,9 +131,9 @@ TEST_F(SweepCommand, AChangedInputIsRefusedAndNothingIsLost) {
   const std::string before = cases("a"), journal = contents("a/cases.journal");
   EXPECT_EQ(run("sweep sweep.toml --out a --set seed=2"), 2);
   EXPECT_THAT(contents("err.txt"), HasSubstr("belongs to another study"));
-  write("one.toml", std::string(one_push) + "instability = \"follow_path\"\n");
+  write("one.toml", one_push + "instability = \"follow_path\"\n");
   EXPECT_EQ(run("sweep sweep.toml --out a"), 2);
-  write("one.toml", std::string("# a comment\n") + one_push);
+  write("one.toml", "# a comment\n" + one_push);
   EXPECT_EQ(run("sweep sweep.toml --out a"), 0) << contents("err.txt");
   EXPECT_EQ(cases("a"), before);
   EXPECT_EQ(contents("a/cases.journal"), journal);

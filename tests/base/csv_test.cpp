@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -29,22 +30,12 @@ class CsvFiles : public test::FolderFixture {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return FolderFixture::path(name).string(); }
   [[nodiscard]] std::string message_of(const std::string& name) const {
-    try {
-      static_cast<void>(read_csv(path(name), columns));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { return read_csv(path(name), columns); });
   }
 };
 
 std::string message_of_text(const std::string& text) {
-  try {
-    static_cast<void>(parse_csv("m.csv", text, columns));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal([&] { return parse_csv("m.csv", text, columns); });
 }
 
 struct Accepted {

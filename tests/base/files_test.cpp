@@ -1,7 +1,7 @@
 #include "base/files.hpp"
 
-#include "base/errors.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -67,12 +67,7 @@ TEST_F(Files, LongOrNamelessFilesAreRefused) {
   write_text(path("a.txt"), "12345");
   EXPECT_EQ(read_text(path("a.txt"), 5), "12345");
   const auto message = [](const std::filesystem::path& name, std::size_t limit) -> std::string {
-    try {
-      static_cast<void>(read_text(name, limit));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { return read_text(name, limit); });
   };
   EXPECT_EQ(message(path("a.txt"), 4), path("a.txt").string() + ": has 5 bytes, must have at most 4");
   EXPECT_EQ(message("", 4), "the name of the file is empty");

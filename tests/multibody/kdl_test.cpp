@@ -69,7 +69,7 @@ TEST(Kdl, AgreesOnChains) {
 
     multibody::DynamicsWorkspace workspace(tree);
     KDL::ChainDynParam parameters(chain, test::to_kdl(plain.gravity));
-    KDL::JntSpaceInertiaMatrix inertia(n);
+    KDL::JntSpaceInertiaMatrix inertia(static_cast<int>(n));
     parameters.JntToMass(q, inertia);
     EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace), inertia.data), 1e-10);
 

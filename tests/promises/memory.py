@@ -17,27 +17,9 @@ import sys
 import tempfile
 import time
 
-HEAD = """schema = "snare-experiment/1"
-title = "large"
-source = "made"
-[wire]
-construction = "solid"
-diameter_mm = 1.5
-length_mm = 175.49
-youngs_modulus_GPa = 193.0
-poisson_ratio = 0.29
-density_kg_m3 = 7930.0
-bending_stiffness_Nm2 = 0.0094
-axial_stiffness_N = 19300.0
-[mount]
-kind = "clamped"
-span_mm = 175.0
-[pusher]
-shape = "cylinder"
-radius_mm = 6.0
-friction = 0.0
-direction = "outward"
-[solver]
+from wire_text import experiment
+
+HEAD = experiment("large", 175.49, "bending_stiffness_Nm2 = 0.0094\naxial_stiffness_N = 19300.0\n") + """[solver]
 elements = 32
 """
 

@@ -18,25 +18,9 @@ import sys
 import tempfile
 import time
 
-EXPERIMENT = """schema = "snare-experiment/1"
-title  = "push"
-source = "a test"
-[wire]
-construction       = "solid"
-diameter_mm        = 1.5
-length_mm          = 180.0
-youngs_modulus_GPa = 193.0
-poisson_ratio      = 0.29
-density_kg_m3      = 7930.0
-[mount]
-kind    = "clamped"
-span_mm = 175.0
-[pusher]
-shape     = "cylinder"
-radius_mm = 6.0
-friction  = 0.0
-direction = "outward"
-[[series]]
+from wire_text import experiment
+
+EXPERIMENT = experiment("push", 180.0) + """[[series]]
 name = "middle"
 contact_position_mm = 87.5
 travel_mm = 1.5

@@ -1,8 +1,8 @@
 #include "scenario/scenario.hpp"
 
-#include "base/errors.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/mesh_files.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -136,9 +136,7 @@ class MotionScenarios : public test::FolderFixture {
     write("every_kind.toml", every_kind);
   }
   [[nodiscard]] NamedMotion read(const std::vector<std::string>& settings) const {
-    std::vector<base::Override> overrides;
-    for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-    return std::get<WireMotions>(read_scenario(path("every_kind.toml"), overrides).content).runs.at(0);
+    return std::get<WireMotions>(read_scenario(path("every_kind.toml"), test::overrides(settings)).content).runs.at(0);
   }
 };
 
@@ -194,7 +192,7 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
 }
 
 TEST_F(MotionScenarios, SayWhatIsWrong) {
-  const std::pair<const char*, const char*> wrong[] = {
+  const test::WrongSetting wrong[] = {
       {"schema=\"snare-scenario/3\"", "must be \"snare-scenario/2\" or \"snare-scenario/1\""},
       {"kind=\"push\"", "kind"},
       {"duration_s=-1", "duration_s = -1, must be > 0"},
@@ -239,27 +237,15 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"shapes[box].unit=\"inch\"", "shapes[box].unit = \"inch\", must be \"mm\" or \"m\""},
       {"gravity.vector_m_s2=[1.0]", "gravity.vector_m_s2"},
   };
-  for (const auto& [setting, message] : wrong) {
-    try {
-      (void)read({setting});
-      ADD_FAILURE() << setting;
-    } catch (const base::InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
-    }
-  }
+  test::expect_refused(wrong, [&](const char* setting) { return read({setting}); });
   // What is wrong with a mesh is said at the shape, with the mesh's own file and triangles.
   coupling::TriangleMesh hole = test::cuboid(8e-3, 6e-3, 4e-3);
   hole.triangles.pop_back();
   test::write_mesh(folder_ / "hole.obj", hole, 1e-3);
-  try {
-    (void)read({"shapes[box].file=\"hole.obj\""});
-    ADD_FAILURE();
-  } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("shapes[box].file = \"hole.obj\""));
-    EXPECT_THAT(
-        error.what(),
-        HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
-  }
+  const std::string said = test::refusal([&] { return read({"shapes[box].file=\"hole.obj\""}); });
+  EXPECT_THAT(said, HasSubstr("shapes[box].file = \"hole.obj\""));
+  EXPECT_THAT(
+      said, HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
 }
 
 const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";
@@ -283,7 +269,7 @@ TEST(WirePairScenarios, ContactsNameTheirWires) {
 }
 
 TEST(WirePairScenarios, SayWhatIsWrong) {
-  const std::pair<const char*, const char*> wrong[] = {
+  const test::WrongSetting wrong[] = {
       {"other_wire=\"lowest\"",
        "other_wire = \"lowest\", must be the name of a wire: \"upper\", \"middle\", \"lower\""},
       {"other_wire=\"middle\"", "other_wire = \"middle\", must not be the wire itself"},
@@ -293,16 +279,9 @@ TEST(WirePairScenarios, SayWhatIsWrong) {
       {"foundation.modulus_N_m2=-1", "foundation.modulus_N_m2 = -1, must be >= 0"},
       {"body=\"ball\"", "body = \"ball\", unknown key"},
   };
-  for (const auto& [setting, message] : wrong) {
-    try {
-      const std::string text = setting;
-      const std::size_t equals = text.find('=');
-      (void)read_scenario(net, {{"contacts[middle on lower]." + text.substr(0, equals), text.substr(equals + 1)}});
-      ADD_FAILURE() << setting;
-    } catch (const base::InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
-    }
-  }
+  test::expect_refused(wrong, [](const std::string& setting) {
+    return read_scenario(net, test::overrides({"contacts[middle on lower]." + setting}));
+  });
 }
 
 TEST(ShippedScenarios, GrappleShaftIsReadAndKnownAsAList) {

@@ -1,10 +1,10 @@
 // Scenarios in which laws stand for wires, bodies touch and loads act.
 
-#include "base/errors.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "scenario/outcome.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
-using ::testing::HasSubstr;
 
 const fs::path shipped = fs::path(SNARE_SOURCE_DIR) / "data/scenarios";
 
@@ -109,9 +108,7 @@ class CaptureLaws : public test::FolderFixture {
     return read_file(folder_ / "case.toml", settings);
   }
   [[nodiscard]] static WireMotions read_file(const fs::path& file, const std::vector<std::string>& settings) {
-    std::vector<base::Override> overrides;
-    for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-    return std::get<WireMotions>(read_scenario(file, overrides).content);
+    return std::get<WireMotions>(read_scenario(file, test::overrides(settings)).content);
   }
 };
 
@@ -145,7 +142,7 @@ TEST_F(CaptureLaws, PutEverythingWhereItBelongs) {
 }
 
 TEST_F(CaptureLaws, SayWhatIsWrong) {
-  const std::pair<const char*, const char*> settings[] = {
+  const test::WrongSetting wrong[] = {
       {"snares[snare].wire.model=\"spring\"",
        "must be \"full\", \"quasi_static\", \"stretched\", \"rod\" or \"rod_linear\""},
       {"snares[snare].wire.rod.half_length_mm=90", "must be >= half_span_mm"},
@@ -174,14 +171,7 @@ TEST_F(CaptureLaws, SayWhatIsWrong) {
       {"loads[thruster].file=\"none.csv\"", "cannot stand beside file, which says all"},
       {"loads[thruster].pulses=0", "loads[thruster].pulses = 0"},
   };
-  for (const auto& [setting, message] : settings) {
-    try {
-      (void)read({setting});
-      ADD_FAILURE() << setting;
-    } catch (const base::InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message)) << setting;
-    }
-  }
+  test::expect_refused(wrong, [&](const char* setting) { return read({setting}); });
 }
 
 // A thruster's table and its pulses are the same load, and nothing of it is lost between the steps: the momentum is the integral.

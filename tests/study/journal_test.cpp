@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -36,12 +37,8 @@ TEST_F(JournalTest, KeepsResultsOverAnEnd) {
 
 TEST_F(JournalTest, RefusesAnotherStudy) {
   { Journal journal(file(), "study 1", 10); }
-  try {
-    const Journal journal(file(), "study 2", 10);
-    FAIL() << "accepted";
-  } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("belongs to another study"));
-  }
+  EXPECT_THAT(test::refusal([&] { return Journal(file(), "study 2", 10); }),
+              testing::HasSubstr("belongs to another study"));
   EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 0U);  // the file is as it was
 }
 

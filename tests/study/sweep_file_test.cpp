@@ -1,9 +1,9 @@
 #include "study/sweep_file.hpp"
 
-#include "base/errors.hpp"
 #include "study/collect.hpp"
 #include "study/trace_numbers.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,12 +21,7 @@ class SweepFileTest : public test::FolderFixture {
  protected:
   [[nodiscard]] SweepFile read(const std::string& text) const { return read_sweep_file(write("sweep.toml", text)); }
   [[nodiscard]] std::string problems(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const base::InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { return read(text); });
   }
   static constexpr const char* head = "schema = \"snare-sweep/1\"\ncase = \"x.toml\"\n";
   static constexpr const char* tail = "[collect]\nforce = \"series[s].largest_force_N\"\n";

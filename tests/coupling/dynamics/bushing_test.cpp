@@ -20,6 +20,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::block;
 using test::body_of;
+using test::fine;
 
 MotionBushing bushing_between(MotionCarrier first, MotionCarrier second) {
   MotionBushing b;
@@ -30,26 +31,8 @@ MotionBushing bushing_between(MotionCarrier first, MotionCarrier second) {
   return b;
 }
 
-MotionOptions fine(double duration) {
-  MotionOptions o;
-  o.duration = duration;
-  o.output_interval = 1e-3;
-  o.relative_tolerance = 1e-9;
-  o.body_position_tolerance = o.angle_tolerance = 1e-11;
-  o.body_velocity_tolerance = o.spin_tolerance = 1e-9;
-  o.max_order = 5;
-  return o;
-}
-
 TEST(Bushing, JacobianMatchesDifferences) {
-  multibody::ElasticArm model;
-  model.tree.add_moving(
-      0, "link", multibody::JointKind::revolute, Vector3d(1.0, 2.0, 0.5), {},
-      multibody::SpatialInertia::about_centre(4.0, {0.2, 0.1, 0.0}, 0.2 * Eigen::Matrix3d::Identity()));
-  multibody::ElasticJoint joint;
-  joint.motor_inertia = 1.0;
-  joint.spring = multibody::DeflectionLaw::linear(20.0, 1.0);
-  model.joints.push_back(joint);
+  const multibody::ElasticArm model = test::one_joint("link", Vector3d(1.0, 2.0, 0.5));
   multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
   const MotionOptions options;
   BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
@@ -102,7 +85,7 @@ TEST(Bushing, FrequenciesAreThoseOfTheClosedForm) {
   clamped.bushings = {bushing_between({}, body_of(0))};
   clamped.bodies[0].start.spin = {1e-3, 0.0, 0.0};
   const std::vector<double> turns =
-      upward_zeros(clamped, fine(5.0), [](const MotionSample& s) { return s.bodies[0].orientation.x(); });
+      upward_zeros(clamped, fine(5.0, 1e-3), [](const MotionSample& s) { return s.bodies[0].orientation.x(); });
   ASSERT_GT(turns.size(), 5u);
   const double period = (turns.back() - turns.front()) / static_cast<double>(turns.size() - 1);
   EXPECT_NEAR(period, 2.0 * std::numbers::pi * std::sqrt(0.3 / 40.0), 1e-5 * period);
@@ -112,7 +95,7 @@ TEST(Bushing, FrequenciesAreThoseOfTheClosedForm) {
   free.bushings = {bushing_between(body_of(0), body_of(1))};
   free.bodies[0].start.velocity = {0.0, 0.01, 0.0};
   const std::vector<double> sways =
-      upward_zeros(free, fine(2.0), [](const MotionSample& s) { return s.bushings[0].shift.y(); });
+      upward_zeros(free, fine(2.0, 1e-3), [](const MotionSample& s) { return s.bushings[0].shift.y(); });
   ASSERT_GT(sways.size(), 5u);
   const double sway = (sways.back() - sways.front()) / static_cast<double>(sways.size() - 1);
   EXPECT_NEAR(sway, 2.0 * std::numbers::pi / std::sqrt(3000.0 * (1.0 / 3.0 + 1.0 / 5.0)), 1e-5 * sway);
@@ -127,7 +110,7 @@ TEST(Bushing, KeepsEnergyAndMomentumInLargeTurns) {
   motion.bodies[0].start.spin = {12.0, -8.0, 5.0};
   motion.bodies[0].start.velocity = {0.5, 0.2, -0.3};
   double largest_turn = 0.0, start = 0.0;
-  const MotionResult result = simulate(motion, fine(2.0), [&](const MotionSample& s) {
+  const MotionResult result = simulate(motion, fine(2.0, 1e-3), [&](const MotionSample& s) {
     if (s.time == 0.0) start = s.energy.kinetic;
     largest_turn = std::max(largest_turn, s.bushings[0].turn.norm());
     return false;
@@ -149,7 +132,7 @@ TEST(Bushing, DampsAsTheClosedForm) {
   motion.bodies[0].start.velocity = {0.1, 0.0, 0.0};
   const double omega = std::sqrt(2000.0 / 3.0), zeta = 8.0 / (2.0 * std::sqrt(2000.0 * 3.0));
   double worst = 0.0;
-  const MotionResult result = simulate(motion, fine(1.0), [&](const MotionSample& s) {
+  const MotionResult result = simulate(motion, fine(1.0, 1e-3), [&](const MotionSample& s) {
     const double w = omega * std::sqrt(1.0 - zeta * zeta);
     worst = std::max(
         worst, std::abs(s.bodies[0].position.x() - 0.1 / w * std::exp(-zeta * omega * s.time) * std::sin(w * s.time)));

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::block;
 using test::body_of;
+using test::fine;
 
 /// Wire of a ring of a radius, from azimuth 0 to theta, about a shaft along z that body 0 carries in the middle.
 LawWire ring_wire(double radius, double theta, double length) {
@@ -78,14 +79,7 @@ TEST(LawWire, RingHasTheClosedForm) {
 }
 
 TEST(LawWire, JacobianMatchesDifferences) {
-  multibody::ElasticArm model;
-  model.tree.add_moving(
-      0, "ring", multibody::JointKind::revolute, Vector3d(0.1, 0.05, 1.0).normalized(), {},
-      multibody::SpatialInertia::about_centre(4.0, {0.2, 0.1, 0.0}, 0.2 * Eigen::Matrix3d::Identity()));
-  multibody::ElasticJoint joint;
-  joint.motor_inertia = 1.0;
-  joint.spring = multibody::DeflectionLaw::linear(20.0, 1.0);
-  model.joints.push_back(joint);
+  const multibody::ElasticArm model = test::one_joint("ring", Vector3d(0.1, 0.05, 1.0).normalized());
   multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
   const MotionOptions options;
   BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
@@ -159,23 +153,12 @@ Motion thrown(LawWire::Kind kind) {
   return motion;
 }
 
-MotionOptions fine(double duration) {
-  MotionOptions o;
-  o.duration = duration;
-  o.output_interval = 1e-2;
-  o.relative_tolerance = 1e-9;
-  o.body_position_tolerance = o.angle_tolerance = 1e-11;
-  o.body_velocity_tolerance = o.spin_tolerance = 1e-9;
-  o.max_order = 5;
-  return o;
-}
-
 // Without friction and damping nothing is lost, whatever the shaft does between the strings; momenta stay. Tolerances as those of the
 // integration.
 TEST(LawWire, StringsKeepEnergyAndMomentum) {
   const Motion motion = thrown(LawWire::Kind::stretched);
   double highest = 0.0;
-  const MotionResult r = simulate(motion, fine(3.0), [&](const MotionSample& s) {
+  const MotionResult r = simulate(motion, fine(3.0, 1e-2), [&](const MotionSample& s) {
     for (const double tension : s.law_tensions) highest = std::max(highest, tension);
     return false;
   });
@@ -200,7 +183,7 @@ TEST(LawWire, LossesCloseTheBalance) {
       w.friction.dynamic_coefficient = 0.1;
       w.friction.static_speed = 0.01;
     }
-    const MotionResult r = simulate(motion, fine(3.0), {});
+    const MotionResult r = simulate(motion, fine(3.0, 1e-2), {});
     ASSERT_TRUE(r.report.usable()) << r.report.message;
     const double energy = r.energy.kinetic + r.energy.strain;
     EXPECT_NEAR(r.energy.integrator / energy, 0.0, 1e-4);  // falls with the tolerances

@@ -1,8 +1,8 @@
 // Wires that meet each other in motion: balances, statics, friction, several at a time.
 
-#include "base/errors.hpp"
 #include "coupling/contact/revolved_solids.hpp"
 #include "tests/support/crossed_wires.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/same_bits.hpp"
 
 #include <gmock/gmock.h>
@@ -254,25 +254,17 @@ TEST(WirePairTouch, NoWireIsPassedByHoweverFast) {
 
 TEST(WirePairTouch, AnOverlapAtTheStartIsRefused) {
   const Motion motion = crossed_wires(1.0, -1e-4, 8);
-  try {
-    (void)simulate(motion, {});
-    FAIL();
-  } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("pair.gap = -"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("must be >= 0 m at the start"));
-  }
+  const std::string said = test::refusal([&] { return simulate(motion, {}); });
+  EXPECT_THAT(said, testing::HasSubstr("pair.gap = -"));
+  EXPECT_THAT(said, testing::HasSubstr("must be >= 0 m at the start"));
   Motion wrong = crossed_wires(1.0, 1e-4, 8);
   wrong.wire_pairs[0].wires = {1, 1};
   wrong.wire_pairs[0].radii = {0.0, 1e-3};
   wrong.wire_pairs[0].foundation.damping = -1.0;
-  try {
-    (void)simulate(wrong, {});
-    FAIL();
-  } catch (const base::InputError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("pair.wires = 1, must be two different wires"),
-                                             testing::HasSubstr("pair.radii = 0, must be > 0"),
-                                             testing::HasSubstr("pair.foundation.damping = -1, must be >= 0")));
-  }
+  EXPECT_THAT(test::refusal([&] { return simulate(wrong, {}); }),
+              testing::AllOf(testing::HasSubstr("pair.wires = 1, must be two different wires"),
+                             testing::HasSubstr("pair.radii = 0, must be > 0"),
+                             testing::HasSubstr("pair.foundation.damping = -1, must be >= 0")));
 }
 
 TEST(WirePairState, GoingOnFromACheckpointGivesTheSameBits) {

@@ -18,7 +18,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using numerics::DaePoint;
 using test::crossed_wires;
 
 constexpr double degree = std::numbers::pi / 180.0;

@@ -4,6 +4,7 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/experiment.hpp"
 #include "tests/identification/valid_experiment.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +14,7 @@ namespace snare::identification {
 namespace {
 
 std::string message_of(const std::string& text) {
-  try {
-    static_cast<void>(parse_experiment("x.toml", text, parameters()));
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal([&] { return parse_experiment("x.toml", text, parameters()); });
 }
 
 struct WrongFile {

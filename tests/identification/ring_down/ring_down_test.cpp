@@ -2,10 +2,10 @@
 
 #include "identification/ring_down/mode_match.hpp"
 
-#include "base/errors.hpp"
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/refusal.hpp"
 #include "wire/rod_constants.hpp"
 #include "wire/rod_modes.hpp"
 
@@ -159,7 +159,7 @@ wire::WireSpecification steel_wire(double length) {
 }
 
 /// Displacement of a vertex along y of the full wire, damped, from its rest with the given velocities.
-RingDown full_wire(wire::RodInMotion rod, const Eigen::Matrix3Xd& velocities, int vertex, double duration,
+RingDown full_wire(const wire::RodInMotion& rod, const Eigen::Matrix3Xd& velocities, int vertex, double duration,
                    double tolerance) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), velocities});
@@ -260,12 +260,7 @@ class RingDownFileTest : public test::FolderFixture {
     return rows;
   }
   std::string message_of(const std::string& text) {
-    try {
-      static_cast<void>(read_ring_down_file(write("x.toml", text)));
-    } catch (const base::InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { return read_ring_down_file(write("x.toml", text)); });
   }
 };
 

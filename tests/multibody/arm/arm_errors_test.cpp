@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "multibody/arm/arm_file.hpp"
 #include "tests/multibody/valid_arm.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,12 +24,7 @@ struct WrongFile {
 };
 
 std::string message_of(const auto& read) {
-  try {
-    read();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal(read);
 }
 
 class WrongUrdf : public testing::TestWithParam<WrongFile> {};
