@@ -214,7 +214,7 @@ std::vector<MotorJoint> read_joints(const Composition& c, const TomlTable& table
   const bool alike =
       std::all_of(found.begin(), found.end(), [&](const MotorJoint& j) { return j.slides == found[0].slides; });
   const std::string mode = table.text_or("mode", "");
-  if (!alike && (mode == "servo" || mode == "course"))
+  if (!alike && (mode == "servo" || mode == "course" || mode == "torque"))
     table.fail("joint", "must not name joints that turn and joints that slide at once");
   return found;
 }

@@ -3,6 +3,7 @@
 #include "base/files.hpp"
 #include "base/toml_reader.hpp"
 #include "scenario/composed_scenario.hpp"
+#include "scenario/include.hpp"
 
 #include <charconv>
 #include <utility>
@@ -80,8 +81,8 @@ DeclaredScenario declared_scenario(const RecordSet& set) {
     return base::parse_toml(file.string(), base::read_text(file, base::TomlDocument::size_limit));
   };
   DeclaredScenario declared;
-  declared.scenario = parse(set.scenario);
   std::vector<base::Override> own = set.set;
+  declared.scenario = scenario::read_with_parts(set.scenario, own);
   const scenario::ArmOverrides of_arms = scenario::take_arm_overrides(own);
   std::vector<base::InputProblem> problems;
   for (const base::Override& one : own) base::apply_override(declared.scenario, one, problems);

@@ -2,9 +2,12 @@
 
 #include "tests/app/command_fixture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace snare::app {
 namespace {
@@ -47,6 +50,36 @@ TEST_F(SimulateCommand, AirTable) {
   EXPECT_NE(contents("out/report.html").find("class=\"animation\""), std::string::npos);
   EXPECT_NE(contents("out/full wire.pvd").find("full wire_00000.vtp"), std::string::npos);
   EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
+}
+
+// What sensors read stands in telemetry.csv; the summary has its least, largest and last, and what the joints bore.
+TEST_F(SimulateCommand, TellsWhatSensorsReadAndJointsBore) {
+  ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.5"), 0) << contents("log.txt");
+  const json s = summary();
+  std::istringstream telemetry(contents("out/telemetry.csv"));
+  std::string line;
+  std::getline(telemetry, line);
+  std::vector<std::string> columns;
+  std::istringstream names(line);
+  while (std::getline(names, line, ',')) columns.push_back(line);
+  const auto column =
+      static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "pull_force_N") - columns.begin());
+  ASSERT_LT(column, columns.size());
+  double least = 1e300, largest = -1e300, last = 0.0;
+  while (std::getline(telemetry, line)) {
+    std::istringstream cells(line);
+    for (std::size_t k = 0; k <= column; ++k) std::getline(cells, line, ',');
+    last = std::stod(line);
+    least = std::min(least, last);
+    largest = std::max(largest, last);
+  }
+  const json& read = s["sensors"]["pull_force_N"];
+  EXPECT_DOUBLE_EQ(read["least"].get<double>(), least);
+  EXPECT_DOUBLE_EQ(read["largest"].get<double>(), largest);
+  EXPECT_DOUBLE_EQ(read["last"].get<double>(), last);
+  EXPECT_NEAR(s["outcome"]["peak_torque_Nm"]["snare::carriage"].get<double>(), std::max(largest, -least),
+              1e-9 * largest);
+  EXPECT_GT(s["outcome"]["peak_torque_Nm"]["rms::shoulder_pitch"].get<double>(), 0.0);
 }
 
 TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
