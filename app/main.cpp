@@ -163,7 +163,7 @@ int run(int argc, char** argv) {
     add_common(*p.command, p.options, std::string("out/") + verb.name);
     if (verb.run == snare::app::run_sweep)
       p.command->add_option("--case", p.options.only_case, "run this case alone, as its verb would")
-          ->check(CLI::PositiveNumber);
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}, "CASE from 1 to 1e12"));
     p.command->footer(std::string("Example: ") + verb.example);
   }
 

@@ -31,7 +31,8 @@ constexpr std::size_t worst_of_each = 5;
 /// The finished cases in order.
 template <class Use>
 void for_each_case(const study::Journal& journal, std::uint64_t cases, const Use& use) {
-  for (std::uint64_t index = 0; index < cases; ++index) {
+  const std::uint64_t end = std::min(cases, journal.end());
+  for (std::uint64_t index = 0; index < end; ++index) {
     const std::optional<std::string> line = journal.result(index);
     if (!line) continue;
     if (const std::optional<CaseRecord> record = study::record_of(*line)) use(index, *record);

@@ -150,6 +150,12 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
   }
   coupling::MotionArm& arm = c_.motion.arms[at(index)];
   multibody::Tree& tree = arm.arm.tree;
+  // Of another snare of its name, which has been told, or of a link of the arm.
+  for (const char* own : {"::housing", "::carriage", "::fixed", "::turning"}) {
+    if (tree.find_frame(item.name + own) < 0) continue;
+    item.table.fail("name", fmt::format("must be another: the frame {}{} is there already", item.name, own));
+    return;
+  }
   multibody::Kinematics kinematics(tree);
   multibody::place(tree, arm.start.q.size() > 0 ? arm.start.q : Eigen::VectorXd(0), kinematics);
   const Pose X_FS = multibody::frame_pose(tree, kinematics, frame).inverse() * X_WS;

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cerrno>
@@ -125,6 +126,7 @@ void Journal::note(std::uint64_t index, std::uint64_t offset) {
   if (index >= offsets_.size()) offsets_.resize(index + 1);
   if (offsets_[index] == 0) ++finished_;
   offsets_[index] = offset + 1;
+  end_ = std::max(end_, index + 1);
 }
 
 void Journal::write(std::string_view text) {
@@ -171,6 +173,11 @@ bool Journal::has(std::uint64_t index) const {
 std::uint64_t Journal::finished() const {
   const std::scoped_lock lock(mutex_);
   return finished_;
+}
+
+std::uint64_t Journal::end() const {
+  const std::scoped_lock lock(mutex_);
+  return end_;
 }
 
 std::optional<std::string> Journal::result(std::uint64_t index) const {

@@ -33,6 +33,8 @@ class Journal {
   /// Result of a case; nothing where there is none. Throws std::system_error.
   [[nodiscard]] std::optional<std::string> result(std::uint64_t index) const;
   [[nodiscard]] std::uint64_t finished() const;
+  /// One past the last case that is there: of a thousand million cases that are asked for few may be.
+  [[nodiscard]] std::uint64_t end() const;
   /// Lines that were damaged when the file was opened.
   [[nodiscard]] std::uint64_t damaged() const noexcept { return damaged_; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
@@ -49,6 +51,7 @@ class Journal {
   std::uint64_t limit_ = 0;             // cases there may be; 0: any
   std::uint64_t size_ = 0;              // of the file's whole lines [byte]
   std::uint64_t finished_ = 0;
+  std::uint64_t end_ = 0;
   std::uint64_t damaged_ = 0;
   double flushed_ = 0.0;  // when [s]
 };

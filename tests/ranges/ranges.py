@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every number of every file at the ends of its range and beyond, alone and together.
 
-    ranges.py SNARE [--cases N] [--tenth K] [--jobs J] [--results FILE] [--journal FILE] [--seconds S] [--seed N] [--list]
+    ranges.py SNARE [--cases N] [--part FIRST EVERY] [--jobs J] [--results FILE] [--journal FILE] [--seconds S] [--seed N] [--list]
 
 The keys come from the readers themselves: a key that does not exist is answered with those that do, a word in place of a number
 with what is allowed. Each key gets its ends, the numbers just beyond them, zero, the smallest and the largest doubles, not a number
@@ -10,7 +10,7 @@ file stand together in at least one case, ROW keys a case, the others as in the 
 status 0, 2 or 3, say why where it is not 0, write no number that is none, and leave no half file and no lock. Where a key asks for
 work (a million points, a tolerance of 1e-100), and a motion with several numbers at their ends, it may take longer: after 15 s it is
 told to end and must do so, with status 3: "long".
-`--tenth 3` runs every tenth case from the third on. With `--journal` every case that has ended stands in FILE, a line each, and is not
+`--part 3 15` runs every fifteenth case from the third on. With `--journal` every case that has ended stands in FILE, a line each, and is not
 run again. Prints what fails and a count; appends the count as a line of JSON to the results; exits 1 where a case fails.
 """
 
@@ -59,6 +59,7 @@ BASES = {
     "sweep": ("sweep", "tests/ranges/sweep.toml", []),
     "arm": ("arm show", "data/arms/jemrms_like.toml", []),
 }
+DRIVES = re.compile(r"force_N|bending_time_s|axial_time_s")
 NOWHERE = "zzzzzzzzzzzzzzzzzzzzzzzzzzzzz"
 
 Key = collections.namedtuple("Key", "base address kind low high open count")
@@ -252,8 +253,9 @@ def run(snare, case):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         begin = time.monotonic()
-        # Ends of several numbers together may ask a motion for as many steps as it likes.
-        work = any(is_work(base, s) for s in sets) or (BASES[base][0] == "simulate" and len(sets) > 1)
+        # Ends of several numbers together, or of what drives and damps, may ask a motion for as many steps as it likes.
+        moves = BASES[base][0] == "simulate"
+        work = any(is_work(base, s) or (moves and DRIVES.search(s)) for s in sets) or (moves and len(sets) > 1)
         done = subprocess.Popen(command(snare, base, sets, out), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         long = False
         try:
@@ -292,7 +294,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("snare")
     parser.add_argument("--cases", type=int, default=1000000)
-    parser.add_argument("--tenth", type=int)
+    parser.add_argument("--part", type=int, nargs=2, metavar=("FIRST", "EVERY"))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--results")
     parser.add_argument("--journal")
@@ -316,8 +318,8 @@ def main():
     random.Random(0).shuffle(cases)
     print(f"{len(keys)} keys, {alone} cases of one, {len(rows)} of {ROW} that cover {pairs} pairs", flush=True)
     cases = cases[:options.cases]
-    if options.tenth is not None:
-        cases = cases[options.tenth::10]
+    if options.part:
+        cases = cases[options.part[0]::options.part[1]]
     begin = time.monotonic()
     statuses, slowest, failures, ran = collections.Counter(), (0.0, ""), [], 0
     spent = collections.Counter()

@@ -247,6 +247,21 @@ TEST_F(Compositions, ReadListsOfTheOlderSchema) {
   EXPECT_EQ(older.runs.front().options.duration, newer.runs.front().options.duration);
 }
 
+// The frames of the second one are there already.
+TEST_F(Compositions, TwoSnaresOfOneNameAreWrongInput) {
+  const std::size_t begin = one_of_everything.find("[[snares]]");
+  const std::string snare = one_of_everything.substr(begin, one_of_everything.find("[[bodies]]") - begin);
+  EXPECT_THROW(read({}, one_of_everything + snare), base::InputError);
+}
+
+// A mass whose reciprocal is no number.
+TEST_F(Compositions, AStartThatIsNotFiniteIsRefused) {
+  const WireMotions all = read({"bodies[visitor].mass_kg=5e-324"});
+  EXPECT_THROW(static_cast<void>(coupling::simulate(all.runs.front().motion, all.runs.front().options,
+                                                    [](const coupling::MotionSample&) { return false; })),
+               base::InputError);
+}
+
 TEST_F(Compositions, SayWhatIsWrong) {
   const test::WrongSetting wrong[] = {
       {"kind=\"contact\"", "belongs to older files: take the line out"},

@@ -29,6 +29,7 @@ TEST_F(JournalTest, KeepsResultsOverAnEnd) {
   }
   const Journal journal(file(), "study 1", 10);
   EXPECT_EQ(journal.finished(), 2U);
+  EXPECT_EQ(journal.end(), 8U);
   EXPECT_EQ(journal.result(7), "[1,2]");
   EXPECT_EQ(journal.result(2), "x y");
   EXPECT_FALSE(journal.has(3));
