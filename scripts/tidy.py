@@ -107,6 +107,8 @@ class Joined:
             if pathlib.Path(name) == self.path:
                 file, line = self.owner(line)
                 name = str(file)
+            elif pathlib.Path(name).is_relative_to(REPOSITORY / "build"):  # generated
+                continue
             found.append((f"{name.removeprefix(str(REPOSITORY) + '/')}:{line}:{column}", text))
         return found
 

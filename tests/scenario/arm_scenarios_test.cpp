@@ -38,7 +38,7 @@ std::vector<ReferenceSwing> reference_swings(double inertia, double start, doubl
   };
   std::vector<ReferenceSwing> found;
   double d = start, v = 0.0, zero = -1.0, peak = 0.0;
-  for (long i = 0; i * h < end; ++i) {
+  for (int i = 0; i * h < end; ++i) {
     const double a1 = acceleration(d, v), v2 = v + 0.5 * h * a1, a2 = acceleration(d + 0.5 * h * v, v2);
     const double v3 = v + 0.5 * h * a2, a3 = acceleration(d + 0.5 * h * v2, v3), v4 = v + h * a3;
     const double a4 = acceleration(d + h * v3, v4), before = d;

@@ -1,4 +1,5 @@
-// Those rows of the motion that take seconds, not minutes, under the sanitizers; `snare validate` has all.
+// Those rows of the motion that take seconds, not minutes, under the sanitizers; the test SlowRows runs `snare validate`, which has
+// all.
 
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
@@ -13,15 +14,8 @@ namespace {
 TEST(SlowMotionRows, AxialWavesRunAtTheirSpeed) {
   expect_within(axial_wave_rows());
 }
-TEST(SlowMotionRows, ChainAndPendulumSwingAsPublished) {
-  expect_within(gravity_rows());
-}
 TEST(SlowMotionRows, ASlowPushEndsInTheStaticCurve) {
   expect_within(slow_push_rows());
-}
-
-TEST(SlowMotionRows, BalancesClose) {
-  expect_within(balance_rows());
 }
 TEST(SlowMotionRows, ForceAndImpulseConvergeWithTheTolerance) {
   expect_within(tolerance_rows());
@@ -31,9 +25,6 @@ TEST(SlowMotionRows, ASlowPushWithFrictionFollowsTheStaticLoop) {
 }
 TEST(SlowMotionRows, ASlowPushSnapsFromBranchToBranch) {
   expect_within(snap_through_rows());
-}
-TEST(SlowMotionRows, AFoldedChainFallsAsPublished) {
-  expect_within(folded_chain_rows());
 }
 
 }  // namespace

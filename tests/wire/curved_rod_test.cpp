@@ -112,10 +112,10 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
   }
   const VectorXd y = d.y;
   const numerics::SparseMatrix& sparse = d.system.jacobian({0.0, y, d.rate}, 0.0);
-  const auto size = static_cast<Eigen::Index>(unknown.size());
+  const auto size = static_cast<int>(unknown.size());
   Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index a = 0; a < size; ++a) {
-    for (Eigen::Index b = 0; b < size; ++b) {
+  for (int a = 0; a < size; ++a) {
+    for (int b = 0; b < size; ++b) {
       const int slot = sparse.slot(balance[base::at(a)], unknown[base::at(b)]);
       if (slot >= 0) analytic(a, b) = sparse.value[base::at(slot)];
     }
@@ -123,9 +123,9 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
   EXPECT_LT((analytic - analytic.transpose()).norm(), 1e-12 * analytic.norm());
   const auto gradient = [&](const VectorXd& s) {
     VectorXd moved = y, rows(y.size()), g(size);
-    for (Eigen::Index a = 0; a < size; ++a) moved[unknown[base::at(a)]] += s[a];
+    for (int a = 0; a < size; ++a) moved[unknown[base::at(a)]] += s[a];
     d.system.residual({0.0, moved, d.rate}, rows);
-    for (Eigen::Index a = 0; a < size; ++a) g[a] = rows[balance[base::at(a)]];
+    for (int a = 0; a < size; ++a) g[a] = rows[balance[base::at(a)]];
     return g;
   };
   const test::DerivativeError error = test::compare_symmetric_part(gradient, VectorXd::Zero(size), analytic, 1e-2);
@@ -150,10 +150,10 @@ TEST(CurvedRod, DampedJacobianMatchesDifferencesInThePlane) {
       in_plane.insert(in_plane.end(), {first, first + 1});
     in_plane.push_back(d.part.model().curvature_of(i));
   }
-  const auto size = static_cast<Eigen::Index>(in_plane.size());
+  const auto size = static_cast<int>(in_plane.size());
   const numerics::SparseMatrix& sparse = d.system.jacobian({0.0, y, d.rate}, c);
   Eigen::MatrixXd analytic(size, size);
-  for (Eigen::Index j = 0; j < size; ++j)
+  for (int j = 0; j < size; ++j)
     analytic.col(j) = (sparse * VectorXd(VectorXd::Unit(y.size(), in_plane[base::at(j)])))(in_plane);
   const auto f = [&](const VectorXd& s) {
     VectorXd rows(y.size()), moved = y, moved_rate = d.rate;
