@@ -210,7 +210,7 @@ TEST_F(DistilCommand, DampingIsDistilledFromImpacts) {
 TEST_F(DistilCommand, WrongInputWritesNothing) {
   EXPECT_EQ(run("distil w.toml --out o --set ranges.travel_mm=-1 --set table.tolerance=3"), 2);
   const std::string log = contents("err.txt");
-  EXPECT_NE(log.find("ranges.travel_mm = -1, must be > 0 and <= 1000"), std::string::npos) << log;
+  EXPECT_NE(log.find("ranges.travel_mm = -1, must be >= 1e-06 and <= 1000"), std::string::npos) << log;
   EXPECT_NE(log.find("table.tolerance = 3"), std::string::npos) << log;
   EXPECT_FALSE(fs::exists(folder_ / "o"));
   EXPECT_EQ(run("compare missing.toml --out o"), 2);

@@ -32,6 +32,7 @@ PAGES = {
     "compare": (["compare", "examples/push.toml"], 4),
     "compare_motions": (["compare", "data/scenarios/snare_on_pin.toml"], 0),
     "simulate": (["simulate", "data/scenarios/snare_on_pin.toml"], 2),
+    "simulate_capture": (["simulate", "data/scenarios/ssrms_htv_capture.toml", "--set", 'snares[snare].wire.model="stretched"'], 2),
     "simulate_probe": (["simulate", "data/scenarios/air_table.toml", "--set", "duration_s=0.02"], 2),
     "simulate_arm": (["simulate", "data/scenarios/jemrms_step.toml"], 2),
     "ringdown": (["ringdown", "data/experiments/ringdown.toml"], 1),
