@@ -17,6 +17,7 @@ namespace bm = boost::math;
 
 double chi_square_tail(double x, double dof) {
   if (!(x > 0.0)) return 1.0;
+  if (std::isinf(x)) return 0.0;
   return bm::cdf(bm::complement(bm::chi_squared(dof), x));
 }
 

@@ -18,6 +18,9 @@ using base::TomlTable;
 
 namespace {
 
+/// Of standard deviations, in the unit of their column: far below it their squares are zero.
+constexpr Range sigmas{1e-30, 1e30, true};
+
 constexpr std::string_view to_scenario = "scenario.";
 
 /// The entries of a table whose keys the user chose, by the raw tree: the reader knows fixed keys only.
@@ -92,9 +95,9 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
     channel.sensor = named.text(e.key);
     channel.fitted = std::find(watched.begin(), watched.end(), e.key) == watched.end();
     if (one_sigma)
-      channel.sigma = table.optional_number("sigma", Range::above(0.0));
+      channel.sigma = table.optional_number("sigma", sigmas);
     else if (table.has("sigma"))
-      channel.sigma = table.table("sigma").optional_number(e.key, Range::above(0.0));
+      channel.sigma = table.table("sigma").optional_number(e.key, sigmas);
     csv.columns.emplace_back(e.key,
                              table.has("scale") ? number_by_column(table, "scale", e.key, 1.0, Range::finite()) : 1.0);
     record.channels.push_back(std::move(channel));

@@ -32,12 +32,13 @@ FLAGS = ["-std=c++20", "-g", "-O1", "-fsanitize=fuzzer-no-link,address,undefined
          "-isystem", "/usr/include/eigen3"]
 MORE_FLAGS = ["-isystem", "/usr/include/suitesparse", "-DEIGEN_DONT_PARALLELIZE", "-DFMT_SHARED", "-DTOML_HEADER_ONLY=0",
               "-DTOML_SHARED_LIB=1", f'-DSNARE_SOURCE_DIR="{ROOT}"']
-LIBRARIES = ["-lfmt", "-lurdfdom_model", "-lconsole_bridge", "-ltinyxml"]
+CACHE = [tool for tool in [shutil.which("ccache")] if tool]
+LIBRARIES = ["-lfmt", "-ltomlplusplus", "-lurdfdom_model", "-lconsole_bridge", "-ltinyxml"]
 
 
 # The readers of files that name others; what they need beside is linked as it is.
 FILE_SOURCES = ["tests/fuzz/files_libfuzzer.cpp", "base/csv.cpp", "base/archive.cpp", "base/toml_tree.cpp", "base/toml_reader.cpp",
-                "scenario/scenario.cpp", "scenario/composed_scenario.cpp", "scenario/composition.cpp", "scenario/phase_reader.cpp",
+                "scenario/scenario.cpp", "scenario/include.cpp", "scenario/composed_scenario.cpp", "scenario/composition.cpp", "scenario/phase_reader.cpp",
                 "scenario/sensor_reader.cpp", "scenario/snare_items.cpp", "scenario/distilled_law.cpp",
                 "identification/records/record_file.cpp", "study/sweep_file.cpp", "study/journal.cpp", "study/case_record.cpp",
                 "study/collect.cpp", "app/motion_checkpoint.cpp"]
@@ -50,11 +51,20 @@ def libraries():
     return [f"build/release/{p}" if p.endswith(".a") and not p.startswith("/") else p for p in line.replace("$:", ":").split()]
 
 
+def is_current(made, needs):
+    """Whether an object is newer than all that it was made of, as the compiler wrote it down."""
+    if not made.exists() or not needs.exists():
+        return False
+    files = needs.read_text().split(":", 1)[1].replace("\\\n", " ").split()
+    return all((ROOT / f).exists() and (ROOT / f).stat().st_mtime <= made.stat().st_mtime for f in files)
+
+
 def build(clang, folder, name, sources, linked):
     def compiled(source):
         made = folder / (source.replace("/", "_") + ".o")
-        if not made.exists() or made.stat().st_mtime < (ROOT / source).stat().st_mtime:
-            subprocess.run([clang, *FLAGS, *MORE_FLAGS, "-c", source, "-o", str(made)], cwd=ROOT, check=True)
+        needs = made.with_suffix(".d")
+        if not is_current(made, needs):
+            subprocess.run([*CACHE, clang, *FLAGS, *MORE_FLAGS, "-MD", "-MF", str(needs), "-c", source, "-o", str(made)], cwd=ROOT, check=True)
         return str(made)
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:

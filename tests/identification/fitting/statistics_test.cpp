@@ -15,6 +15,7 @@ TEST(Statistics, TailsOfTables) {
   EXPECT_NEAR(chi_square_tail(3.841459, 1.0), 0.05, 1e-7);
   EXPECT_NEAR(chi_square_tail(18.307038, 10.0), 0.05, 1e-7);
   EXPECT_EQ(chi_square_tail(0.0, 3.0), 1.0);
+  EXPECT_EQ(chi_square_tail(std::numeric_limits<double>::infinity(), 3.0), 0.0);
   EXPECT_NEAR(normal_tail(1.959964), 0.025, 1e-7);
   EXPECT_NEAR(normal_quantile(0.025), 1.959964, 1e-5);
 }
