@@ -88,11 +88,6 @@ TEST_F(SlowFaults, RingDown) {
   expect_promises("ringdown '" SNARE_SOURCE_DIR "/data/experiments/ringdown.toml' --quiet");
 }
 
-// So does a journal.
-TEST_F(SlowFaults, DistilGoesOnWithoutAJournal) {
-  expect_promises("distil '" SNARE_SOURCE_DIR "/tests/ranges/wire.toml' --quiet", "distil.journal");
-}
-
 // A checkpoint that cannot be written costs the way back to it.
 TEST_F(SlowFaults, SimulateGoesOnWithoutACheckpoint) {
   expect_promises("simulate '" SNARE_SOURCE_DIR
