@@ -211,8 +211,8 @@ std::vector<ParaviewFrame> MotionPictures::paraview() const {
     const Moment moment = Moment::of(motion_, s);
     frames.push_back({s.time, s.wires});
     for (const Carried& c : carried_) {
-      for (const Eigen::Matrix3Xd& line : c.lines)
-        frames.back().polylines.push_back(placed(moment.pose(c.carrier), line));
+      const Pose X = moment.pose(c.carrier);
+      for (const Eigen::Matrix3Xd& line : c.lines) frames.back().polylines.push_back(placed(X, line));
     }
     for (std::size_t a = 0; a < s.arms.size(); ++a)
       for (Eigen::Matrix3Xd& line : moment.arm(a)) frames.back().polylines.push_back(std::move(line));

@@ -135,14 +135,13 @@ json animation_data(const AnimationSpecification& animation) {
 
 namespace {
 
-/// Numbers of a scene to a hundredth of a millimetre, or of a quaternion to 1e-6.
-json scene_numbers(const std::vector<double>& values, double step, const std::string& title) {
+/// Numbers of a scene, of so many steps to one.
+json scene_numbers(const std::vector<double>& values, double steps, const std::string& title) {
   json shortened = json::array();
   for (const double value : values) {
     if (!std::isfinite(value))
       throw std::invalid_argument(fmt::format("scene \"{}\": a coordinate is {}", title, value));
-    const double rounded = std::round(value / step) * step;
-    shortened.push_back(std::stod(fmt::format("{:.6f}", rounded)));
+    shortened.push_back(std::round(value * steps) / steps);
   }
   return shortened;
 }
@@ -150,11 +149,11 @@ json scene_numbers(const std::vector<double>& values, double step, const std::st
 }  // namespace
 
 json scene_data(const SceneSpecification& scene) {
-  constexpr double hundredth = 0.01, fine = 1e-6;
+  constexpr double per_mm = 100.0, per_one = 1e6;                   // of lengths; of poses, for their quaternions
   static constexpr const char* kinds[] = {"wire", "arm", "solid"};  // of SceneItem::Kind
   const auto lines_of = [&](const std::vector<std::vector<double>>& lines) {
     json all = json::array();
-    for (const std::vector<double>& line : lines) all.push_back(scene_numbers(line, hundredth, scene.title));
+    for (const std::vector<double>& line : lines) all.push_back(scene_numbers(line, per_mm, scene.title));
     return all;
   };
   const auto items_of = [&](const std::vector<SceneItem>& items) {
@@ -176,7 +175,7 @@ json scene_data(const SceneSpecification& scene) {
     for (const auto& lines : frame.moving) moving.push_back(lines_of(lines));
     for (const std::vector<double>& pose : frame.poses) {
       require_length(pose.size(), 7, "scene '" + scene.title + "': a pose");
-      poses.push_back(scene_numbers(pose, fine, scene.title));
+      poses.push_back(scene_numbers(pose, per_one, scene.title));
     }
     data["frames"].push_back({{"time", frame.time}, {"label", frame.label}, {"moving", moving}, {"poses", poses}});
   }
