@@ -6,6 +6,7 @@
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "reduction/law_export.hpp"
+#include "reduction/law_simulators.hpp"
 #include "results/law_json.hpp"
 #include "results/warnings.hpp"
 
@@ -48,14 +49,20 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
   csv.commit();
 }
 
+/// Of the case with this number, 1 the first.
 void write_exports(const std::filesystem::path& out, const reduction::WireFile& file,
-                   const reduction::DistilledCase& one) {
+                   const reduction::DistilledCase& one, std::size_t number) {
   const std::string title = file.title.empty() ? file.file.filename().string() : file.title;
-  base::write_text(out / "law.hpp", reduction::cpp_header(one, title));
-  base::write_text(out / "law.c", reduction::c_source(one, title));
+  std::string name = file.export_name;
+  if (!name.empty() && number > 1) name += fmt::format("_{}", number);
+  base::write_text(out / "law.hpp", reduction::cpp_header(one, title, name));
+  base::write_text(out / "law.c", reduction::c_source(one, title, name));
+  base::write_text(out / "law.h", reduction::c_header(one, title, name));
   base::write_text(out / "law.py", reduction::python_module(one, title));
+  base::write_text(out / "law.mo", reduction::modelica_package(one, title, name));
   base::write_text(out / "law_mujoco.xml", reduction::mujoco_snippet(one, title));
   base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
+  base::write_text(out / "law_simulink.csv", reduction::lookup_table(one).csv);
 }
 
 }  // namespace
@@ -102,7 +109,7 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   for (const std::string& warning : warnings) console.warn(warning);
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
-    write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c]);
+    write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c], c + 1);
   }
   base::write_text(options.out / "report.html", distil_report_html(wire, result, warnings));
   nlohmann::json written = law_json(wire, result);

@@ -1,11 +1,9 @@
 #include "reduction/law_export.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Core>
-#include <Eigen/QR>
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 
 namespace snare::reduction {
 
@@ -16,6 +14,7 @@ struct Language {
   std::string comment;     // begins a line of comment
   std::string prefix;      // of mathematical functions
   std::string qualifier;   // of functions: {q} below
+  std::string own;         // begins the names that others see: {p} below
   std::string array_open;  // "static const double {}[] = {"
   std::string array_close;
   std::string function_open;  // of one argument d: {name}
@@ -24,7 +23,7 @@ struct Language {
   std::string basis;        // what evaluating a table needs
   std::string table;        // evaluation of one: {name}, {nodes}
   std::string range;        // in_range
-  std::string load_unload;  // the law with its memory: {name}, {turn}, {position}, {slack}, {sum}, {difference}
+  std::string load_unload;  // the law with its memory: {name}, {turn}, {position}, {slack}, {sum}, {difference}, {p}
   std::string end;
 };
 
@@ -84,7 +83,7 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
                         fmt::arg("ne", axes[2].size()), fmt::arg("span", table.span()),
                         fmt::arg("scale", table.force_scale()),
                         fmt::arg("mirror", table.mirrored() ? "s > 0.5" : "s > 1e300"), fmt::arg("name", name),
-                        fmt::arg("nodes", nodes), fmt::arg("q", l.qualifier));
+                        fmt::arg("nodes", nodes), fmt::arg("q", l.qualifier), fmt::arg("p", l.own));
   };
   add(l.basis, "", "");
   add(l.table, "force", "nodes");
@@ -94,7 +93,7 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
     for (const FittedLaw& law : place.laws) {
       text += "\n" + l.comment + error_words(law) + "\n";
       text += fmt::format(fmt::runtime(l.function_open), fmt::arg("q", l.qualifier),
-                          fmt::arg("name", law.form->name() + "_" + position_name(place.position)));
+                          fmt::arg("name", l.own + law.form->name() + "_" + position_name(place.position)));
       text += law.form->expression(law.values, l.prefix) + l.function_close;
     }
     if (!place.load_unload) continue;
@@ -102,10 +101,10 @@ std::string generate(const DistilledCase& one, const std::string& title, const L
     text += "\n" + l.comment +
             fmt::format("load and unload; its memory is 1 and 0 at first; largest error on the way back {:.3g} N\n",
                         place.load_unload->largest_error);
-    text += fmt::format(fmt::runtime(l.load_unload), fmt::arg("q", l.qualifier),
-                        fmt::arg("name", "load_unload_" + position_name(place.position)), fmt::arg("turn", law.turn()),
-                        fmt::arg("position", place.position), fmt::arg("slack", one.wire.nominal_slack()),
-                        fmt::arg("sum", 0.5 * (1.0 + law.returned())),
+    text += fmt::format(fmt::runtime(l.load_unload), fmt::arg("q", l.qualifier), fmt::arg("p", l.own),
+                        fmt::arg("name", l.own + "load_unload_" + position_name(place.position)),
+                        fmt::arg("turn", law.turn()), fmt::arg("position", place.position),
+                        fmt::arg("slack", one.wire.nominal_slack()), fmt::arg("sum", 0.5 * (1.0 + law.returned())),
                         fmt::arg("difference", 0.5 * (1.0 - law.returned())));
   }
   return text + l.end;
@@ -139,7 +138,7 @@ constexpr const char* c_basis = R"(
 
 constexpr const char* c_table = R"(
 /* force [N] at travel d, position and slack [m] */
-{q}double {name}(double d, double position, double slack) {{
+{q}double {p}{name}(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   double bd[4], bs[4], be[4], total = 0.0;
   unsigned k, k1, i[2], j[2], b, c, p;
@@ -174,12 +173,12 @@ constexpr const char* c_load_unload = R"({q}double {name}(double d, double* bran
     *branch = 1.0;
     return 0.0;
   }}
-  return force(d, {position}, {slack}) * ({sum} + *branch * {difference});
+  return {p}force(d, {position}, {slack}) * ({sum} + *branch * {difference});
 }}
 )";
 
 constexpr const char* c_range = R"(
-{q}int in_range(double d, double position, double slack) {{
+{q}int {p}in_range(double d, double position, double slack) {{
   double x = d / {span}, s = position / {span}, e = slack / {span};
   if ({mirror}) s = 1.0 - s;
   return x <= knots_travel[{nd} - 1] + 1e-9 && s >= knots_position[0] - 1e-9 && s <= knots_position[{ns} - 1] + 1e-9 &&
@@ -248,28 +247,40 @@ def in_range(d, position, slack):
             and knots_slack[0] - 1e-9 <= e <= knots_slack[-1] + 1e-9)
 )";
 
-Language cpp_language() {
+Language cpp_language(const std::string& name) {
   return {.comment = "// ",
           .prefix = "std::",
           .qualifier = "inline ",
+          .own = "",
           .array_open = "inline constexpr double {}[] = {{",
           .array_close = "};\n",
           .function_open = "{q}double {name}(double d) {{\n  return d < 0.0 ? 0.0 : ",
           .function_close = ";\n}\n",
-          .prelude = "#pragma once\n\n#include <cmath>\n\nnamespace snare_law {\n\n",
+          .prelude = fmt::format("#pragma once\n\n#include <cmath>\n\nnamespace {} {{\n\n", name),
           .basis = c_basis,
           .table = c_table,
           .range = c_range,
           .load_unload = c_load_unload,
-          .end = "\n}  // namespace snare_law\n"};
+          .end = fmt::format("\n}}  // namespace {}\n", name)};
 }
 
-/// "a, b, c" in lines that ADAMS takes, each continued by a leading comma.
-std::string adams_numbers(const std::string& key, const std::vector<double>& values) {
-  std::string text = ", " + key + "=";
-  for (std::size_t i = 0; i < values.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : i % 5 == 0 ? "\n, " : ", ", values[i]);
-  return text + "\n";
+/// Comments of C end where they should.
+std::string closed_comments(const std::string& text) {
+  std::string closed;
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    std::string line = text.substr(from, end - from);
+    if (line.starts_with("/* ") && !line.ends_with("*/")) line += " */";
+    closed += line + "\n";
+    from = end + 1;
+  }
+  return closed;
+}
+
+/// C has no namespaces.
+std::string own_prefix(const std::string& name) {
+  return name.empty() ? "" : name + "_";
 }
 
 }  // namespace
@@ -280,27 +291,42 @@ std::string position_name(double position) {
   return text;
 }
 
-std::string cpp_header(const DistilledCase& one, const std::string& title) {
-  return generate(one, title, cpp_language());
+std::string cpp_header(const DistilledCase& one, const std::string& title, const std::string& name) {
+  return generate(one, title, cpp_language(name.empty() ? "snare_law" : name));
 }
 
-std::string c_source(const DistilledCase& one, const std::string& title) {
-  Language l = cpp_language();
+std::string c_header(const DistilledCase& one, const std::string& title, const std::string& name) {
+  const std::string own = own_prefix(name);
+  std::string guard = (name.empty() ? "snare_law" : name) + "_h";
+  std::ranges::transform(guard, guard.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::string text = head(one, title, "/* ");
+  text += fmt::format("#ifndef {0}\n#define {0}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n", guard);
+  constexpr const char* of_table = "double {}{}(double d, double position, double slack);\n";
+  text += "/* force [N] at travel d, position and slack [m] */\n" + fmt::format(of_table, own, "force");
+  if (one.table.unloading)
+    text += "/* the way back from the end of the travel */\n" + fmt::format(of_table, own, "force_unloading");
+  text += "/* 0 where the outermost cell goes on beyond the table */\n" +
+          fmt::format("int {}in_range(double d, double position, double slack);\n", own);
+  for (const DistilledPlace& place : one.places) {
+    const std::string where = position_name(place.position);
+    text += fmt::format("\n/* simple laws at s = {:.6g} mm: force [N] at travel d [m] */\n", 1e3 * place.position);
+    for (const FittedLaw& law : place.laws)
+      text += fmt::format("double {}{}_{}(double d);\n", own, law.form->name(), where);
+    if (!place.load_unload) continue;
+    text += "/* with a memory that is 1 and 0 at first */\n" +
+            fmt::format("double {}load_unload_{}(double d, double* branch, double* last);\n", own, where);
+  }
+  return closed_comments(text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
+}
+
+std::string c_source(const DistilledCase& one, const std::string& title, const std::string& name) {
+  Language l = cpp_language("");
   l.comment = "/* ";
+  l.own = own_prefix(name);
   l.prefix = l.qualifier = l.end = "";
   l.array_open = "static const double {}[] = {{";
   l.prelude = "#include <math.h>\n\n";
-  std::string text = generate(one, title, l);
-  // Comments of C end where they should.
-  std::string closed;
-  std::size_t from = 0;
-  while (from < text.size()) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    std::string line = text.substr(from, end - from);
-    if (line.starts_with("/* ") && !line.ends_with("*/")) line += " */";
-    closed += line + "\n";
-    from = end + 1;
-  }
+  std::string closed = closed_comments(generate(one, title, l));
   // What no other file should see.
   for (const char* name : {"unsigned find_cell_(", "unsigned basis_("}) {
     const std::size_t at = closed.find(std::string("\n") + name);
@@ -314,6 +340,7 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
                   {.comment = "# ",
                    .prefix = "math.",
                    .qualifier = "",
+                   .own = "",
                    .array_open = "{} = (",
                    .array_close = ",)\n",
                    .function_open = "def {name}(d):\n    return 0.0 if d < 0.0 else ",
@@ -324,103 +351,6 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
                    .range = python_range,
                    .load_unload = python_load_unload,
                    .end = ""});
-}
-
-namespace {
-
-/// F = k0 d + k1 d^2 + k2 d^3, the form of MuJoCo's joint springs, by least squares over even travels.
-struct JointPolynomial {
-  Eigen::Vector3d stiffness;   ///< k0, k1, k2 [N/m, N/m^2, N/m^3]
-  double largest_error = 0.0;  ///< against the full wire, at four travels for every one of the fit [N]
-};
-
-JointPolynomial joint_polynomial(const DistilledPlace& place, double end) {
-  constexpr int points = 200;
-  Eigen::MatrixX3d powers(points, 3);
-  Eigen::VectorXd force(points);
-  for (int i = 0; i < points; ++i) {
-    const double share = (i + 1.0) / points;
-    powers.row(i) << share, share * share, share * share * share;
-    force[i] = place.full.value(share * end);
-  }
-  const Eigen::Vector3d scaled = powers.colPivHouseholderQr().solve(force);
-  JointPolynomial result{{scaled[0] / end, scaled[1] / (end * end), scaled[2] / (end * end * end)}, 0.0};
-  for (int i = 0; i <= 4 * points; ++i) {
-    const double x = i / (4.0 * points);
-    const double off = x * (scaled[0] + x * (scaled[1] + x * scaled[2])) - place.full.value(x * end);
-    result.largest_error = std::max(result.largest_error, std::abs(off));
-  }
-  return result;
-}
-
-}  // namespace
-
-std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
-  // A double hyphen may not stand in a comment of XML.
-  std::string words = title;
-  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--")) words.replace(at, 2, "-");
-  std::string text = fmt::format(
-      "<!-- {}\n     Springs of the snare wire, one slide joint a position, travel from first touch: the force of a "
-      "joint is\n"
-      "     -q (k0 + k1 q + k2 q^2), stiffness=\"k0 k1 k2\". MuJoCo before its polynomial stiffness takes one number: "
-      "the\n"
-      "     linear law that is named for each. Friction and strands dissipate at any rate alike, which a joint cannot. "
-      "-->\n"
-      "<mujoco model=\"snare_wire\">\n  <worldbody>\n",
-      words);
-  for (const DistilledPlace& place : one.places) {
-    const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
-    const double end = linear->range.high;
-    const JointPolynomial spring = joint_polynomial(place, end);
-    const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
-    const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
-    const std::string name = position_name(place.position);
-    text += fmt::format(
-        "    <!-- s = {:.6g} mm, travel 0 to {:.6g} mm: off the full wire by up to {:.3g} N of {:.4g} N; the linear "
-        "law,\n"
-        "         stiffness=\"{:.6g}\", by up to {:.3g} N. The damping is {}; friction and strands add {:.4g} N/m\n"
-        "         over the angular rate. -->\n"
-        "    <body name=\"wire_contact_{}\">\n"
-        "      <joint name=\"wire_travel_{}\" type=\"slide\" axis=\"0 1 0\" stiffness=\"{} {} {}\" springref=\"0\" "
-        "damping=\"{}\"\n"
-        "             limited=\"true\" range=\"0 {}\"/>\n"
-        "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\" contype=\"0\" conaffinity=\"0\"/>\n    </body>\n",
-        1e3 * place.position, 1e3 * end, spring.largest_error, linear->error.force_range, linear->values[0],
-        linear->error.largest_force,
-        impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed)
-               : "not known: no impacts were asked",
-        loss, name, name, spring.stiffness[0], spring.stiffness[1], spring.stiffness[2],
-        impact ? *place.impacts.front().damping : 0.0, end);
-  }
-  return text + "  </worldbody>\n</mujoco>\n";
-}
-
-std::string adams_splines(const DistilledCase& one, const std::string& title) {
-  const coupling::ForceTable& table = *one.table.loading;
-  std::vector<double> travel = table.axes()[0];
-  for (double& d : travel) d *= table.span();
-  std::string words = title;
-  std::replace(words.begin(), words.end(), '\n', ' ');
-  std::string text = "! " + words + "\n! Force of a snare wire [N] over travel from first touch [m], by snare.\n";
-  int number = 1;
-  for (const DistilledPlace& place : one.places) {
-    std::vector<double> force;
-    force.reserve(travel.size());
-    for (const double d : travel) force.push_back(place.full.value(d));
-    text += fmt::format("! s = {:.6g} mm, slack {:.6g} mm\nSPLINE/{}\n", 1e3 * place.position,
-                        1e3 * one.wire.nominal_slack(), number++);
-    text += adams_numbers("X", travel) + adams_numbers("Y", force);
-  }
-  text += fmt::format("! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n",
-                      1e3 * one.wire.nominal_slack(), number);
-  text += adams_numbers("X", travel);
-  for (const double s : table.axes()[1]) {
-    // The first number of a Y list is its Z.
-    std::vector<double> row{s * table.span()};
-    for (const double d : travel) row.push_back(table.force(d, s * table.span(), one.wire.nominal_slack()));
-    text += adams_numbers("Y", row);
-  }
-  return text;
 }
 
 }  // namespace snare::reduction

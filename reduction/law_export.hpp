@@ -2,7 +2,6 @@
 
 #include "reduction/distil.hpp"
 
-#include <optional>
 #include <string>
 
 namespace snare::reduction {
@@ -13,15 +12,13 @@ namespace snare::reduction {
 /// Sources that need nothing but their language's standard library: the table as `force(d, s, slack)` with
 /// `in_range(d, s, slack)`, and every simple law as `<law>_<position>(d)`. All in SI: m and N. Negative travel is no
 /// contact, no force; beyond the range the outermost cell's polynomial goes on, which `in_range` tells.
-[[nodiscard]] std::string cpp_header(const DistilledCase& one, const std::string& title);
-[[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title);
+///
+/// name: what keeps the laws of one program apart, an identifier: the namespace in C++ (snare_law if it is empty), in C what
+/// every name begins with, with a low line behind it (nothing if it is empty).
+[[nodiscard]] std::string cpp_header(const DistilledCase& one, const std::string& title, const std::string& name = "");
+[[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title, const std::string& name = "");
+/// Declares what c_source defines, for C and C++.
+[[nodiscard]] std::string c_header(const DistilledCase& one, const std::string& title, const std::string& name = "");
 [[nodiscard]] std::string python_module(const DistilledCase& one, const std::string& title);
-
-/// A slide joint for every law position with a polynomial of three numbers, F = k0 d + k1 d^2 + k2 d^3, through the full wire, and how
-/// far that and the linear law are from it; the damping of the first impact. Newer versions of MuJoCo have such springs.
-[[nodiscard]] std::string mujoco_snippet(const DistilledCase& one, const std::string& title);
-
-/// ADAMS solver splines: one of force over travel for every law position, and one of force over travel and position.
-[[nodiscard]] std::string adams_splines(const DistilledCase& one, const std::string& title);
 
 }  // namespace snare::reduction

@@ -191,6 +191,35 @@ std::optional<ImpactSettings> read_impacts(const TomlTable& root, const scenario
   return impacts;
 }
 
+/// Words of C, C++ and Modelica that are no names, as far as they consist of letters.
+constexpr std::string_view reserved[] = {
+    "algorithm", "alignas",  "and",      "asm",      "auto",     "block",        "bool",      "break",     "case",
+    "catch",     "char",     "class",    "concept",  "connect",  "const",        "constant",  "continue",  "default",
+    "delete",    "do",       "double",   "each",     "else",     "encapsulated", "end",       "enum",      "equation",
+    "explicit",  "export",   "extends",  "extern",   "external", "false",        "final",     "float",     "flow",
+    "for",       "friend",   "function", "goto",     "if",       "import",       "in",        "initial",   "inline",
+    "inner",     "input",    "int",      "long",     "loop",     "model",        "mutable",   "namespace", "new",
+    "not",       "operator", "or",       "outer",    "output",   "package",      "parameter", "partial",   "private",
+    "protected", "public",   "record",   "register", "requires", "restrict",     "return",    "short",     "signed",
+    "sizeof",    "static",   "std",      "stream",   "struct",   "switch",       "template",  "then",      "this",
+    "throw",     "true",     "try",      "type",     "typedef",  "typename",     "union",     "unsigned",  "using",
+    "virtual",   "void",     "volatile", "when",     "while",    "within",       "xor"};
+
+std::string read_export_name(const TomlTable& table) {
+  std::string name = table.text_or("name", "");
+  if (name.empty()) return name;
+  constexpr std::size_t longest = 40;
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const bool identifier = letter(name.front()) && name.size() <= longest && std::ranges::all_of(name, [&](char c) {
+                            return letter(c) || c == '_' || (c >= '0' && c <= '9');
+                          });
+  if (!identifier)
+    table.fail("name", fmt::format("must be a letter and letters, digits or low lines behind it, {} at most", longest));
+  else if (std::ranges::find(reserved, name) != std::end(reserved))
+    table.fail("name", "must be no word of C, C++ or Modelica itself");
+  return name;
+}
+
 WireFile read_document(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable root = document.root();
   base::require_schema(root, "snare-wire/1");
@@ -214,6 +243,7 @@ WireFile read_document(TomlDocument& document, const std::filesystem::path& file
   read_law_offsets(root.table("laws"), nominal);
   result.cases = combine(ranges, nominal);
   result.impacts = read_impacts(root, tables, nominal.test);
+  result.export_name = read_export_name(root.table("exports"));
   document.finish();
   return result;
 }

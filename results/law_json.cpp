@@ -1,5 +1,6 @@
 #include "results/law_json.hpp"
 
+#include "reduction/law_simulators.hpp"
 #include "results/in_mm.hpp"
 #include "results/version.hpp"
 
@@ -173,7 +174,10 @@ json case_json(const DistilledCase& one) {
             {"slack_mm", interval(one.wire.slack, 1e-3)}}},
           {"table", table_json(one.table)},
           {"positions", places},
-          {"map", map_json(one.map)}};
+          {"map", map_json(one.map)},
+          {"exports",
+           {{"mujoco", {{"form", "k0 d + k1 d^2 + k2 d^3"}, {"largest_error_N", joint_errors(one)}}},
+            {"simulink", {{"form", "linear in travel and position"}, {"largest_error_N", lookup_table(one).largest_error}}}}}};
 }
 
 }  // namespace

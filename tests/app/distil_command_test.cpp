@@ -132,8 +132,8 @@ TEST_F(DistilCommand, ResumesToTheSameBytes) {
             0);
   fs::resize_file(folder_ / "part" / "distil.journal", fs::file_size(folder_ / "part" / "distil.journal") - 37);
   ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents("err.txt");
-  for (const char* file :
-       {"law.json", "table.csv", "law.hpp", "law.c", "law.py", "law_mujoco.xml", "law_adams.adm", "report.html"}) {
+  for (const char* file : {"law.json", "table.csv", "law.hpp", "law.c", "law.h", "law.py", "law.mo", "law_mujoco.xml",
+                           "law_simulink.csv", "law_adams.adm", "report.html"}) {
     EXPECT_EQ(contents(fs::path("whole") / file), contents(fs::path("part") / file)) << file;
   }
 }
