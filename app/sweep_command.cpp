@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/crash_note.hpp"
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
 #include "app/launched_ranks.hpp"
@@ -102,6 +103,7 @@ class SweepRun {
   template <class Values, class Number>
   void run(study::Dispatcher& dispatcher, const Values& values, const Number& number) {
     const auto run_one = [&](std::uint64_t k, const std::vector<double>& given) {
+      const CrashNote note(journal_, number(k), given);
       return study::line_of(study_.run(given.empty() ? study_.sweep().design.values(number(k)) : given, interrupted));
     };
     if (leader_ != nullptr) {

@@ -10,13 +10,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,17 @@ using coupling::Outside;
 using scenario::DistilledLaw;
 using scenario::SimpleLaw;
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A number or an array of real numbers, as the argument `name`. NumPy would also read texts, times and the real parts of complex numbers.
+Numbers numbers(const py::object& given, const char* name) {
+  const py::array any(given);  // raises what NumPy has to say: of rows that are not of one length, of memory
+  const char kind = any.dtype().kind();
+  if (std::string_view("fiubO").find(kind) == std::string_view::npos) {
+    throw py::type_error(fmt::format("{} = {}, must be a number or an array of real numbers", name,
+                                     std::string(py::repr(given))));
+  }
+  return Numbers(any);
+}
 
 /// Arrays of one shape, or single numbers beside them: what a loop may step through.
 template <std::size_t count>
@@ -72,6 +85,10 @@ class Broadcast {
         for (std::size_t k = 0; k < count; ++k) x[k] = data_[k][step_[k] * i];
         try {
           out[i] = std::apply(function, x);
+          if constexpr (std::is_floating_point_v<Result>) {
+            if (!std::isfinite(out[i]))
+              throw std::domain_error(fmt::format("at {}: the result is beyond all numbers", fmt::join(x, ", ")));
+          }
         } catch (const std::domain_error& error) {
           if (shape_.empty()) throw;
           throw std::domain_error(fmt::format("point {}: {}", i, error.what()));
@@ -94,8 +111,12 @@ class Broadcast {
   std::size_t size_ = 1;
 };
 
-Numbers slack_or_nominal(const DistilledLaw& law, const std::optional<Numbers>& slack) {
-  return slack ? *slack : Numbers(py::float_(law.nominal_slack));
+Numbers slack_or_nominal(const DistilledLaw& law, const py::object& slack) {
+  return slack.is_none() ? Numbers(py::float_(law.nominal_slack)) : numbers(slack, "slack");
+}
+
+Broadcast<3> points(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack) {
+  return Broadcast<3>({numbers(d, "d"), numbers(s, "s"), slack_or_nominal(law, slack)});
 }
 
 Outside outside_of(const std::string& word) {
@@ -110,33 +131,36 @@ const ForceTable& table_of(const DistilledLaw& law, bool unloading) {
   return *law.unloading;
 }
 
-py::object force(const DistilledLaw& law, const Numbers& d, const Numbers& s, const std::optional<Numbers>& slack,
+py::object force(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack,
                  const std::string& outside, bool unloading) {
   const ForceTable& table = table_of(law, unloading);
   const Outside what = outside_of(outside);
-  return Broadcast<3>({d, s, slack_or_nominal(law, slack)}).map<double>([&](double x, double y, double z) {
+  return points(law, d, s, slack).map<double>([&](double x, double y, double z) {
     return law.force(table, x, y, z, what);
   });
 }
 
-py::object stiffness(const DistilledLaw& law, const Numbers& d, const Numbers& s, const std::optional<Numbers>& slack,
+py::object stiffness(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack,
                      const std::string& outside, bool unloading) {
   const ForceTable& table = table_of(law, unloading);
   const Outside what = outside_of(outside);
-  return Broadcast<3>({d, s, slack_or_nominal(law, slack)}).map<double>([&](double x, double y, double z) {
+  return points(law, d, s, slack).map<double>([&](double x, double y, double z) {
     return law.stiffness(table, x, y, z, what);
   });
 }
 
-py::object in_range(const DistilledLaw& law, const Numbers& d, const Numbers& s, const std::optional<Numbers>& slack) {
-  return Broadcast<3>({d, s, slack_or_nominal(law, slack)}).map<bool>([&](double x, double y, double z) {
+py::object in_range(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack) {
+  return points(law, d, s, slack).map<bool>([&](double x, double y, double z) {
     return law.in_range(x, y, z);
   });
 }
 
 template <double (coupling::SpringLaw::*number)(double) const>
-py::object of_travel(const SimpleLaw& one, const Numbers& d) {
-  return Broadcast<1>({d}).map<double>([&](double x) { return x < 0.0 ? 0.0 : ((*one.law).*number)(x); });
+py::object of_travel(const SimpleLaw& one, const py::object& d) {
+  return Broadcast<1>({numbers(d, "d")}).map<double>([&](double x) {
+    if (!std::isfinite(x)) throw std::domain_error(fmt::format("travel {} m: must be finite", x));
+    return x < 0.0 ? 0.0 : ((*one.law).*number)(x);
+  });
 }
 
 py::dict parameters_of(const SimpleLaw& one) {

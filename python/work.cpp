@@ -2,12 +2,15 @@
 
 #include "base/parallel.hpp"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -72,6 +75,9 @@ void ask_python(Work& work, const py::object& progress) {
 }  // namespace
 
 void do_work(const std::function<void(const results::Watch&)>& body, int threads, const py::object& progress) {
+  constexpr int most_threads = 1024;  // as --threads; what a system does not give would end the process
+  if (threads < 0 || threads > most_threads)
+    throw std::invalid_argument(fmt::format("threads = {}, must be from 0 to {}", threads, most_threads));
   const auto work = std::make_shared<Work>();
   const py::gil_scoped_release release;
   std::thread thread([work, body, threads] { run(*work, body, threads); });

@@ -130,6 +130,12 @@ void Journal::note(std::uint64_t index, std::uint64_t offset) {
 }
 
 void Journal::write(std::string_view text) {
+  if (const int error = try_write(text); error != 0)
+    throw std::system_error(error, std::generic_category(), file_.string() + ": cannot be written");
+}
+
+/// Error of the system; 0: written.
+int Journal::try_write(std::string_view text) noexcept {
   std::size_t written = 0;
   while (written < text.size()) {
     const ssize_t n = ::pwrite(descriptor_, text.data() + written, text.size() - written,
@@ -138,11 +144,12 @@ void Journal::write(std::string_view text) {
     if (n <= 0) {
       const int error = n < 0 ? errno : ENOSPC;
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
-      throw std::system_error(error, std::generic_category(), file_.string() + ": cannot be written");
+      return error;
     }
     written += static_cast<std::size_t>(n);
   }
   size_ += text.size();
+  return 0;
 }
 
 void Journal::append(std::uint64_t index, std::string_view result) {
@@ -157,6 +164,23 @@ void Journal::append(std::uint64_t index, std::string_view result) {
   if (now() - flushed_ < flush_every) return;
   flushed_ = now();
   ::fdatasync(descriptor_);
+}
+
+void Journal::append_at_the_end(std::uint64_t index, std::string_view result) noexcept {
+  constexpr std::size_t number_size = 20;  // digits of the largest
+  std::array<char, longest_last_words + number_size + sum_size + 3> line;
+  if (result.size() > longest_last_words) return;
+  char* end = std::to_chars(line.data(), line.data() + number_size, index).ptr;
+  *end++ = ' ';
+  end = std::ranges::copy(result, end).out;
+  const std::uint64_t sum = base::fingerprint({line.data(), static_cast<std::size_t>(end - line.data())});
+  *end++ = ' ';
+  constexpr unsigned bits = 4;
+  for (std::size_t k = sum_size; k-- > 0;) *end++ = "0123456789abcdef"[(sum >> (bits * k)) & 0xfU];
+  *end++ = '\n';
+  const std::scoped_lock lock(mutex_);  // others may be appending; they do not wait for this thread
+  if (index < offsets_.size() && offsets_[index] != 0) return;
+  if (try_write({line.data(), static_cast<std::size_t>(end - line.data())}) == 0) ::fdatasync(descriptor_);
 }
 
 void Journal::flush() {

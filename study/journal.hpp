@@ -26,6 +26,10 @@ class Journal {
   /// Appends the result of a case: a text without line breaks. Thread-safe; a case that is there already is passed over. On failure
   /// (std::system_error: a full disk) the file ends with its last whole line.
   void append(std::uint64_t index, std::string_view result);
+  /// As `append`, in the handler of a signal that ends the process: allocates nothing, throws nothing. result: of at most
+  /// `longest_last_words` bytes. Not for the thread that is in another call of this journal.
+  void append_at_the_end(std::uint64_t index, std::string_view result) noexcept;
+  static constexpr std::size_t longest_last_words = 4096;  ///< [byte]
   /// Waits until what was appended is on the disk.
   void flush();
 
@@ -43,6 +47,7 @@ class Journal {
   void load(const std::string& identity);
   void note(std::uint64_t index, std::uint64_t offset);
   void write(std::string_view text);
+  [[nodiscard]] int try_write(std::string_view text) noexcept;
 
   std::filesystem::path file_;
   int descriptor_ = -1;

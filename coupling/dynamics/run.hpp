@@ -39,10 +39,14 @@ constexpr Eigen::Index outer_moment = 5;
 constexpr Eigen::Index contacts = 8;
 }  // namespace integral
 
-/// Times that differ by less are the same: the integrator cannot step from one to the other.
-[[nodiscard]] inline bool reached(double time, double limit) {
+/// Times that differ by less are the same: the integrator cannot step from one to the other [s].
+[[nodiscard]] inline double time_resolution(double time) {
   constexpr double round_off = 1e-13;
-  return time >= limit - round_off * std::max(1.0, limit);
+  return round_off * std::max(1.0, time);
+}
+
+[[nodiscard]] inline bool reached(double time, double limit) {
+  return time >= limit - time_resolution(limit);
 }
 
 /// One leg of a motion, from its start or from a state: parts, integrator, what happens at events, balances.
@@ -123,7 +127,7 @@ class MotionRun {
   std::vector<LeftOutMomentum> left_out_;  // of every wire
   double time_ = 0.0;
   MotionSums sums_;
-  std::optional<std::string> broken_;  // a wire at its strength
+  std::optional<std::string> broken_;  // a wire at its strength, a body that is too fast
   bool not_finite_ = false;            // a sample was not given
   bool over_ = false;                  // a phase has ended the run
 };

@@ -4,6 +4,7 @@
 #include "coupling/dynamics/check.hpp"
 #include "coupling/dynamics/run.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -15,8 +16,9 @@ namespace {
 /// The first checkpoint behind a time, or the end when none comes before it.
 double next_stop(const MotionOptions& options, double time) {
   constexpr double round_off = 1e-9;  // of an interval
-  const double interval = options.checkpoint_interval;
-  if (!std::isfinite(interval)) return options.duration;
+  if (!std::isfinite(options.checkpoint_interval)) return options.duration;
+  // A leg that is shorter than what tells two times apart has no end.
+  const double interval = std::max(options.checkpoint_interval, 4.0 * time_resolution(options.duration));
   const double stop = (std::floor(time / interval + round_off) + 1.0) * interval;
   return stop < options.duration - round_off * interval ? stop : options.duration;
 }

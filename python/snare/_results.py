@@ -63,6 +63,9 @@ def _read_csv(path: pathlib.Path) -> Dict[str, Any]:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     if not rows:
         raise ValueError(f"{path}: has no header")
+    for number, row in enumerate(rows[1:], 1):
+        if len(row) != len(rows[0]):
+            raise ValueError(f"{path}: row {number} has {len(row)} cells, must have {len(rows[0])}")
     cells = {name: [row[k] for row in rows[1:]] for k, name in enumerate(rows[0])}
     columns: Dict[str, Any] = {}
     for name, texts in cells.items():
@@ -92,7 +95,7 @@ def load(path: Union[str, os.PathLike]) -> Result:
 
     path: a folder of results (``--out``), a JSON document or a CSV table of one. Of a folder: its document with
     ``curves``, ``history`` and ``telemetry`` where it has them, and ``laws`` for a law.json. FileNotFoundError where there is
-    nothing of the kind.
+    nothing of the kind, ValueError where a file is none of these.
     """
     path = pathlib.Path(path)
     if path.is_dir():
@@ -110,13 +113,17 @@ def load(path: Union[str, os.PathLike]) -> Result:
     if path.suffix == ".csv":
         return table(_read_csv(path))
     with open(path, encoding="utf-8") as file:
-        document = json.load(file)
+        try:
+            document = json.load(file)
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"{path}: is no document of snare: {error}") from None
     if not isinstance(document, dict):
         raise ValueError(f"{path}: is no document of snare")
     result = _arrays(document)
     if document.get("schema") == "snare-law/1":
         from snare._core import Law
 
-        laws: List[Law] = [Law(path, case) for case in range(len(document["cases"]))]
+        cases = document.get("cases")
+        laws: List[Law] = [Law(path, case) for case in range(len(cases) if isinstance(cases, list) and cases else 1)]
         result["laws"] = laws
     return result

@@ -40,7 +40,14 @@ def _literal(value: Any) -> str:
 
 
 def _pairs(given: Optional[Mapping[str, Any]]) -> List[Tuple[str, str]]:
-    return [(key, _literal(value)) for key, value in (given or {}).items()]
+    if given is None:
+        return []
+    if not isinstance(given, Mapping):
+        raise TypeError(f"set = {given!r}, must be a dictionary of keys and values")
+    for key in given:
+        if not isinstance(key, str):
+            raise TypeError(f"a key of `set` is {key!r}, must be a text")
+    return [(key, _literal(value)) for key, value in given.items()]
 
 
 def _print(text: str) -> None:
@@ -48,9 +55,13 @@ def _print(text: str) -> None:
 
 
 def _watcher(progress: Progress) -> Optional[Callable[[str], Any]]:
+    if progress is None or progress is False:
+        return None
     if progress is True:
         return _print
-    return progress or None
+    if not callable(progress):
+        raise TypeError(f"progress = {progress!r}, must be True, None or a function of a text")
+    return progress
 
 
 def _with_curves(answer: Tuple[Optional[Result], Any]) -> Result:

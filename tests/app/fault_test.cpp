@@ -82,6 +82,28 @@ TEST_F(Faults, Push) {
   expect_promises("push x.toml --quiet");
 }
 
+// A journal of curves that cannot be written costs the way back to them, not the run. Of each kind the call that is the journal's
+// first (the wire file is closed before); all calls of all kinds would take minutes.
+TEST_F(Faults, DistilGoesOnWithoutAJournal) {
+  const std::string distil = "distil '" SNARE_SOURCE_DIR "/tests/ranges/wire.toml' --quiet";
+  ASSERT_EQ(run(distil + " --out whole"), 0) << contents("err.txt");
+  const Files whole = files("whole");
+  const std::map<std::string, int> first{{"fwrite", 1}, {"fflush", 1}, {"fclose", 2}};
+  for (const auto& [call, at] : first) {
+    fs::remove_all(folder_ / "failed");
+    EXPECT_EQ(failing(call, at, distil), 0) << call;
+    const std::string said = contents("err.txt");
+    EXPECT_NE(said.find("failed/distil.journal: cannot be written: No space left on device; goes on, but a run that is "
+                        "interrupted begins anew"),
+              std::string::npos)
+        << call << ": " << said;
+    const Files left = files("failed");
+    EXPECT_EQ(left.size(), whole.size()) << call;
+    EXPECT_EQ(left.at("table.csv"), whole.at("table.csv")) << call;
+    EXPECT_FALSE(left.contains("distil.journal")) << call;
+  }
+}
+
 class SlowFaults : public Faults {};
 
 TEST_F(SlowFaults, RingDown) {

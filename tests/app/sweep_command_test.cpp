@@ -126,6 +126,33 @@ TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
   EXPECT_EQ(cases("a"), cases("whole"));
 }
 
+// A case that ends the process costs itself, once: what is finished is kept, and the same command goes on with the others.
+TEST_F(SweepCommand, ACaseThatEndsTheProcessIsNotRunAgain) {
+  const std::string many = " --threads 1 --set cases=600";
+  ASSERT_EQ(run("sweep sweep.toml --out whole" + many), 0);
+  const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--threads", "1", "--set", "cases=600"});
+  for (int k = 0; k < 400 && contents("a/cases.journal").size() < 2000; ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const Ending ending = interrupt(child, 0.0, SIGSEGV);
+  if (ending.status == 0) GTEST_SKIP() << "the sweep was over before the signal";
+  EXPECT_EQ(ending.status, -SIGSEGV);
+  const std::string said = contents("err.txt");
+  ASSERT_THAT(said, HasSubstr(" ended the process by SIGSEGV"));
+  const std::size_t at = said.rfind("\ncase ") + 6;
+  const std::string number = said.substr(at, said.find(' ', at) - at);
+  ASSERT_EQ(run("sweep sweep.toml --out a" + many), 0) << contents("err.txt");
+  EXPECT_THAT(contents("err.txt"), HasSubstr("goes on from"));
+  EXPECT_THAT(contents("err.txt"), HasSubstr("1 of 600 cases have no result"));
+  EXPECT_EQ(parsed("a/summary.json")["statuses"]["crashed"], 1);
+  std::istringstream left(cases("a")), right(cases("whole"));
+  std::string one, other;
+  while (std::getline(left, one) && std::getline(right, other)) {
+    if (one == other) continue;
+    EXPECT_THAT(one, testing::StartsWith(number + ",crashed,the process ended in this case by SIGSEGV,"));
+  }
+  EXPECT_EQ(run("sweep sweep.toml --out a --case " + number + " --set cases=600"), 0);
+}
+
 TEST_F(SweepCommand, AChangedInputIsRefusedAndNothingIsLost) {
   ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
   const std::string before = cases("a"), journal = contents("a/cases.journal");

@@ -92,6 +92,37 @@ class Laws(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "must be finite"):
                 self.law.force([1e-3, bad], 0.04, outside="extrapolate")
 
+        with self.assertRaisesRegex(ValueError, "beyond all numbers"):
+            self.law.force(1e308, 1e308, 1e308, outside="extrapolate")
+        simple = self.law.simple[0]
+        for bad in (np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "must be finite"):
+                simple.force(bad)
+        with self.assertRaisesRegex(ValueError, "point 1: at 1e\\+308: the result is beyond all numbers"):
+            simple.energy([1e-3, 1e308])
+
+    def test_what_is_no_real_number_is_refused_by_name(self):
+        law = self.law
+        for bad in ("x", np.array(["1e-3"]), 1e-3 + 2j, np.array([1e-3 + 2j]), np.datetime64("2020-01-01"), b"1"):
+            with self.assertRaisesRegex(TypeError, "s = .*, must be a number or an array of real numbers"):
+                law.force(1e-3, bad)
+        with self.assertRaises(TypeError):
+            law.force({}, 0.04)
+        with self.assertRaises(ValueError):
+            law.force([[1e-3], [1e-3, 2e-3]], 0.04)
+        with self.assertRaises(MemoryError):
+            law.force(np.broadcast_to(1e-3, 10**15), 0.04)
+
+    def test_any_layout_of_an_array_is_read(self):
+        law, d = self.law, np.array([[1e-3, 2e-3], [3e-3, 0.5e-3]])
+        force = law.force(d, 0.04)
+        fixed = d.copy()
+        fixed.setflags(write=False)
+        odd = np.zeros((2, 2), dtype=[("a", "i1"), ("d", "f8")])  # not aligned
+        odd["d"] = d
+        for other in (np.asfortranarray(d), fixed, d.astype(">f8"), d.astype(object), odd["d"], d[::-1, ::-1][::-1, ::-1]):
+            np.testing.assert_array_equal(law.force(other, 0.04), force)
+
     def test_simple_laws_have_the_numbers_of_the_file(self):
         place = json.loads((self.out / "law.json").read_text())["cases"][0]["positions"][0]
         quadratic = next(one for one in self.law.simple if one.name == "quadratic")

@@ -1,5 +1,6 @@
 """The verbs in Python give what the command writes, and say what is wrong."""
 
+import multiprocessing
 import pathlib
 import tempfile
 import threading
@@ -35,6 +36,10 @@ def same(test, ours, theirs, where=""):
             same(test, ours[k], one, f"{where}[{k}]")
     else:
         test.assertEqual(ours, theirs, where)
+
+
+def last_force(_):
+    return snare.push(EXPERIMENT, threads=2)["curves"]["middle"]["force_N"][-1]
 
 
 class Verbs(unittest.TestCase):
@@ -104,6 +109,29 @@ class Mistakes(unittest.TestCase):
             snare.push("no such file.toml")
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(FileNotFoundError):
             snare.load(folder)
+
+    def test_files_of_results_that_are_none_are_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in (("law.json", "{"), ("law.json", "[1]"), ("law.json", '{"schema": "snare-law/1"}'),
+                               ("trace.json", "[" * 100000), ("trace.json", ""), ("curves.csv", ""), ("curves.csv", "a,b\n1\n")):
+                path = pathlib.Path(folder) / name
+                path.write_text(text)
+                with self.assertRaisesRegex(ValueError, name):
+                    snare.load(path)
+
+    def test_arguments_of_a_wrong_kind_are_refused(self):
+        for wrong, says in (({"set": 5}, "set = 5"), ({"set": {5: 5}}, "a key of `set` is 5"), ({"progress": 5}, "progress = 5")):
+            with self.assertRaisesRegex(TypeError, says):
+                snare.push(EXPERIMENT, **wrong)
+        # So many threads are refused: where the system gives none, the process would end.
+        for threads in (-1, 1025):
+            with self.assertRaisesRegex(ValueError, "from 0 to 1024"):
+                snare.push(EXPERIMENT, threads=threads)
+
+    def test_a_process_that_forks_may_work_on_both_sides(self):
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            forces = pool.map(last_force, range(4))
+        self.assertEqual(forces, [last_force(0)] * 4)
 
     def test_values_that_toml_has_not_are_refused(self):
         with self.assertRaises(TypeError):

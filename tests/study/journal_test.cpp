@@ -36,6 +36,33 @@ TEST_F(JournalTest, KeepsResultsOverAnEnd) {
   EXPECT_EQ(journal.result(3), std::nullopt);
 }
 
+// What a handler of signals appends is a line like any other.
+TEST_F(JournalTest, LastWordsReadLikeOthers) {
+  {
+    Journal journal(file(), "s", 0);
+    journal.append(4, "as ever");
+    journal.append_at_the_end(12345678901234567890U, "[\"crashed\"]");
+    journal.append_at_the_end(4, "is there already");
+    journal.append_at_the_end(0, std::string(Journal::longest_last_words + 1, 'x'));
+  }
+  {
+    Journal other(folder_ / "other.journal", "s", 0);
+    other.append(4, "as ever");
+  }
+  const std::string by_append = base::read_text(folder_ / "other.journal");
+  const std::string both = base::read_text(file());
+  EXPECT_EQ(both.substr(0, by_append.size()), by_append);
+  EXPECT_THAT(both.substr(by_append.size()), testing::StartsWith("12345678901234567890 [\"crashed\"] "));
+  std::ofstream(file(), std::ios::binary | std::ios::trunc) << "snare-journal/1 s\n";
+  {
+    Journal journal(file(), "s", 10);
+    journal.append_at_the_end(7, "last");
+  }
+  const Journal journal(file(), "s", 10);
+  EXPECT_EQ(journal.result(7), "last");
+  EXPECT_EQ(journal.damaged(), 0U);
+}
+
 TEST_F(JournalTest, RefusesAnotherStudy) {
   { Journal journal(file(), "study 1", 10); }
   EXPECT_THAT(test::refusal([&] { return Journal(file(), "study 2", 10); }),

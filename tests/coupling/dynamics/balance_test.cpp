@@ -195,6 +195,34 @@ TEST(MotionState, GoingOnFromACheckpointGivesTheSameBits) {
   EXPECT_EQ(states[1].time, 0.024);
 }
 
+// Times that differ by less than 1e-13 s are the same: a leg between two checkpoints must be longer, or none ever ends.
+TEST(MotionState, LegsAreLongerThanRoundOff) {
+  const Motion motion = oblique_impact(soft_rod(End::clamp, End::pin));
+  MotionOptions options;
+  for (const double duration : {1e-300, 1e-13, 1e-12, 1e-11}) {
+    options.duration = duration;
+    options.checkpoint_interval = 0.1 * duration;
+    const MotionResult result = simulate(motion, options);
+    EXPECT_TRUE(result.report.usable()) << result.report.message;
+    EXPECT_NEAR(result.report.time, duration, 1e-13);
+  }
+}
+
+// No law of contact knows what happens at such a speed.
+TEST(MotionState, ABodyThatIsTooFastEndsTheRun) {
+  Motion motion = oblique_impact(soft_rod(End::clamp, End::pin));
+  motion.bodies[0].name = "visitor";
+  motion.bodies[0].force = {0.0, -1e4, 0.0};  // away from the wire
+  MotionOptions options;
+  options.duration = 0.1;
+  options.max_step = 1e-4;
+  const MotionResult result = simulate(motion, options);
+  EXPECT_FALSE(result.report.usable());
+  EXPECT_THAT(result.report.message,
+              testing::MatchesRegex("visitor moves at 20.. m/s; bodies are computed up to 2000 m/s"));
+  EXPECT_NEAR(result.report.time, 2000.0 / (1e4 / 0.05), 1e-4);  // of a constant acceleration, at most a step further
+}
+
 // Runs share nothing that they change, the motion with its shapes included.
 TEST(MotionState, RunsAtTheSameTimeGiveTheSameBits) {
   const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
