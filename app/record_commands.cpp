@@ -2,13 +2,13 @@
 
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
-#include "app/record_json.hpp"
 #include "app/report/record_report.hpp"
 #include "app/result_folder.hpp"
-#include "base/csv.hpp"
 #include "base/files.hpp"
 #include "identification/motion_tracing/trace_records.hpp"
 #include "identification/records/record_file.hpp"
+#include "results/record_json.hpp"
+#include "results/result_table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,23 +25,8 @@ using identification::MotionTrace;
 using identification::RecordSet;
 
 void write_record_curves(const std::filesystem::path& file, const RecordSet& set, const MotionTrace& trace) {
-  base::CsvWriter csv(file, {"record", "sensor", "unit", "time_s", "measured", "declared", "base", "final"});
-  for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const identification::MotionRecord& record = set.records[r];
-    for (std::size_t c = 0; c < record.channels.size(); ++c) {
-      std::string unit;
-      for (const identification::ChannelError& e : trace.base.errors)
-        if (e.sensor == record.channels[c].sensor) unit = e.unit;
-      const auto cell = [&](const MotionStage& stage, Eigen::Index i) -> base::CsvCell {
-        if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return std::monostate{};
-        return stage.predictions[r].channels[c][i];
-      };
-      for (Eigen::Index i = 0; i < record.times.size(); ++i)
-        csv.row({std::string_view(record.name), std::string_view(record.channels[c].sensor), std::string_view(unit),
-                 record.times[i], record.channels[c].values[i], cell(trace.declared, i), cell(trace.base, i),
-                 cell(trace.final, i)});
-    }
-  }
+  results::CsvSink csv(file);
+  results::give_record_curves(csv, set, trace);
   csv.commit();
 }
 
@@ -50,12 +35,12 @@ using Write = void (*)(const RecordSet& set, const MotionTrace& trace, const Com
 void write_trace(const RecordSet& set, const MotionTrace& trace, const CommonOptions& options) {
   write_record_curves(options.out / "curves.csv", set, trace);
   base::write_text(options.out / "report.html", record_report_html(set, trace));
-  write_result(options, "trace.json", record_trace_json(set, trace));
+  write_result(options, "trace.json", results::record_trace_json(set, trace));
 }
 
 void write_fit(const RecordSet& set, const MotionTrace& trace, const CommonOptions& options) {
   write_record_curves(options.out / "curves.csv", set, trace);
-  write_result(options, "fit.json", record_fit_json(set, trace));
+  write_result(options, "fit.json", results::record_fit_json(set, trace));
 }
 
 /// What of a trace is whole, for an interruption that comes while the next part is under way.

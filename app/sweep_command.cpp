@@ -4,11 +4,10 @@
 #include "app/interruption.hpp"
 #include "app/launched_ranks.hpp"
 #include "app/result_folder.hpp"
-#include "app/sweep_answers.hpp"
 #include "app/sweep_page.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
-#include "study/case_loop.hpp"
+#include "results/sweep_run.hpp"
 #include "study/rank_work.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <mutex>
@@ -29,127 +27,7 @@ namespace snare::app {
 
 namespace {
 
-using study::CaseRecord;
 using study::Journal;
-
-std::string time_words(double seconds) {
-  constexpr double minute = 60.0, hour = 3600.0;
-  if (seconds < 2.0 * minute) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 2.0 * hour) return fmt::format("{:.0f} min", seconds / minute);
-  return fmt::format("{:.1f} h", seconds / hour);
-}
-
-/// Runs the cases that the journal does not have yet.
-class SweepRun {
- public:
-  SweepRun(const SweepStudy& study, Journal& journal, int threads, study::RankLeader* leader, Console& console)
-      : study_(study), journal_(journal), threads_(threads), leader_(leader), console_(console) {}
-
-  /// Cases of a design. Throws what ends all.
-  void design() {
-    const std::uint64_t count = study_.count();
-    study::Scheduler scheduler({.count = count, .workers = workers(), .chunk_s = chunk_s()},
-                               [this](std::uint64_t k) { return journal_.has(k); });
-    total_ = count;
-    begin();
-    study::Dispatcher dispatcher(
-        std::move(scheduler), [this](std::uint64_t index, const std::string& line) { keep(index, line); }, interrupted);
-    run(
-        dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
-  }
-
-  /// Cases of a subset simulation, of which the next ones depend on the last. True when it came to its end.
-  bool subset(study::SubsetSimulation& simulation) {
-    begin();
-    while (!simulation.finished() && !interrupted()) {
-      const std::uint64_t base = simulation.told();
-      const std::vector<std::vector<double>>& asked = simulation.next();
-      total_ = base + asked.size();
-      const auto values = [&](std::uint64_t k) { return study_.sweep().design.values_of_scores(asked[k]); };
-      study::Dispatcher dispatcher(
-          study::Scheduler({.count = asked.size(), .workers = workers(), .chunk_s = chunk_s()},
-                           [&](std::uint64_t k) { return journal_.has(base + k); }),
-          [&](std::uint64_t k, const std::string& line) { keep(base + k, line); }, interrupted);
-      run(dispatcher, values, [base](std::uint64_t k) { return base + k; });
-      if (interrupted()) return false;
-      std::vector<std::optional<double>> margins;
-      for (std::uint64_t k = 0; k < asked.size(); ++k) {
-        const std::optional<std::string> line = journal_.result(base + k);
-        const auto record = line ? study::record_of(*line) : std::nullopt;
-        margins.push_back(record ? study_.margin_of(*record) : std::nullopt);
-      }
-      simulation.tell(margins);
-    }
-    return simulation.finished();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  [[nodiscard]] int workers() const { return workers_; }
-  /// Threads ask for a case at a time; ranks for half a second's.
-  [[nodiscard]] double chunk_s() const { return leader_ != nullptr ? 0.5 : 0.0; }
-
- public:
-  void set_workers(int workers) { workers_ = std::max(1, workers); }
-
- private:
-  void begin() {
-    before_ = journal_.finished();
-    began_ = Clock::now();
-    if (const auto line = before_ > 0 ? journal_.result(0) : std::nullopt; line) any_done_ = true;
-  }
-
-  template <class Values, class Number>
-  void run(study::Dispatcher& dispatcher, const Values& values, const Number& number) {
-    const auto run_one = [&](std::uint64_t k, const std::vector<double>& given) {
-      const CrashNote note(journal_, number(k), given);
-      return study::line_of(study_.run(given.empty() ? study_.sweep().design.values(number(k)) : given, interrupted));
-    };
-    if (leader_ != nullptr) {
-      leader_->run(dispatcher, run_one, values, [&](std::uint64_t k) {
-        CaseRecord record{"lost", "the process that ran it ended, twice", 0.0, {}, {}};
-        if (study_.count() == 0) record.values = values(k);
-        return study::line_of(record);
-      });
-    } else {
-      study::run_cases(dispatcher, threads_, [&](std::uint64_t k) { return run_one(k, values(k)); });
-      dispatcher.rethrow();
-    }
-  }
-
-  /// Called for one case at a time.
-  void keep(std::uint64_t index, const std::string& line) {
-    const std::optional<CaseRecord> record = study::record_of(line);
-    if (!record) throw std::runtime_error("a case has a result that cannot be read back");
-    if (record->status == "no_field" && !any_done_) {
-      throw base::InputError({study_.sweep().file.string(), 0, "collect", "", record->reason});
-    }
-    any_done_ = true;
-    journal_.append(index, line);
-    if (!record->done()) ++without_;
-    const std::uint64_t done = journal_.finished();
-    const double elapsed = std::chrono::duration<double>(Clock::now() - began_).count();
-    if (elapsed - shown_ < 0.1 && done < total_) return;
-    shown_ = elapsed;
-    const double share =
-        static_cast<double>(done - before_) / static_cast<double>(std::max<std::uint64_t>(1, total_ - before_));
-    console_.progress(fmt::format("{} of {} cases{}, {} to go", done, total_,
-                                  without_ > 0 ? fmt::format(" ({} without a result)", without_) : "",
-                                  time_words(elapsed * (1.0 - share) / share)));
-  }
-
-  const SweepStudy& study_;
-  Journal& journal_;
-  int threads_;
-  int workers_ = 1;
-  study::RankLeader* leader_;
-  Console& console_;
-  std::uint64_t total_ = 0, before_ = 0, without_ = 0;
-  bool any_done_ = false;
-  double shown_ = -1.0;
-  Clock::time_point began_;
-};
 
 /// One case by itself, as its verb would run it.
 ExitStatus run_one_case(const SweepStudy& study, const CommonOptions& options, Console& console) {
@@ -191,12 +69,14 @@ ExitStatus run_one_case(const SweepStudy& study, const CommonOptions& options, C
 }
 
 /// What the cases in the journal say, into the folder.
-SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, std::uint64_t cases,
-                           const std::optional<SubsetAnswer>& subset, bool partial, const CommonOptions& options) {
-  SweepAnswers answers = sweep_answers(study, journal, cases);
-  answers.subset = subset;
-  answers.interrupted = partial;
-  write_cases(options.out / "cases.csv", study, journal, cases);
+SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, const SweepEnd& end,
+                           const CommonOptions& options) {
+  SweepAnswers answers = sweep_answers(study, journal, end.cases);
+  answers.subset = end.subset;
+  answers.interrupted = end.partial;
+  CsvSink csv(options.out / "cases.csv");
+  give_cases(csv, study, journal, end.cases);
+  csv.commit();
   base::write_text(options.out / "report.html", sweep_page(study, answers));
   write_result(options, "summary.json", sweep_summary(study, answers));
   return answers;
@@ -236,16 +116,14 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
       },
       options.json ? "snare-sweep-summary/1" : "");
 
-  SweepRun run(study, *journal, threads, leader, console);
-  run.set_workers(threads * ranks);
-  std::optional<study::SubsetSimulation> simulation;
+  const SweepWorkers workers{threads, threads * ranks, leader,
+                             [&](std::uint64_t index, const std::vector<double>& values) -> std::shared_ptr<void> {
+                               return std::make_shared<CrashNote>(*journal, index, values);
+                             }};
+  SweepEnd end;
   try {
-    if (study.count() > 0) {
-      run.design();
-    } else {
-      simulation.emplace(study.subset_settings());
-      run.subset(*simulation);
-    }
+    end = run_sweep_cases(study, *journal, workers,
+                          {[&console](const std::string& stage) { console.progress(stage); }, interrupted});
   } catch (const base::InputError&) {
     const bool empty = journal->finished() == 0;
     journal.reset();
@@ -257,15 +135,10 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
   begin_writing();
   journal->flush();
 
-  const std::uint64_t finished = journal->finished();
-  const bool partial = study.count() > 0 ? finished < study.count() : !simulation->finished();
-  if (partial)
-    console.complain(fmt::format("interrupted: {} cases are finished and kept; the same command goes on", finished));
-  std::optional<SubsetAnswer> subset;
-  if (simulation && !partial)
-    subset = {simulation->probability(), simulation->variation(), simulation->reached(), simulation->levels()};
-  const std::uint64_t cases = study.count() > 0 ? study.count() : simulation->told() + simulation->next().size();
-  const SweepAnswers answers = write_answers(study, *journal, cases, subset, partial, options);
+  if (end.partial)
+    console.complain(
+        fmt::format("interrupted: {} cases are finished and kept; the same command goes on", journal->finished()));
+  const SweepAnswers answers = write_answers(study, *journal, end, options);
   const auto done = answers.statuses.find("done");
   const std::uint64_t well = done == answers.statuses.end() ? 0 : done->second;
   if (well < answers.finished) {
@@ -273,7 +146,7 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
                                  answers.finished));
   }
   if (!options.json) tell(answers, options, console);
-  return partial || well == 0 ? ExitStatus::solver_stopped : ExitStatus::done;
+  return end.partial || well == 0 ? ExitStatus::solver_stopped : ExitStatus::done;
 }
 
 int thread_count(const CommonOptions& options, bool ranks) {

@@ -3,6 +3,8 @@
 #include "base/files.hpp"
 #include "base/toml_tree.hpp"
 #include "identification/effects/catalogue.hpp"
+#include "identification/motion_tracing/trace_records.hpp"
+#include "identification/records/record_file.hpp"
 #include "python/convert.hpp"
 #include "python/law.hpp"
 #include "python/work.hpp"
@@ -13,8 +15,10 @@
 #include "results/motion_history.hpp"
 #include "results/motion_summary.hpp"
 #include "results/push_result.hpp"
+#include "results/record_json.hpp"
 #include "results/simulation.hpp"
 #include "results/static_comparison.hpp"
+#include "results/sweep_run.hpp"
 #include "results/trace_json.hpp"
 #include "results/warnings.hpp"
 #include "scenario/scenario.hpp"
@@ -24,9 +28,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -90,11 +99,46 @@ py::tuple traced(const Path& file, const Pairs& set, int threads, const py::obje
   return py::make_tuple(to_python(result->document), curves.take());
 }
 
+/// The same of records in time.
+py::tuple traced_records(const Path& file, const Pairs& set, int threads, const py::object& progress, bool effects) {
+  struct Traced {
+    identification::MotionTrace trace;
+    json document;
+  };
+  const auto records =
+      std::make_shared<const identification::RecordSet>(identification::read_records(file, overrides_of(set)));
+  const auto result = made(
+      [records, effects](const results::Watch& watch) {
+        identification::MotionTraceOptions watched;
+        watched.effects = effects;
+        watched.progress = [&watch](const std::string& stage) {
+          watch.say(stage);
+          return !watch.stopped();
+        };
+        Traced one{identification::trace_records(*records, watched), {}};
+        if (one.trace.report.usable()) {
+          one.document = effects ? results::record_trace_json(*records, one.trace)
+                                 : results::record_fit_json(*records, one.trace);
+        }
+        return one;
+      },
+      threads, progress);
+  const identification::MotionTrace& trace = result->trace;
+  if (!trace.report.usable()) return py::make_tuple(py::none(), trace.report.message);
+  ColumnSink curves;
+  results::give_record_curves(curves, *records, trace);
+  return py::make_tuple(to_python(result->document), curves.take());
+}
+
 py::tuple trace(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  if (identification::is_record_file(file, overrides_of(set)))
+    return traced_records(file, set, threads, progress, true);
   return traced(file, set, threads, progress, {}, results::trace_document);
 }
 
 py::tuple fit(const Path& file, const Pairs& set, int threads, const py::object& progress) {
+  if (identification::is_record_file(file, overrides_of(set)))
+    return traced_records(file, set, threads, progress, false);
   return traced(file, set, threads, progress, results::fitting_options(), results::fit_json);
 }
 
@@ -181,6 +225,48 @@ py::object compare(const Path& file, const Pairs& set, int threads, const py::ob
                           : compared_pushes(file, set, threads, progress));
 }
 
+/// The summary of a sweep, and a row a case. folder: where its journal is kept, empty: nowhere.
+py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::object& progress, const Path& folder) {
+  /// A folder for as long as nobody else keeps one.
+  struct Folder {
+    Path path;
+    bool ours;
+    explicit Folder(const Path& given) : path(given), ours(given.empty()) {
+      if (ours) {
+        std::string name = (std::filesystem::temp_directory_path() / "snare-sweep-XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr)
+          throw std::system_error(errno, std::generic_category(), "cannot make " + name);
+        path = name;
+      } else {
+        std::filesystem::create_directories(path);
+      }
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+      std::error_code ignored;
+      if (ours) std::filesystem::remove_all(path, ignored);
+    }
+  };
+  const auto study = std::make_shared<const results::SweepStudy>(file, overrides_of(set));
+  const auto kept = std::make_shared<const Folder>(folder);
+  const auto cases = std::make_shared<ColumnSink>();
+  const int wanted = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const auto summary = made(
+      [study, kept, cases, wanted](const results::Watch& watch) {
+        study::Journal journal(kept->path / "cases.journal", study->identity(), study->count());
+        const results::SweepEnd end = results::run_sweep_cases(*study, journal, {wanted, wanted, nullptr, {}}, watch);
+        journal.flush();
+        results::SweepAnswers answers = results::sweep_answers(*study, journal, end.cases);
+        answers.subset = end.subset;
+        answers.interrupted = end.partial;
+        results::give_cases(*cases, *study, journal, end.cases);
+        return results::sweep_summary(*study, answers);
+      },
+      threads, progress);
+  return py::make_tuple(to_python(*summary), cases->take());
+}
+
 }  // namespace
 
 void add_verbs(py::module_& module) {
@@ -193,6 +279,8 @@ void add_verbs(py::module_& module) {
   add("distil", distil, "law.json and its laws; None and a message where a curve could not be computed.");
   add("simulate", simulate, "summary.json and the columns of history.csv and telemetry.csv.");
   add("compare", compare, "compare.json.");
+  module.def("sweep", sweep, "summary.json and the columns of cases.csv.", py::arg("file"), py::arg("set"),
+             py::arg("threads"), py::arg("progress"), py::arg("folder"));
 }
 
 }  // namespace snare::python

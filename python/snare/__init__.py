@@ -19,7 +19,7 @@ Long work leaves other threads of Python running, and an interrupt (Ctrl-C) ends
 
 from snare._core import InputError, Law, SimpleLaw, __version__
 from snare._results import load
-from snare._verbs import SolverError, compare, distil, fit, push, simulate, trace
+from snare._verbs import SolverError, compare, distil, fit, push, simulate, sweep, trace
 
 __all__ = ["InputError", "Law", "SimpleLaw", "SolverError", "__version__", "compare", "distil", "fit", "load", "push",
-           "simulate", "trace"]
+           "simulate", "sweep", "trace"]

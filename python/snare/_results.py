@@ -19,7 +19,7 @@ _UNITS = {"mm": ("m", 1e-3), "deg": ("rad", math.pi / 180.0)}
 # The document of a verb, and the tables beside it.
 _DOCUMENTS = ("trace.json", "fit.json", "law.json", "compare.json", "summary.json", "reproduce.json", "ringdown.json",
               "validation.json")
-_TABLES = ("curves", "history", "telemetry")
+_TABLES = {"curves": "curves", "history": "history", "telemetry": "telemetry", "cases": "table"}
 
 
 def in_si(columns: Mapping[str, Any]) -> Dict[str, Any]:
@@ -48,6 +48,9 @@ def split(columns: Mapping[str, Any], by: str) -> Dict[str, Columns]:
 def table(columns: Mapping[str, Any]) -> Dict[str, Any]:
     """A table of results in SI units, by series or model where it has several."""
     result = in_si(columns)
+    if "record" in result and "sensor" in result:
+        return {record: {sensor: {**one, "unit": str(one["unit"][0])} for sensor, one in split(rows, "sensor").items()}
+                for record, rows in split(result, "record").items()}
     for by in ("series", "model"):
         if by in result:
             return split(result, by) if len(result[by]) else {}
@@ -73,7 +76,7 @@ def _read_csv(path: pathlib.Path) -> Dict[str, Any]:
             columns[name] = np.array([_number(text) for text in texts], dtype=float)
         except ValueError:
             columns[name] = texts
-    for by in ("series", "model"):  # names, also where all of them look like numbers
+    for by in ("series", "model", "record", "sensor", "unit", "status", "reason"):  # texts, also where all of them look like numbers
         if by in cells:
             columns[by] = cells[by]
     return columns
@@ -94,7 +97,7 @@ def load(path: Union[str, os.PathLike]) -> Result:
     """What the command has written, as the verbs return it.
 
     path: a folder of results (``--out``), a JSON document or a CSV table of one. Of a folder: its document with
-    ``curves``, ``history`` and ``telemetry`` where it has them, and ``laws`` for a law.json. FileNotFoundError where there is
+    ``curves``, ``history``, ``telemetry`` and ``table`` (of a sweep) where it has them, and ``laws`` for a law.json. FileNotFoundError where there is
     nothing of the kind, ValueError where a file is none of these.
     """
     path = pathlib.Path(path)
@@ -104,9 +107,9 @@ def load(path: Union[str, os.PathLike]) -> Result:
             if (path / name).is_file():
                 result = load(path / name)
                 break
-        for name in _TABLES:
+        for name, key in _TABLES.items():
             if (path / f"{name}.csv").is_file():
-                result[name] = table(_read_csv(path / f"{name}.csv"))
+                result[key] = table(_read_csv(path / f"{name}.csv"))
         if not result:
             raise FileNotFoundError(f"{path}: no results of snare in this folder")
         return result

@@ -99,6 +99,8 @@ def fit(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: i
 
     Returns fit.json (docs/trace_json.md) with ``curves``, which have ``measured_N``, ``base_N`` and ``final_N``. The numbers are
     in ``fit["parameters"]``, by key: value, stderr, lower95, upper95 and unit.
+    Of records in time (docs/record_file.md) ``curves`` has by record and sensor the columns ``time_s``, ``measured``, ``declared``,
+    ``base`` and ``final`` in the sensor's ``unit``.
     Raises InputError, and SolverError where the model cannot be fitted.
     """
     return _with_curves(_core.fit(experiment, _pairs(set), threads, _watcher(progress)))
@@ -168,3 +170,19 @@ def compare(case: File, *, set: Optional[Mapping[str, Any]] = None, threads: int
     Returns compare.json (docs/law_json.md). Raises InputError; what a model could not do stands in the result.
     """
     return _core.compare(case, _pairs(set), threads, _watcher(progress))
+
+
+def sweep(study: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0, progress: Progress = None,
+          out: Union[None, str, os.PathLike] = None) -> Result:
+    """Run many cases of one file: grids, designs, distributions, sensitivities, odds.
+
+    study: sweep file (docs/sweep_file.md); set: keys of it to override. out: a folder for the journal of finished cases, from
+    which the same call goes on after an interrupt or a crash; without one they are lost then. The other arguments as of ``push``.
+
+    Returns summary.json (docs/sweep_file.md) with ``table``: columns of one length, a row a finished case: ``case`` (from 1),
+    ``status``, ``reason``, the variables and the collected fields, in the units of the files.
+    Raises InputError; a case that has no result stands in ``table`` with its reason.
+    """
+    summary, cases = _core.sweep(study, _pairs(set), threads, _watcher(progress), "" if out is None else out)
+    summary["table"] = cases
+    return summary

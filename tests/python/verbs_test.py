@@ -82,6 +82,71 @@ class Verbs(unittest.TestCase):
         self.assertEqual([one["case"] for one in pushes["cases"]], ["quarter", "middle"])
         self.assertEqual(pushes["cases"][0]["models"][0]["error_full_wire"]["largest_N"], 0.0)
 
+    def test_records_in_time_are_fitted_and_traced(self):
+        with tempfile.TemporaryDirectory() as folder:
+            here = pathlib.Path(folder)
+            for name in ("pendulum_scenario.toml", "pendulum_arm.toml", "pendulum.urdf"):
+                (here / name).write_text((setting.SOURCE / "data/records" / name).read_text())
+            bearing = "arms[pendulum].joint.bearing.viscous_Nms_rad"
+            swing = snare.simulate(here / "pendulum_scenario.toml", set={"duration_s": 1.5, bearing: 5e-4})["telemetry"]
+            random = np.random.default_rng(3)
+            rows = zip(swing["time_s"], np.degrees(swing["encoder_rad"]) + 0.01 * random.standard_normal(len(swing["time_s"])))
+            (here / "swing.csv").write_text("time_s,angle_deg\n" + "".join(f"{t!r},{a!r}\n" for t, a in rows))
+            (here / "record.toml").write_text(f"""schema = "snare-record/1"
+title = "a swing"
+scenario = "pendulum_scenario.toml"
+[[records]]
+name = "swing"
+file = "swing.csv"
+columns = {{ angle_deg = "encoder" }}
+[fit]
+free = ["{bearing}"]
+""")
+            fitted = snare.fit(here / "record.toml")
+            self.assertAlmostEqual(fitted["fit"]["parameters"][bearing]["value"], 5e-4, delta=2e-6)
+            encoder = fitted["curves"]["swing"]["encoder"]
+            self.assertEqual(encoder["unit"], "deg")
+            self.assertAlmostEqual(np.std(encoder["measured"] - encoder["final"]), 0.01, delta=0.002)
+            same(self, fitted, self.written("fit", here / "record.toml"))
+            traced = snare.trace(here / "record.toml")
+            self.assertEqual(traced["selected"], [])
+            same(self, traced, self.written("trace", here / "record.toml"))
+
+    def test_a_sweep_is_that_of_the_command(self):
+        with tempfile.TemporaryDirectory() as folder:
+            study = pathlib.Path(folder) / "study.toml"
+            study.write_text(f"""schema = "snare-sweep/1"
+case = "{EXPERIMENT}"
+verb = "push"
+design = "latin_hypercube"
+cases = 6
+[[vary]]
+key = "pusher.friction"
+uniform = [0.0, 0.2]
+[collect]
+force_N = "series[middle].largest_force_N"
+""")
+            told = []
+            result = snare.sweep(study, threads=2, progress=told.append)
+            self.assertTrue(told)
+            self.assertEqual(list(result["table"]["case"]), [1, 2, 3, 4, 5, 6])
+            self.assertEqual(result["table"]["status"], ["done"] * 6)
+            one = snare.push(EXPERIMENT, set={"pusher.friction": result["table"]["pusher.friction"][3]})
+            self.assertEqual(one["series"][1]["largest_force_N"], result["table"]["force_N"][3])
+            same(self, result, self.written("sweep", study))
+            # A sweep that was stopped goes on from its folder.
+            kept = pathlib.Path(folder) / "kept"
+
+            def stop(text):
+                raise KeyboardInterrupt(text)
+
+            with self.assertRaises(KeyboardInterrupt):
+                snare.sweep(study, threads=1, progress=stop, out=kept)
+            self.assertGreater((kept / "cases.journal").stat().st_size, 0)
+            same(self, snare.sweep(study, out=kept), result)
+            with self.assertRaises(snare.InputError):
+                snare.sweep(study, set={"cases": 0})
+
     def test_lengths_of_columns_are_in_metres(self):
         middle = snare.push(EXPERIMENT)["curves"]["middle"]
         # The last line of push_middle.csv has millimetres.

@@ -1,10 +1,11 @@
 #pragma once
 
 #include "identification/motion_tracing/motion_trace.hpp"
+#include "results/result_table.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace snare::app {
+namespace snare::results {
 
 /// trace.json of records in time: docs/record_file.md.
 [[nodiscard]] nlohmann::json record_trace_json(const identification::RecordSet& set,
@@ -13,4 +14,8 @@ namespace snare::app {
 [[nodiscard]] nlohmann::json record_fit_json(const identification::RecordSet& set,
                                              const identification::MotionTrace& trace);
 
-}  // namespace snare::app
+/// The columns of curves.csv: every reading of every channel beside what the declared, the base and the final model say.
+void give_record_curves(TableSink& sink, const identification::RecordSet& set,
+                        const identification::MotionTrace& trace);
+
+}  // namespace snare::results

@@ -1,4 +1,4 @@
-#include "app/case_runner.hpp"
+#include "results/case_runner.hpp"
 
 #include "base/archive.hpp"
 #include "base/errors.hpp"
@@ -22,7 +22,7 @@
 #include <utility>
 #include <variant>
 
-namespace snare::app {
+namespace snare::results {
 
 using namespace results;
 
@@ -207,4 +207,4 @@ std::string contents_of_files(const fs::path& file) {
   return all;
 }
 
-}  // namespace snare::app
+}  // namespace snare::results

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace snare::app {
+namespace snare::results {
 
 /// What a case of a study has come to.
 struct CaseEnd {
@@ -51,4 +51,4 @@ class CaseRunner {
 /// What is missing or cannot be read is passed over: readers complain of it.
 [[nodiscard]] std::string contents_of_files(const std::filesystem::path& file);
 
-}  // namespace snare::app
+}  // namespace snare::results

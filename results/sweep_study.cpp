@@ -1,6 +1,6 @@
-#include "app/sweep_study.hpp"
+#include "results/sweep_study.hpp"
 
-#include "app/commands.hpp"
+#include "results/version.hpp"
 #include "base/archive.hpp"
 #include "base/errors.hpp"
 
@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace snare::app {
+namespace snare::results {
 
 namespace {
 
@@ -121,4 +121,4 @@ study::SubsetSimulation::Settings SweepStudy::subset_settings() const {
           design.seed};
 }
 
-}  // namespace snare::app
+}  // namespace snare::results

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "app/sweep_study.hpp"
+#include "results/result_table.hpp"
+#include "results/sweep_study.hpp"
 #include "study/proportion.hpp"
 #include "study/sobol_indices.hpp"
 
@@ -12,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace snare::app {
+namespace snare::results {
 
 /// A field over the cases that have it.
 struct FieldAnswer {
@@ -91,8 +92,7 @@ struct SweepAnswers {
 /// summary.json.                                                                        docs/sweep_file.md
 [[nodiscard]] nlohmann::json sweep_summary(const SweepStudy& study, const SweepAnswers& answers);
 
-/// cases.csv: the finished cases in order.
-void write_cases(const std::filesystem::path& file, const SweepStudy& study, const study::Journal& journal,
-                 std::uint64_t cases);
+/// The columns of cases.csv: the finished cases in order.
+void give_cases(TableSink& sink, const SweepStudy& study, const study::Journal& journal, std::uint64_t cases);
 
-}  // namespace snare::app
+}  // namespace snare::results

@@ -1,4 +1,4 @@
-#include "app/record_json.hpp"
+#include "results/record_json.hpp"
 
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-namespace snare::app {
+namespace snare::results {
 
 namespace {
 
@@ -162,4 +162,24 @@ json record_fit_json(const RecordSet& set, const MotionTrace& trace) {
   return result;
 }
 
-}  // namespace snare::app
+void give_record_curves(TableSink& sink, const RecordSet& set, const MotionTrace& trace) {
+  sink.begin({"record", "sensor", "unit", "time_s", "measured", "declared", "base", "final"});
+  for (std::size_t r = 0; r < set.records.size(); ++r) {
+    const identification::MotionRecord& record = set.records[r];
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+      std::string unit;
+      for (const identification::ChannelError& e : trace.base.errors)
+        if (e.sensor == record.channels[c].sensor) unit = e.unit;
+      const auto cell = [&](const identification::MotionStage& stage, Eigen::Index i) -> base::CsvCell {
+        if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return std::monostate{};
+        return stage.predictions[r].channels[c][i];
+      };
+      for (Eigen::Index i = 0; i < record.times.size(); ++i)
+        sink.row({std::string_view(record.name), std::string_view(record.channels[c].sensor), std::string_view(unit),
+                  record.times[i], record.channels[c].values[i], cell(trace.declared, i), cell(trace.base, i),
+                  cell(trace.final, i)});
+    }
+  }
+}
+
+}  // namespace snare::results

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/case_runner.hpp"
+#include "results/case_runner.hpp"
 #include "study/case_record.hpp"
 #include "study/journal.hpp"
 #include "study/subset.hpp"
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace snare::app {
+namespace snare::results {
 
 /// The cases of a sweep file: what each is, and how it is run.
 class SweepStudy {
@@ -48,4 +48,4 @@ class SweepStudy {
   std::string identity_;
 };
 
-}  // namespace snare::app
+}  // namespace snare::results

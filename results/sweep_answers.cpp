@@ -1,7 +1,6 @@
-#include "app/sweep_answers.hpp"
+#include "results/sweep_answers.hpp"
 
-#include "app/commands.hpp"
-#include "base/csv.hpp"
+#include "results/version.hpp"
 #include "results/finite_json.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +13,7 @@
 #include <numeric>
 #include <utility>
 
-namespace snare::app {
+namespace snare::results {
 
 namespace {
 
@@ -291,13 +290,12 @@ SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journa
   return answers;
 }
 
-void write_cases(const std::filesystem::path& file, const SweepStudy& study, const study::Journal& journal,
-                 std::uint64_t cases) {
+void give_cases(TableSink& sink, const SweepStudy& study, const study::Journal& journal, std::uint64_t cases) {
   const study::SweepFile& sweep = study.sweep();
   std::vector<std::string> columns{"case", "status", "reason"};
   for (const study::Variable& v : sweep.design.variables()) columns.push_back(v.name);
   for (const study::Collected& c : sweep.collect) columns.push_back(c.name);
-  base::CsvWriter csv(file, columns);
+  sink.begin(columns);
   std::vector<base::CsvCell> row;
   std::vector<std::string> texts(columns.size());
   for_each_case(journal, cases, [&](std::uint64_t index, const CaseRecord& record) {
@@ -326,9 +324,8 @@ void write_cases(const std::filesystem::path& file, const SweepStudy& study, con
         add(json::parse(study::literal(v, values[j]), nullptr, false));
     }
     for (std::size_t f = 0; f < sweep.collect.size(); ++f) add(f < record.fields.size() ? record.fields[f] : json());
-    csv.row(row);
+    sink.row(row);
   });
-  csv.commit();
 }
 
 json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
@@ -409,4 +406,4 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
   return summary;
 }
 
-}  // namespace snare::app
+}  // namespace snare::results

@@ -1,0 +1,152 @@
+#include "results/sweep_run.hpp"
+
+#include "base/errors.hpp"
+#include "study/case_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+
+namespace snare::results {
+
+namespace {
+
+using study::CaseRecord;
+using study::Journal;
+
+std::string time_words(double seconds) {
+  constexpr double minute = 60.0, hour = 3600.0;
+  if (seconds < 2.0 * minute) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 2.0 * hour) return fmt::format("{:.0f} min", seconds / minute);
+  return fmt::format("{:.1f} h", seconds / hour);
+}
+
+/// Runs the cases that the journal does not have yet.
+class SweepRun {
+ public:
+  SweepRun(const SweepStudy& study, Journal& journal, const SweepWorkers& workers, const Watch& watch)
+      : study_(study), journal_(journal), workers_(workers), watch_(watch) {}
+
+  /// Cases of a design. Throws what ends all.
+  void design() {
+    const std::uint64_t count = study_.count();
+    study::Scheduler scheduler({.count = count, .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+                               [this](std::uint64_t k) { return journal_.has(k); });
+    total_ = count;
+    begin();
+    study::Dispatcher dispatcher(
+        std::move(scheduler), [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
+    run(
+        dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
+  }
+
+  /// Cases of a subset simulation, of which the next ones depend on the last. True when it came to its end.
+  bool subset(study::SubsetSimulation& simulation) {
+    begin();
+    while (!simulation.finished() && !watch_.stopped()) {
+      const std::uint64_t base = simulation.told();
+      const std::vector<std::vector<double>>& asked = simulation.next();
+      total_ = base + asked.size();
+      const auto values = [&](std::uint64_t k) { return study_.sweep().design.values_of_scores(asked[k]); };
+      study::Dispatcher dispatcher(
+          study::Scheduler({.count = asked.size(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+                           [&](std::uint64_t k) { return journal_.has(base + k); }),
+          [&](std::uint64_t k, const std::string& line) { keep(base + k, line); }, stop_);
+      run(dispatcher, values, [base](std::uint64_t k) { return base + k; });
+      if (watch_.stopped()) return false;
+      std::vector<std::optional<double>> margins;
+      for (std::uint64_t k = 0; k < asked.size(); ++k) {
+        const std::optional<std::string> line = journal_.result(base + k);
+        const auto record = line ? study::record_of(*line) : std::nullopt;
+        margins.push_back(record ? study_.margin_of(*record) : std::nullopt);
+      }
+      simulation.tell(margins);
+    }
+    return simulation.finished();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Threads ask for a case at a time; ranks for half a second's.
+  [[nodiscard]] double chunk_s() const { return workers_.leader != nullptr ? 0.5 : 0.0; }
+
+  void begin() {
+    before_ = journal_.finished();
+    began_ = Clock::now();
+    if (const auto line = before_ > 0 ? journal_.result(0) : std::nullopt; line) any_done_ = true;
+  }
+
+  template <class Values, class Number>
+  void run(study::Dispatcher& dispatcher, const Values& values, const Number& number) {
+    const auto run_one = [&](std::uint64_t k, const std::vector<double>& given) {
+      const std::shared_ptr<void> held = workers_.around ? workers_.around(number(k), given) : nullptr;
+      return study::line_of(study_.run(given.empty() ? study_.sweep().design.values(number(k)) : given, stop_));
+    };
+    if (workers_.leader != nullptr) {
+      workers_.leader->run(dispatcher, run_one, values, [&](std::uint64_t k) {
+        CaseRecord record{"lost", "the process that ran it ended, twice", 0.0, {}, {}};
+        if (study_.count() == 0) record.values = values(k);
+        return study::line_of(record);
+      });
+    } else {
+      study::run_cases(dispatcher, workers_.threads, [&](std::uint64_t k) { return run_one(k, values(k)); });
+      dispatcher.rethrow();
+    }
+  }
+
+  /// Called for one case at a time.
+  void keep(std::uint64_t index, const std::string& line) {
+    const std::optional<CaseRecord> record = study::record_of(line);
+    if (!record) throw std::runtime_error("a case has a result that cannot be read back");
+    if (record->status == "no_field" && !any_done_) {
+      throw base::InputError({study_.sweep().file.string(), 0, "collect", "", record->reason});
+    }
+    any_done_ = true;
+    journal_.append(index, line);
+    if (!record->done()) ++without_;
+    const std::uint64_t done = journal_.finished();
+    const double elapsed = std::chrono::duration<double>(Clock::now() - began_).count();
+    if (elapsed - shown_ < 0.1 && done < total_) return;
+    shown_ = elapsed;
+    const double share =
+        static_cast<double>(done - before_) / static_cast<double>(std::max<std::uint64_t>(1, total_ - before_));
+    watch_.say(fmt::format("{} of {} cases{}, {} to go", done, total_,
+                                  without_ > 0 ? fmt::format(" ({} without a result)", without_) : "",
+                                  time_words(elapsed * (1.0 - share) / share)));
+  }
+
+  const SweepStudy& study_;
+  Journal& journal_;
+  const SweepWorkers& workers_;
+  const Watch& watch_;
+  const std::function<bool()> stop_{[this] { return watch_.stopped(); }};
+  std::uint64_t total_ = 0, before_ = 0, without_ = 0;
+  bool any_done_ = false;
+  double shown_ = -1.0;
+  Clock::time_point began_;
+};
+
+}  // namespace
+
+SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepWorkers& workers, const Watch& watch) {
+  SweepRun run(study, journal, workers, watch);
+  SweepEnd end;
+  if (study.count() > 0) {
+    run.design();
+    end.cases = study.count();
+    end.partial = journal.finished() < study.count();
+    return end;
+  }
+  study::SubsetSimulation simulation(study.subset_settings());
+  end.partial = !run.subset(simulation);
+  end.cases = simulation.told() + simulation.next().size();
+  if (!end.partial)
+    end.subset = {simulation.probability(), simulation.variation(), simulation.reached(), simulation.levels()};
+  return end;
+}
+
+}  // namespace snare::results

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "results/sweep_answers.hpp"
+#include "results/watch.hpp"
+#include "study/rank_work.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace snare::results {
+
+/// Who runs the cases of a sweep.
+struct SweepWorkers {
+  int threads = 1;                      ///< of this process
+  int all = 1;                          ///< threads of all processes
+  study::RankLeader* leader = nullptr;  ///< of other processes; none: this one alone
+  /// Held while a thread runs the case with this number in the journal; values: of a subset simulation, else none.
+  std::function<std::shared_ptr<void>(std::uint64_t index, const std::vector<double>& values)> around{};
+};
+
+/// How far a sweep has come.
+struct SweepEnd {
+  bool partial = false;                ///< not all cases are in the journal
+  std::uint64_t cases = 0;             ///< there are, as far as is known
+  std::optional<SubsetAnswer> subset;  ///< of a subset simulation that came to its end
+};
+
+/// Runs the cases that the journal does not have yet, and appends them. Throws base::InputError when a field that is to be collected
+/// is not in the first result, and what the journal throws; then what was appended is there.
+[[nodiscard]] SweepEnd run_sweep_cases(const SweepStudy& study, study::Journal& journal, const SweepWorkers& workers,
+                                       const Watch& watch);
+
+}  // namespace snare::results
