@@ -11,3 +11,7 @@ install(FILES "${PROJECT_BINARY_DIR}/snareConfig.cmake" "${PROJECT_BINARY_DIR}/s
               cmake/FindKLU.cmake cmake/SuiteSparseLibrary.cmake
         DESTINATION "${SNARE_PACKAGE_DIR}")
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+# cmake --build BUILD --target uninstall: takes away what the last installation from this build has put somewhere.
+add_custom_target(uninstall
+  COMMAND ${CMAKE_COMMAND} "-DBUILD_DIR=${PROJECT_BINARY_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/uninstall.cmake" VERBATIM)

@@ -41,6 +41,13 @@ function(snare_add_module name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_sources(${target} ${scope} FILE_SET HEADERS
                  BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers})
+  # <snare/wire/mesh.hpp> in the build tree as where it is installed.
+  file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  string(REGEX REPLACE "/.*" "" room "${room}")
+  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/include/snare")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${room}" "${PROJECT_BINARY_DIR}/include/snare/${room}" SYMBOLIC)
+  target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
+                                                "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   install(TARGETS ${target} EXPORT snareTargets
           FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/snare")
 endfunction()

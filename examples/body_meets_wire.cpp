@@ -3,10 +3,10 @@
 // The body of 50 kg moves as on a spring, since the wire's waves run to and fro 140 times meanwhile: k is that of a
 // clamped wire under tension, the contact lasts pi sqrt(m/k), m being the body's mass and a third of the wire's, and the
 // speed is reversed.
-#include "coupling/contact/tensioned_wire.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
-#include "wire/rod_constants.hpp"
+#include <snare/coupling/contact/tensioned_wire.hpp>
+#include <snare/coupling/dynamics/simulate.hpp>
+#include <snare/coupling/dynamics/start.hpp>
+#include <snare/wire/rod_constants.hpp>
 
 #include <cmath>
 #include <iostream>

@@ -3,7 +3,7 @@
 // The wire is that of the published static tests: solid steel, 1.5 mm thick, 180 mm long between clamps 175
 // mm apart. A knife edge pushes it outward, with its bulge. At mid-span the extensible elastica has the
 // same answer, 232.983 N.
-#include "coupling/statics/push_solver.hpp"
+#include <snare/coupling/statics/push_solver.hpp>
 
 #include <iostream>
 

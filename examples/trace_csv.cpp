@@ -4,8 +4,8 @@
 // push.toml beside this program stands for an experiment of one's own. Its readings were computed, not
 // measured: the travel counts from 0.25 mm before the first touch, and noise of 0.2 N was added. The
 // tracing has to find that out.
-#include "identification/effects/catalogue.hpp"
-#include "identification/tracing/trace.hpp"
+#include <snare/identification/effects/catalogue.hpp>
+#include <snare/identification/tracing/trace.hpp>
 
 #include <exception>
 #include <iostream>

@@ -3,7 +3,7 @@
 // A body of 8.9 kg hits the wire of a wire file at mid-span. The simulator knows the wire by its table
 // alone. How deep the body gets is known beforehand: to where the table's work, the integral of the force,
 // is the body's kinetic energy.
-#include "reduction/distil.hpp"
+#include <snare/reduction/distil.hpp>
 
 #include <algorithm>
 #include <exception>

@@ -24,8 +24,6 @@
 
 namespace snare::results {
 
-using namespace results;
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -93,7 +93,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"interrupted", trace.interrupted},
           {"title", set.title},
           {"source", set.source},
-          {"version", results::version()},
+          {"version", version()},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
           {"simulations",

@@ -90,7 +90,7 @@ def violations_of_file(path: pathlib.Path, file: str, files: dict[str, list[str]
         match = INCLUDE.match(line)
         if not match:
             continue
-        bracket, name = match.groups()
+        bracket, name = match[1], match[2].removeprefix("snare/")  # as users write it
         where = f"{file}:{number}"
         if name.split("/")[0] in FOLDERS and "/" in name:
             files[file].append(name)
