@@ -21,15 +21,15 @@ using identification::Series;
 using nlohmann::json;
 
 json shape_json(const coupling::PushShape& shape, double offset, double pusher_radius) {
-  return {{"displacement_mm", 1e3 * (shape.travel + offset)},
+  return {{"displacement_mm", in_mm(shape.travel + offset)},
           {"x_mm", in_mm(shape.x)},
           {"y_mm", in_mm(shape.y)},
           {"arc_mm", in_mm(shape.arc)},
           {"tension_N", shape.tension},
           {"moment_Nm", shape.moment},
-          {"pusher_x_mm", 1e3 * shape.pusher_centre.x()},
-          {"pusher_y_mm", 1e3 * shape.pusher_centre.y()},
-          {"pusher_radius_mm", 1e3 * pusher_radius}};
+          {"pusher_x_mm", in_mm(shape.pusher_centre.x())},
+          {"pusher_y_mm", in_mm(shape.pusher_centre.y())},
+          {"pusher_radius_mm", in_mm(pusher_radius)}};
 }
 
 json curve_json(const Series& series, const Prediction& prediction) {
@@ -54,8 +54,8 @@ json series_json(const Reproduction& reproduction, std::size_t k) {
   const Series& series = reproduction.experiment.series[k];
   const std::vector<double>& displacement = identification::measured_displacement(series);
   json result{{"name", series.name},
-              {"contact_position_mm", 1e3 * series.test.contact_position},
-              {"range_mm", 1e3 * *std::max_element(displacement.begin(), displacement.end())},
+              {"contact_position_mm", in_mm(series.test.contact_position)},
+              {"range_mm", in_mm(*std::max_element(displacement.begin(), displacement.end()))},
               {"displacement_mm", in_mm(displacement)},
               {"published_N", identification::measured_force(series)},
               {"published_stiffness_N_mm", published_stiffness(series)}};
@@ -89,7 +89,7 @@ json model_json(const identification::Experiment& experiment, const ReproducedMo
 json verdict_json(const RangeVerdict& v) {
   json fit = json::object();
   for (const auto& [name, one] : v.fit) fit[name] = {{"rmse_N", one.rmse}, {"scatter_N", one.scatter}};
-  json result{{"to_mm", 1e3 * v.to},
+  json result{{"to_mm", in_mm(v.to)},
               {"fit", fit},
               {"numbers", v.numbers},
               {"within_scatter", v.within_scatter},
@@ -122,7 +122,7 @@ json summary_json(const Reproduction& reproduction) {
   }
   json adequacy = json::array();
   for (const Adequacy& a : reproduction.adequacy) {
-    adequacy.push_back({{"to_mm", 1e3 * a.to},
+    adequacy.push_back({{"to_mm", in_mm(a.to)},
                         {"readings", a.readings},
                         {"numbers", a.numbers.size()},
                         {"keys", a.numbers},
@@ -149,9 +149,9 @@ json reproduce_json(const Reproduction& reproduction) {
               {"warnings", reproduction.warnings},
               {"assumptions", reproduction.assumptions},
               {"wire",
-               {{"diameter_mm", 1e3 * test.wire.diameter},
-                {"length_mm", 1e3 * test.wire.length},
-                {"span_mm", 1e3 * test.mount.span},
+               {{"diameter_mm", in_mm(test.wire.diameter)},
+                {"length_mm", in_mm(test.wire.length)},
+                {"span_mm", in_mm(test.mount.span)},
                 {"bending_stiffness_Nm2", test.wire.bending_stiffness()},
                 {"axial_stiffness_N", test.wire.axial_stiffness()}}},
               {"summary_statistics", summary_json(reproduction)},

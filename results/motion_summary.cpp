@@ -1,4 +1,5 @@
 #include "results/motion_summary.hpp"
+#include "results/in_mm.hpp"
 
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
@@ -68,7 +69,7 @@ json strength_json(const FinishedMotion& run) {
                     {"largest_share", use.share},
                     {"tension_N", use.tension},
                     {"bending_N", use.bending},
-                    {"arc_mm", 1e3 * use.arc},
+                    {"arc_mm", in_mm(use.arc)},
                     {"time_s", use.time}});
   }
   return list.empty() ? json::object() : json{{"strength", list}};
@@ -147,7 +148,7 @@ json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
     return summary;
   }
   summary["kind"] = run.asked.model;
-  summary["deepest_mm"] = 1e3 * deepest(run, probe);
+  summary["deepest_mm"] = in_mm(deepest(run, probe));
   summary.update(contact_times_json(run, 0));
   return summary;
 }
@@ -224,7 +225,7 @@ json lists_json(const FinishedMotion& run) {
                {"what", coupling::to_string(e.kind)},
                {"contact", contacts[at(e.contact)]},
                {"point", e.point + 1},
-               {"arc_mm", 1e3 * e.arc}};
+               {"arc_mm", in_mm(e.arc)}};
     if (e.kind == MotionEvent::Kind::touch) event["approach_m_s"] = e.approach_speed;
     summary["events"].push_back(event);
   }

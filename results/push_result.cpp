@@ -1,4 +1,5 @@
 #include "results/push_result.hpp"
+#include "results/in_mm.hpp"
 
 #include "results/warnings.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 nlohmann::json summary(const identification::Series& series, const identification::Prediction& prediction) {
   nlohmann::json events = nlohmann::json::array();
   for (const coupling::PushEvent& e : prediction.curve.curve.events) {
-    events.push_back({{"event", coupling::to_string(e.kind)}, {"travel_mm", 1e3 * e.travel}});
+    events.push_back({{"event", coupling::to_string(e.kind)}, {"travel_mm", in_mm(e.travel)}});
   }
   const std::vector<double> readings = identification::measured_force(series);
   nlohmann::json misfit;  // of as many readings as were reached
@@ -29,7 +30,7 @@ nlohmann::json summary(const identification::Series& series, const identificatio
       {"points", prediction.force.size()},
       {"largest_force_N", largest},
       {"misfit", misfit},
-      {"natural_height_mm", 1e3 * prediction.curve.curve.natural_height},
+      {"natural_height_mm", in_mm(prediction.curve.curve.natural_height)},
       {"events", events},
       {"in_contact_at_end", !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},
       {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()

@@ -83,7 +83,7 @@ nlohmann::json case_json(const CaseComparison& one) {
     models.push_back(
         {{"model", m.model},
          {"parameters", m.parameters},
-         {"valid_travel_mm", {1e3 * m.range.low, 1e3 * m.range.high}},
+         {"valid_travel_mm", {in_mm(m.range.low), in_mm(m.range.high)}},
          {"error_full_wire",
           {{"largest_N", m.largest_error},
            {"rms_N", m.rms_error},

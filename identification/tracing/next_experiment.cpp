@@ -1,6 +1,7 @@
 #include "identification/tracing/next_experiment.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "wire/physical_range.hpp"
 
 #include <fmt/format.h>
 
@@ -50,6 +51,17 @@ Design design(const Series& present, double travel, double duration, double frac
   return d;
 }
 
+/// Of all series over their whole travels [Pa].
+double largest_stress(const Evaluation& evaluation, const std::vector<Series>& series) {
+  double stress = 0.0;
+  for (std::size_t k = 0; k < std::min(series.size(), evaluation.predictions.size()); ++k) {
+    for (const coupling::PushPoint& p : evaluation.predictions[k].curve.curve.points)
+      stress = std::max(stress, wire::largest_stress(series[k].test.wire, std::max(p.tension_left, p.tension_right),
+                                                     p.bending_moment));
+  }
+  return stress;
+}
+
 }  // namespace
 
 NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one, const std::vector<Setting>& other,
@@ -76,8 +88,12 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
   }
   if (supports) designs.push_back(design(present, travel, duration, 0.5, -0.5 * present.test.mount.span, 1.0, along));
 
+  // Annealed stainless steel yields at a tenth of what the strongest wire bears (205 MPa, ASTM A580).
+  constexpr double noticeable = 1.05, share = 0.1;
+  const double known = largest_stress(model.evaluate(one), model.series());
   NextExperiment best;
   best.separates = names;
+  double stress = 0.0;  // of the best
   for (const Design& d : designs) {
     const Model alone({d.series}, model.solver());
     const Evaluation a = alone.evaluate(one);
@@ -87,6 +103,7 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
     if (difference <= best.difference) continue;
     best.difference = difference;
     best.what = d.words;
+    stress = std::max(largest_stress(a, {d.series}), largest_stress(b, {d.series}));
   }
   best.sigmas = sigma > 0.0 ? best.difference / sigma : 0.0;
   std::string checks;
@@ -98,6 +115,10 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
   if (best.what.empty() || best.sigmas < 1.0) {
     best.what = "no push of this kind separates them; " + checks;
   } else {
+    if (stress > std::max(noticeable * known, share * wire::strongest_wire(present.test.wire.diameter))) {
+      best.what += fmt::format(", which loads the wire to {:.3g} MPa after {:.3g} MPa so far and may break it",
+                               stress / 1e6, known / 1e6);
+    }
     best.what += fmt::format(" (there they differ by {:.3g} N, {:.2g} times the noise of a reading); or {}",
                              best.difference, best.sigmas, checks);
   }
