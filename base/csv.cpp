@@ -86,6 +86,7 @@ class CsvParser {
   CsvParser(std::string name, std::span<const CsvColumn> columns)
       : name_(std::move(name)),
         columns_(columns),
+        same_(columns.size(), unused),
         previous_(columns.size(), -std::numeric_limits<double>::infinity()),
         row_(columns.size()) {
     table_.columns.resize(columns.size());
@@ -117,8 +118,8 @@ class CsvParser {
   [[nodiscard]] std::size_t rows() const noexcept { return table_.rows; }
 
   void reserve(std::size_t rows) {
-    for (const std::size_t slot : slots_)
-      if (slot != unused) table_.columns[slot].reserve(rows);
+    for (std::size_t slot : slots_)
+      for (; slot != unused; slot = same_[slot]) table_.columns[slot].reserve(rows);
   }
 
   [[nodiscard]] CsvTable finish() {
@@ -162,7 +163,7 @@ class CsvParser {
       }
       if (std::find(first + 1, names.end(), wanted) != names.end())
         fail(line_, wanted, "", "the column is there twice");
-      slots_[static_cast<std::size_t>(first - names.begin())] = slot;
+      same_[slot] = std::exchange(slots_[static_cast<std::size_t>(first - names.begin())], slot);
     }
     stopped_ = stopped_ || !problems_.empty();  // what follows cannot be told apart
   }
@@ -192,7 +193,8 @@ class CsvParser {
       } else {
         cell = next_cell(text, at);
       }
-      if (cells < slots_.size() && slots_[cells] != unused) number(cell, slots_[cells]);
+      if (cells >= slots_.size()) continue;
+      for (std::size_t slot = slots_[cells]; slot != unused; slot = same_[slot]) number(cell, slot);
     }
     if (cells != slots_.size()) {
       problems_.resize(problems_before);  // the cells were taken for the wrong columns
@@ -200,8 +202,8 @@ class CsvParser {
       fail(line_, "", "", fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
     }
     if (problems_.size() != problems_before) return;
-    for (const std::size_t slot : slots_)
-      if (slot != unused) table_.columns[slot].push_back(row_[slot]);
+    for (std::size_t slot : slots_)
+      for (; slot != unused; slot = same_[slot]) table_.columns[slot].push_back(row_[slot]);
     ++table_.rows;
   }
 
@@ -229,6 +231,7 @@ class CsvParser {
   std::string name_;
   std::span<const CsvColumn> columns_;
   std::vector<std::size_t> slots_;  // of each column of the file: which asked column it is
+  std::vector<std::size_t> same_;   // of each asked column: another one of the same name
   std::vector<double> previous_;    // last value of each asked column, for the order
   std::vector<double> row_;
   CsvTable table_;

@@ -36,8 +36,8 @@ struct CsvTable {
 /// The first line that is neither blank nor a comment names the columns. Cells are separated by commas, with
 /// blanks or tabs around them if one likes, and may stand in double quotes (no line breaks inside). `#`
 /// starts a comment, on its own line or behind the cells. Blank lines, a byte order mark and CRLF are
-/// accepted; the text must be UTF-8. Columns that nobody asked for are not looked at. Numbers are decimal,
-/// with a point, finite. Throws InputError (file, line, column, text, what is allowed) with at most
+/// accepted; the text must be UTF-8. Columns that nobody asked for are not looked at; one may be asked for several
+/// times. Numbers are decimal, with a point, finite. Throws InputError (file, line, column, text, what is allowed) with at most
 /// csv_problem_limit problems.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 

@@ -57,6 +57,9 @@ Journal::Journal(std::filesystem::path file, const std::string& identity, std::u
   if (descriptor_ < 0)
     throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
   try {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode))  // a device may have no end
+      throw base::InputError({file_.string(), 0, "", "", "is a device, a pipe or a socket, must be a regular file"});
     load(identity);
   } catch (...) {
     ::close(descriptor_);

@@ -17,7 +17,8 @@ namespace snare::study {
 class Journal {
  public:
   /// Opens or makes the file. identity: one line of text, equal for equal studies. count: cases there are; 0: not known.
-  /// Throws base::InputError when the file belongs to another study, std::system_error when the system refuses.
+  /// Throws base::InputError when the file belongs to another study or is no regular file, std::system_error when the system
+  /// refuses.
   Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count);
   ~Journal();
   Journal(const Journal&) = delete;

@@ -26,6 +26,21 @@ const std::vector<CsvColumn> columns{
     {"force_N"},
     {"time_s", CsvColumn::Presence::optional, Range::finite(), 1.0, CsvColumn::Order::non_decreasing}};
 
+// A record may give one column to two sensors, or choose its rows by a column that it reads.
+TEST(Csv, AColumnMayBeAskedForSeveralTimes) {
+  const CsvTable table = parse_csv("m.csv", "b,a\n1,2\n3,4\n",
+                                   {{"a"}, {"b"}, {"a", CsvColumn::Presence::required, Range::finite(), 1e-3}, {"a"}});
+  EXPECT_EQ(table.columns[0], (std::vector<double>{2.0, 4.0}));
+  EXPECT_EQ(table.columns[1], (std::vector<double>{1.0, 3.0}));
+  EXPECT_EQ(table.columns[2], (std::vector<double>{0.002, 0.004}));
+  EXPECT_EQ(table.columns[3], table.columns[0]);
+  EXPECT_EQ(test::refusal([] {
+              static_cast<void>(
+                  parse_csv("m.csv", "a\n-1\n", {{"a"}, {"a", CsvColumn::Presence::required, Range::above(0.0)}}));
+            }),
+            "m.csv:2: a = -1, must be > 0");
+}
+
 class CsvFiles : public test::FolderFixture {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return FolderFixture::path(name).string(); }

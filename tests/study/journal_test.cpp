@@ -70,6 +70,13 @@ TEST_F(JournalTest, RefusesAnotherStudy) {
   EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 0U);  // the file is as it was
 }
 
+// A device that never ends would be read for ever.
+TEST_F(JournalTest, RefusesWhatIsNoFile) {
+  std::filesystem::create_symlink("/dev/full", file());
+  EXPECT_THAT(test::refusal([&] { return Journal(file(), "study 1", 10); }),
+              testing::HasSubstr("must be a regular file"));
+}
+
 // Whatever the length to which a kill leaves the file, the whole lines count and the journal goes on.
 TEST_F(JournalTest, AnyTornEndIsTakenOut) {
   {
