@@ -19,11 +19,13 @@ except ImportError:
 NOWHERE = "z" * 29
 # A schema, a verb that reads such a file, and a file.
 READERS = {"experiment": ("push", "data/experiments/published_static.toml"), "wire": ("distil", "data/wires/traced_published.toml")}
-KINDS = [*READERS, "scenario"]
-# A scenario with every key, whose elements have what their kind takes.
-EVERY_KEY = setting.SOURCE / "tests/data/keys/scenario.toml"
-# Keys of a wire that motion refuses.
-REFUSED = {"natural_curvature_1_m", "strand_extra_stiffness_Nm2", "strand_slip_curvature_1_m", "yield_stress_MPa", "hardening_ratio"}
+# A schema, the verb that reads such a file, and files that have every key between them, in elements of every kind.
+EVERY_KEY = {"scenario": (["simulate"], ["scenario"]), "arm": (["arm", "show"], ["arm", "arm_geared"]), "ringdown": (["ringdown"], ["ringdown"]),
+             "record": (["fit"], ["record"]), "sweep": (["sweep"], ["sweep", "sweep_grid", "sweep_table"])}
+KINDS = [*READERS, *EVERY_KEY]
+# Keys of a wire and its mounts that motion refuses, which its readers know.
+REFUSED = {"natural_curvature_1_m", "strand_extra_stiffness_Nm2", "strand_slip_curvature_1_m", "yield_stress_MPa", "hardening_ratio",
+           "slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", "support_radius_mm"}
 
 
 def schema_of(kind):
@@ -41,16 +43,18 @@ def answer(kind, setting_):
 
 def tables_of(schema, address=""):
     """Every table of a schema with its address in the reader's words."""
-    resolved = schema
-    yield address, resolved
-    for key, one in resolved["properties"].items():
+    yield address, schema
+    for key, one in schema["properties"].items():
         if "$ref" in one:
             one = ROOT["$defs"][one["$ref"].rsplit("/", 1)[1]]
             if address:
                 continue  # of a series: the same tables
         here = f"{address}.{key}" if address else key
         if one.get("type") == "object":
-            yield from tables_of(one, here)
+            if "properties" in one:
+                yield from tables_of(one, here)
+            elif "$ref" in one["additionalProperties"]:  # tables whose names the user chose
+                yield from tables_of(ROOT["$defs"][one["additionalProperties"]["$ref"].rsplit("/", 1)[1]], f"{here}.NAME")
         elif one.get("items", {}).get("type") == "object":
             yield from tables_of(one["items"], f"{here}[1]")
 
@@ -126,23 +130,36 @@ class Schemas(unittest.TestCase):
         self.assertGreater(compared, 60)
 
 
-def elements_of(document, schema, address=""):
-    """Every table of a document with its schema and its address."""
-    yield address, document, schema
+def resolve(schema, root):
+    return root["$defs"][schema["$ref"].rsplit("/", 1)[1]] if "$ref" in schema else schema
+
+
+def elements_of(document, schema, root, address=""):
+    """Every table of a document with its schema and its address; of tables whose keys the user chose only what is in them."""
+    if "properties" in schema:
+        yield address, document, schema
     for key, value in document.items():
-        inner, here = schema["properties"][key], f"{address}.{key}" if address else key
-        if isinstance(value, dict):
-            yield from elements_of(value, inner, here)
+        inner = resolve(schema.get("properties", {}).get(key, schema["additionalProperties"]), root) if schema["additionalProperties"] else \
+            resolve(schema["properties"][key], root)
+        here = f"{address}.{key}" if address else key
+        if isinstance(value, dict) and "anyOf" not in inner:
+            yield from elements_of(value, inner, root, here)
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             for k, element in enumerate(value):
-                yield from elements_of(element, inner["items"], f"{here}[{element.get('name', k + 1)}]")
+                yield from elements_of(element, inner["items"], root, f"{here}[{element.get('name', k + 1)}]")
 
 
-def complaints(settings):
-    """What the reader says of overrides of the scenario with every key, a line each; it takes a hundred at a time."""
+def general(address):
+    """Without the names of elements and of tables that the user named."""
+    return re.sub(r"^(joint|link)\.\w+", r"\1.NAME", re.sub(r"\[[^\]]*\]", "[1]", address))
+
+
+def complaints(kind, file, settings):
+    """What the reader says of overrides of a file with every key, a line each; it takes a hundred at a time."""
     lines = []
+    verb = EVERY_KEY[kind][0]
     for begin in range(0, len(settings), 90):
-        command = [setting.COMMAND, "simulate", str(EVERY_KEY), "--quiet", "--out", "/dev/null/none"]
+        command = [setting.COMMAND, *verb, str(file)] + ([] if kind == "arm" else ["--quiet", "--out", "/dev/null/none"])
         for one in settings[begin:begin + 90]:
             command += ["--set", one]
         run = subprocess.run(command, capture_output=True, text=True, timeout=60)
@@ -150,51 +167,70 @@ def complaints(settings):
     return lines
 
 
-class ScenarioSchema(unittest.TestCase):
+class EveryKey(unittest.TestCase):
     def setUp(self):
-        self.schema = schema_of("scenario")
-        self.elements = [e for e in elements_of(tomllib.loads(EVERY_KEY.read_text()), self.schema) if not e[0].startswith("include")]
+        self.files = []  # kind, file, document, its schema, its tables
+        for kind, (_, names) in EVERY_KEY.items():
+            schema = schema_of(kind)
+            for name in names:
+                file = setting.SOURCE / f"tests/data/keys/{name}.toml"
+                document = tomllib.loads(file.read_text())
+                tables = [e for e in elements_of(document, schema, schema) if not e[0].startswith("include")]
+                self.files.append((kind, file, document, schema, tables))
 
-    def test_the_file_of_every_key_has_them_all_and_is_valid(self):
-        document = tomllib.loads(EVERY_KEY.read_text())
-        jsonschema.Draft202012Validator(self.schema).validate(document)
+    def test_the_files_of_every_key_have_them_all_and_are_valid(self):
+        global ROOT
         has = {}
-        for address, table, _ in elements_of(document, self.schema):
-            has.setdefault(re.sub(r"\[[^\]]*\]", "[1]", address), set()).update(table)
-        for address, table in tables_of(self.schema):
-            self.assertEqual(set(table["properties"]) - has[address], set(), address)
+        for kind, file, document, schema, _ in self.files:
+            jsonschema.Draft202012Validator(schema).validate(document)
+            for address, table, _ in elements_of(document, schema, schema):
+                where = general(address)
+                for alias in (where, "joint.NAME") if where == "every_joint" else (where, "every_joint") if where == "joint.NAME" else (where,):
+                    has.setdefault((kind, alias), set()).update(table)
+        for kind in EVERY_KEY:
+            ROOT = schema_of(kind)
+            for address, table in tables_of(ROOT):
+                self.assertEqual(set(table["properties"]) - has.get((kind, address), set()), set(), f"{kind}: {address}")
 
-    def test_the_reader_knows_the_same_keys(self):
-        lines = complaints([f"{address}.{NOWHERE}=1".lstrip(".") for address, _, _ in self.elements])
-        self.assertEqual(len(lines), len(self.elements))
-        known = {}
-        for line in lines:
-            found = re.match(rf"--set: (?:(.*)\.)?{NOWHERE} = 1, unknown key; known here: (.*)$", line)
-            self.assertTrue(found, line)
-            known[found.group(1) or ""] = set(found.group(2).split(", "))
-        for address, table, schema in self.elements:
-            self.assertEqual(known[address] - set(schema["properties"]) - REFUSED, set(), address)
-            self.assertEqual(set(table) - known[address], set(), address)
+    def test_the_readers_know_the_same_keys(self):
+        for kind, file, _, _, tables in self.files:
+            lines = complaints(kind, file, [f"{address}.{NOWHERE}=1".lstrip(".") for address, _, _ in tables])
+            self.assertEqual(len(lines), len(tables), f"{file}: {lines}")
+            known = {}
+            for line in lines:
+                found = re.match(rf"--set: (?:(.*)\.)?{NOWHERE} = 1, unknown key; known here: (.*)$", line)
+                self.assertTrue(found, line)
+                known[found.group(1) or ""] = set(found.group(2).split(", "))
+            for address, table, schema in tables:
+                self.assertEqual(known[address] - set(schema["properties"]) - REFUSED, set(), f"{file}: {address}")
+                self.assertEqual(set(table) - known[address], set(), f"{file}: {address}")
 
-    def test_the_reader_allows_the_same_numbers_and_words(self):
-        numbers, words = {}, {}
-        for address, table, schema in self.elements:
-            for key in table:
-                one, full = schema["properties"][key], f"{address}.{key}" if address else key
-                if one.get("type") in ("number", "integer"):
-                    numbers[full] = one
-                elif "enum" in one:
-                    words[full] = one
-        compared = 0
-        for line in complaints([f"{full}=[\"x\"]" for full in numbers]):
-            full = re.match(r"--set: (.*?) = ", line)
-            if full and full.group(1) in numbers and re.search(r", must be an? (number|integer)", line):
-                check_number(self, numbers[full.group(1)], line, whole=True)
-                compared += 1
-        self.assertGreater(compared, 0.8 * len(numbers))
-        for full, one in words.items():
-            line = next(x for x in complaints([f"{full}=\"{NOWHERE}\""]) if x.startswith(f"--set: {full} = "))
-            self.assertEqual(set(re.findall(r'"(\w+)"', line.split(", must be", 1)[1])), set(one["enum"]), line)
+    def test_the_readers_allow_the_same_numbers_and_words(self):
+        for kind, file, _, root, tables in self.files:
+            numbers, words = {}, {}
+            for address, table, schema in tables:
+                for key in table:
+                    one, full = resolve(schema["properties"][key], root), f"{address}.{key}" if address else key
+                    if one.get("type") in ("number", "integer"):
+                        numbers[full] = one
+                    elif "enum" in one:
+                        words[full] = one
+            compared = 0
+            for line in complaints(kind, file, [f"{full}=[\"x\"]" for full in numbers]):
+                full = re.match(r"--set: (.*?) = ", line)
+                if full and full.group(1) in numbers and re.search(r", must be an? (number|integer)", line):
+                    check_number(self, numbers[full.group(1)], line, whole=True)
+                    compared += 1
+            self.assertGreaterEqual(compared, 0.8 * len(numbers), file)
+            for full, one in words.items():
+                said = complaints(kind, file, [f"{full}=\"{NOWHERE}\""])
+                line = next((x for x in said if f": {full} = " in x), None)
+                self.assertIsNotNone(line, f"{file}: {full}: {said}")
+                known = line.split(", must be", 1)[1]
+                if (kind, full) == ("sweep", "verb"):  # those of the case's schema
+                    self.assertLessEqual({"push", "fit", "trace"}, set(one["enum"]), line)
+                else:
+                    self.assertEqual(set(re.findall(r'"(\w+)"', known)), set(one["enum"]), line)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,193 @@
+"""The schemas of the results: what every verb writes is valid, and every field of a schema is written by one of the runs here."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import setting
+
+try:
+    import jsonschema
+except ImportError:
+    print("skipped: jsonschema is not installed")
+    sys.exit(setting.SKIPPED)
+
+# Arguments of the command; small things that write between them what there is to write.
+RUNS = {
+    "push": ["push", "tests/ranges/readings.toml", "--json"],
+    "push_law": ["push", "data/experiments/published_static.toml", "--json", "--set", "solver.elements=16"],
+    "fit": ["fit", "tests/ranges/readings.toml"],
+    "fit_record": ["fit", "WORK/records.toml"],
+    "trace": ["trace", "tests/ranges/readings.toml"],
+    "trace_law": ["trace", "data/experiments/published_static.toml", "--set", "solver.elements=16", "--set", "solver.extrapolate=false"],
+    "trace_record": ["trace", "tests/ranges/record.toml", "--set", "fit.most_effects=1", "--set",
+                     'fit.free=["arms[pendulum].rates_deg_s[1]"]', "--set", "scenario.arms[pendulum].joint.bearing.viscous_Nms_rad=0.0"],
+    "distil": ["distil", "WORK/wire.toml"],
+    "compare": ["compare", "tests/ranges/readings.toml"],
+    "compare_motion": ["compare", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
+    "ringdown": ["ringdown", "data/experiments/ringdown.toml"],
+    "listed": ["simulate", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
+    "one_wire": ["simulate", "data/scenarios/air_table.toml", "--set", "duration_s=0.01", "--set", "solver.elements=8",
+                 "--set", "wire.strength_N=100"],
+    "arm_on_wire": ["simulate", "data/scenarios/jemrms_payload_on_wire.toml", "--set", "duration_s=0.001", "--set", "output_interval_s=0.0005"],
+    "arm_step": ["simulate", "data/scenarios/jemrms_step.toml"],
+    "sweep": ["sweep", "WORK/sweep.toml"],
+    "sweep_sobol": ["sweep", "WORK/sobol.toml"],
+    "sweep_subset": ["sweep", "WORK/subset.toml"],
+    "arm": ["arm", "show", "data/arms/jemrms_like.toml", "--json"],
+    "urdf": ["arm", "show", "data/arms/jemrms_like.urdf", "--json"],
+}
+# Schemas of results that take longer: the test of the fields does not ask for them.
+LONG = {"snare-reproduce/1", "snare-validation/1"}
+# What a wire file says of losses and of a record's offset.
+LOSSES = """displacement_offsets_mm = [0.1]
+
+[damping]
+bending_time_s = 1e-5
+axial_time_s   = 1e-5
+mass_rate_1_s  = 5.0
+impact_speeds_m_s = [0.1]
+impact_mass_kg = 8.9
+elements       = 20
+"""
+# Fields that none of the runs has a reason to write.
+NOT_HERE = {
+    "snare-ringdown-result/1": {f"series[].friction_mm_s.{k}" for k in ("value", "stderr", "lower", "upper")},  # no friction in the record
+    "snare-trace/1": {"next_experiment.difference_N", "next_experiment.difference_sigma", "remaining.hangs_on[].sensor",
+                      "remaining.hangs_on[].on", "remaining.hangs_on[].share"},  # nothing to tell apart, nothing left
+    "snare-comparison/1": {"models[].from_full.first_touch_s", "models[].from_full.tight_s"},  # too short to touch
+    "snare-summary/1": {"models[].quasi_static", *(f"models[].quasi_static[].{k}" for k in ("wire", "left_out_kinetic_J", "left_out_force_N"))},
+}
+
+
+def schemas():
+    found = {}
+    for path in sorted((setting.SOURCE / "data/schemas").glob("*.schema.json")):
+        schema = json.loads(path.read_text())
+        found[schema["title"]] = schema
+    return found
+
+
+def forms_of(schema):
+    """The schemas of which a document must fit one."""
+    return [{**schema["$defs"][one["$ref"].rsplit("/", 1)[1]], "$defs": schema["$defs"]} for one in schema["anyOf"]] \
+        if "anyOf" in schema else [schema]
+
+
+def resolve(schema, root):
+    return root["$defs"][schema["$ref"].rsplit("/", 1)[1]] if "$ref" in schema else schema
+
+
+def mistakes(document, schema):
+    """What the form that fits best objects to."""
+    found = [list(jsonschema.Draft202012Validator(form).iter_errors(document)) for form in forms_of(schema)]
+    return [f"{'.'.join(map(str, one.absolute_path))}: {one.message[:300]}" for one in min(found, key=len)]
+
+
+def properties_of(schema, root, place=""):
+    """Every field of a schema by its place; those of a definition by its name, wherever it is used."""
+    if "$ref" in schema:
+        place = schema["$ref"].rsplit("/", 1)[1]
+        schema = resolve(schema, root)
+    for key, one in {**schema.get("properties", {}), **schema.get("patternProperties", {})}.items():
+        here = f"{place}.{key}".lstrip(".")
+        yield here
+        yield from properties_of(one, root, here)
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield from properties_of(schema["additionalProperties"], root, place + ".*")
+    if "items" in schema:
+        yield from properties_of(schema["items"], root, place + "[]")
+
+
+def fields_of(document, schema, root, place=""):
+    """Those of them that a document has."""
+    if "$ref" in schema:
+        place = schema["$ref"].rsplit("/", 1)[1]
+        schema = resolve(schema, root)
+    if isinstance(document, list):
+        for one in document:
+            yield from fields_of(one, schema.get("items", {}), root, place + "[]")
+    if not isinstance(document, dict):
+        return
+    for key, value in document.items():
+        pattern = next((p for p in schema.get("patternProperties", {}) if re.search(p, key)), None)
+        if key in schema.get("properties", {}) or pattern:
+            here = f"{place}.{pattern or key}".lstrip(".")
+            yield here
+            yield from fields_of(value, schema["patternProperties"][pattern] if pattern else schema["properties"][key], root, here)
+        elif isinstance(schema.get("additionalProperties"), dict):
+            yield from fields_of(value, schema["additionalProperties"], root, place + ".*")
+
+
+def prepare(work):
+    """Files of runs that write what the shipped ones do not."""
+    ranges = setting.SOURCE / "tests/ranges"
+    record = (ranges / "record.toml").read_text().replace('"swing.', f'"{ranges}/swing.')
+    second = record.split("[[records]]")[1].split("[fit]")[0].replace('"first"', '"second"')
+    (work / "records.toml").write_text(record.replace("[fit]", f'[[records]]{second}\n[fit]\nheldout = ["second"]\n'))
+    wire = (ranges / "wire.toml").read_text()
+    (work / "wire.toml").write_text(wire.replace("friction  = 0.0", "friction  = 0.1") + LOSSES)
+    sweep = (ranges / "sweep.toml").read_text().replace('"readings.toml"', f'"{ranges}/readings.toml"')
+    sweep = sweep.replace("[collect]", '[collect]\nheld = "series[s60].in_contact_at_end"')
+    (work / "sweep.toml").write_text(sweep)
+    free = sweep.split("[[correlate]]")[0] + "[collect]" + sweep.split("[collect]")[1]
+    (work / "sobol.toml").write_text(free.replace('"latin_hypercube"', '"sensitivity"'))
+    (work / "subset.toml").write_text(free.replace('"latin_hypercube"', '"subset"').replace("cases = 4", "cases = 20") +
+                                      "\n[subset]\nlevel_probability = 0.5\nlevels = 2\n")
+
+
+class ResultSchemas(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.schemas = schemas()
+        cls.results = {}
+        with tempfile.TemporaryDirectory() as folder:
+            work = pathlib.Path(folder)
+            prepare(work)
+            for name, arguments in RUNS.items():
+                out = work / name
+                command = [setting.COMMAND] + [a.replace("WORK", folder) for a in arguments]
+                if arguments[0] != "arm":
+                    command += ["--quiet", "--threads", "1", "--out", str(out)]
+                run = subprocess.run(command, cwd=setting.SOURCE, capture_output=True, text=True, timeout=300)
+                assert run.returncode == 0, f"{name}: {run.stderr}"
+                written = sorted(out.glob("*.json")) if out.exists() else []
+                cls.results[name] = [json.loads(path.read_text()) for path in written]
+                if "--json" in arguments:
+                    cls.results[name].append(json.loads(run.stdout))
+                assert cls.results[name], f"{name} has no result"
+
+    def test_they_are_schemas(self):
+        for schema in self.schemas.values():
+            jsonschema.Draft202012Validator.check_schema(schema)
+
+    def test_all_results_are_valid(self):
+        for name, documents in self.results.items():
+            for document in documents:
+                self.assertEqual(mistakes(document, self.schemas[document["schema"]]), [], name)
+
+    def test_a_field_more_or_less_is_seen(self):
+        for name, (document, *_) in self.results.items():
+            schema = self.schemas[document["schema"]]
+            self.assertTrue(mistakes({**document, "more": 1}, schema), name)
+            self.assertTrue(mistakes({k: v for k, v in document.items() if k != "title"}, schema), name)
+
+    def test_every_field_of_a_schema_is_written(self):
+        missing = {}
+        for title in {d["schema"] for documents in self.results.values() for d in documents} - LONG:
+            written = [d for documents in self.results.values() for d in documents if d["schema"] == title]
+            for k, form in enumerate(forms_of(self.schemas[title])):
+                fitting = [d for d in written if not any(jsonschema.Draft202012Validator(form).iter_errors(d))]
+                seen = {f for d in fitting for f in fields_of(d, form, form)}
+                left = set(properties_of(form, form)) - seen - NOT_HERE.get(title, set())
+                if left:
+                    missing[f"{title} {k}"] = sorted(left)
+        self.assertEqual(missing, {}, json.dumps(missing, indent=1))
+
+
+if __name__ == "__main__":
+    setting.main()
