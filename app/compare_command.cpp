@@ -76,7 +76,8 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
     for (const reduction::ModelResult& m : one.models) {
       console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name,
                               m.model, m.largest_error, m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-",
-                              m.seconds, m.parameters));
+                              m.seconds, m.parameters) +
+                  (m.why.empty() ? "" : "  " + m.why));
     }
   }
   console.say(fmt::format("wrote {}/compare.json", options.out.string()));

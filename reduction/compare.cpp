@@ -1,6 +1,7 @@
 #include "reduction/compare.hpp"
 
 #include "coupling/statics/push_solver.hpp"
+#include "reduction/error_reason.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -115,6 +116,7 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     model.range = range;
     for (const double d : one.travel) model.force.push_back(d < 0.0 ? 0.0 : force(d));
     judge(model, one, reference);
+    model.why = error_reason(one.travel, reference, model.force);
     model.seconds = time_of(force, range.high);
     result.models.push_back(std::move(model));
   };

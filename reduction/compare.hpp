@@ -36,6 +36,7 @@ struct ModelResult {
   std::optional<double> measured_rms;  ///< against the measured force [N]
   double seconds = 0.0;                ///< an evaluation: wall clock, one thread [s]
   std::vector<double> force;           ///< at the case's travels [N]
+  std::string why;                     ///< it is far off; see error_reason.hpp
 };
 
 struct CaseComparison {

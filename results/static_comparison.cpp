@@ -87,7 +87,8 @@ nlohmann::json case_json(const CaseComparison& one) {
          {"error_full_wire",
           {{"largest_N", m.largest_error},
            {"rms_N", m.rms_error},
-           {"share", one.force_range > 0.0 ? m.largest_error / one.force_range : 0.0}}},
+           {"share", one.force_range > 0.0 ? m.largest_error / one.force_range : 0.0},
+           {"why", m.why}}},
          {"error_measured", m.measured_rms ? nlohmann::json{{"rms_N", *m.measured_rms}} : nlohmann::json()},
          {"seconds_per_evaluation", m.seconds},
          {"force_N", m.force}});

@@ -45,7 +45,8 @@ std::string compare_report_html(const std::string& title, const std::vector<redu
                      "an evaluation, s"_number,
                      "times cheaper"_number,
                      "to, mm"_number,
-                     "numbers"_number};
+                     "numbers"_number,
+                     "why it is far off"_text};
     PlotSpecification force{"Force", {"travel", "mm"}, {"force", "N"}};
     PlotSpecification error{"Error against the full wire", {"travel", "mm"}, {"model less full wire", "N"}};
     const Values travel = in_mm(one.travel);
@@ -63,7 +64,7 @@ std::string compare_report_html(const std::string& title, const std::vector<redu
            one.force_range > 0.0 ? format_significant(100.0 * m.largest_error / one.force_range, 2) + " %" : "-",
            format_significant(m.rms_error), m.measured_rms ? format_significant(*m.measured_rms) : "-",
            format_significant(m.seconds, 2), format_significant(full.seconds / m.seconds, 2),
-           format_number(1e3 * m.range.high, 4), std::to_string(m.parameters)});
+           format_number(1e3 * m.range.high, 4), std::to_string(m.parameters), m.why});
       force.curves.push_back({m.model, travel, m.force, &m == &full ? CurveStyle::line : CurveStyle::dashes, colour});
       if (&m != &full) {
         std::vector<double> off = m.force;
