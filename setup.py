@@ -29,7 +29,7 @@ class CMakeBuild(build_ext):
         build = SOURCE / "build" / f"pip-{sys.implementation.cache_tag}"
         generator = ["-G", "Ninja"] if subprocess.run(["ninja", "--version"], capture_output=True).returncode == 0 else []
         arguments = [f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG",
-                     "-DSNARE_BUILD_PYTHON=ON", "-DSNARE_BUILD_TESTS=OFF", *self.pybind11()]
+                     "-DSNARE_BUILD_PYTHON=ON", "-DSNARE_BUILD_TESTS=OFF", "-DCMAKE_UNITY_BUILD=ON", *self.pybind11()]
         subprocess.run(["cmake", "-S", str(SOURCE), "-B", str(build), *generator, *arguments], check=True)
         subprocess.run(["cmake", "--build", str(build), "--target", "snare_core", "--parallel"], check=True)
         target = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve()

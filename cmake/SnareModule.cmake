@@ -10,16 +10,18 @@ function(snare_use_precompiled_headers target)
   target_precompile_headers(${target} REUSE_FROM snare_precompiled)
 endfunction()
 
-# snare_add_module(<name> [PUBLIC <targets>...] [PRIVATE <targets>...] [EXCLUDE <files>...])
+# snare_add_module(<name> [PUBLIC <targets>...] [PRIVATE <targets>...] [EXCLUDE <files>...] [ALONE <files>...])
 #
 # Makes the target snare_<name> (alias snare::<name>) of the *.cpp beside the calling CMakeLists.txt. New
-# files are found by the next build; a module that has no source yet is an INTERFACE library.
+# files are found by the next build; a module that has no source yet is an INTERFACE library. ALONE: files with names of
+# their own that others have too; they are not joined with others where a build joins sources (CMAKE_UNITY_BUILD).
 function(snare_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;PRIVATE;EXCLUDE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;PRIVATE;EXCLUDE;ALONE")
 
   set(target snare_${name})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   file(GLOB headers CONFIGURE_DEPENDS *.hpp)
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   foreach(file IN LISTS arg_EXCLUDE)
     list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
   endforeach()

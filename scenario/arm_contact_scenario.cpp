@@ -5,6 +5,7 @@
 #include "numerics/dense_solvers.hpp"
 #include "scenario/arm_reader.hpp"
 #include "scenario/contact_scenario.hpp"
+#include "scenario/hold.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +28,6 @@ using multibody::Pose;
 namespace {
 
 enum class Carries { wire, body };
-enum class Hold { as_described, limp, locked };
 
 /// An arm with what its tip carries.
 struct CarryingArm {
@@ -90,12 +90,7 @@ coupling::MotionArm arm_of(const CarryingArm& asked, const coupling::MotionBody&
   const VectorXd q = asked.arm.coordinates(asked.angles);
   place_base(asked, body, arm.arm.tree, q);
   arm.start = multibody::resting(arm.arm, q);
-  for (int k = 0; k < arm.arm.motors(); ++k) {
-    multibody::Drive& drive = arm.drives[at(k)];
-    if (asked.hold == Hold::limp) drive = multibody::Drive::limp();
-    if (asked.hold == Hold::locked) drive = multibody::Drive::locked();
-    drive.course = {asked.angles[k], asked.angles[k], 0.0, 0.0};
-  }
+  hold(asked.hold, asked.angles, arm.drives);
   if (asked.carries != Carries::body) return arm;
   const VectorXd rates = rates_with(arm.arm, asked.arm.tip, q, body);
   for (int k = 0; k < arm.arm.motors(); ++k) {
@@ -136,8 +131,6 @@ WireMotions read_arm_contact(TomlDocument& document, const std::filesystem::path
   CarryingArm asked;
   static constexpr Choice<Carries> carried[] = {{"wire", Carries::wire}, {"body", Carries::body}};
   asked.carries = root.choice("carries", carried).value_or(Carries::wire);
-  static constexpr Choice<Hold> holds[] = {
-      {"as_described", Hold::as_described}, {"limp", Hold::limp}, {"locked", Hold::locked}};
   asked.hold = root.choice("hold", holds).value_or(Hold::as_described);
   asked.X_CT.p = read_vector_or_zero(root, "tip_mm", Range::from(-farthest_mm, farthest_mm), base::mm);
   asked.X_CT.R = read_roll_pitch_yaw(root, "tip_rpy_deg");

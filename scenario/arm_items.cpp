@@ -4,6 +4,7 @@
 #include "base/units.hpp"
 #include "multibody/kinematics.hpp"
 #include "scenario/arm_reader.hpp"
+#include "scenario/hold.hpp"
 #include "scenario/motion_reader.hpp"
 
 #include <fmt/format.h>
@@ -21,8 +22,6 @@ using multibody::Pose;
 
 namespace {
 
-enum class Hold { as_described, limp, locked };
-
 /// Where an arm stands: its base or its tip on a frame.
 struct Stand {
   bool by_tip = false;
@@ -38,14 +37,6 @@ Stand read_stand(const TomlTable& table) {
   stand.X_FA.R = read_rotation_vector(table, prefix + "_rotation_deg");
   if (table.has(prefix + "_rpy_deg")) stand.X_FA.R = read_roll_pitch_yaw(table, prefix + "_rpy_deg");
   return stand;
-}
-
-void hold(Hold how, const Eigen::VectorXd& angles, std::vector<multibody::Drive>& drives) {
-  for (std::size_t k = 0; k < drives.size(); ++k) {
-    if (how == Hold::limp) drives[k] = multibody::Drive::limp();
-    if (how == Hold::locked) drives[k] = multibody::Drive::locked();
-    drives[k].course = multibody::Course::standing(angles[static_cast<Eigen::Index>(k)]);
-  }
 }
 
 /// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors. One a joint.
@@ -89,8 +80,6 @@ void place_arm(const std::string& name, int index, int tip, const Stand& stand, 
 }  // namespace
 
 void read_arms(Composition& c) {
-  static constexpr Choice<Hold> holds[] = {
-      {"as_described", Hold::as_described}, {"limp", Hold::limp}, {"locked", Hold::locked}};
   for (const TomlTable& table : c.document.root().tables("arms")) {
     const std::string name = c.arm_names.take(table);
     const std::string file = table.text("file");

@@ -51,12 +51,12 @@ ArmMotion read_joint_step(TomlDocument& document, const multibody::ArmDescriptio
 ArmMotion read_tip_impulse(TomlDocument& document, const multibody::ArmDescription& arm, const Eigen::VectorXd& angles,
                            double duration) {
   const TomlTable root = document.root();
-  static constexpr Choice<Hold> holds[] = {{"as_described", Hold::as_described}, {"limp", Hold::limp}};
-  const Hold hold = root.choice("hold", holds).value_or(Hold::as_described);
+  static constexpr Choice<Hold> answers[] = {{"as_described", Hold::as_described}, {"limp", Hold::limp}};
+  const Hold how = root.choice("hold", answers).value_or(Hold::as_described);
   const auto impulse = read_vector(root, "impulse_Ns", Range::from(-1e9, 1e9), 1.0);
   const double pulse = root.number("pulse_s", Range::above(0.0, 1e5));
   document.finish();
-  return {tip_impulse(arm, angles, hold, impulse.value(), pulse, duration)};
+  return {tip_impulse(arm, angles, how, impulse.value(), pulse, duration)};
 }
 
 ArmMotion read_joint_motion(TomlDocument& document, const multibody::ArmDescription& arm, const Eigen::VectorXd& angles,

@@ -54,11 +54,9 @@ multibody::ArmScenario commanded_step(const multibody::ArmDescription& descripti
 }
 
 multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                   Hold hold, const Eigen::Vector3d& impulse, double duration, double end) {
+                                   Hold how, const Eigen::Vector3d& impulse, double duration, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
-  if (hold == Hold::limp) {
-    for (multibody::Drive& drive : scenario.drives) drive = multibody::Drive::limp();
-  }
+  hold(how, angles, scenario.drives);
   // The area of half a sine is 2/pi of its peak times its duration.
   multibody::TimedLoad load;
   load.frame = description.tip;

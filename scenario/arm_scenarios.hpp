@@ -2,6 +2,7 @@
 
 #include "multibody/arm/arm_file.hpp"
 #include "multibody/arm/arm_run.hpp"
+#include "scenario/hold.hpp"
 
 #include <vector>
 
@@ -19,13 +20,10 @@ namespace snare::scenario {
 [[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
                                                     const Eigen::VectorXd& angles, int joint, double step, double end);
 
-/// Who answers a push at the tip.
-enum class Hold { as_described, limp };
-
 /// An arm at rest, pushed at its tip by half a sine of force, in the world's axes.
 /// impulse: of the force [N s]; duration > 0 [s], from t = 0.
 [[nodiscard]] multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description,
-                                                 const Eigen::VectorXd& angles, Hold hold,
+                                                 const Eigen::VectorXd& angles, Hold how,
                                                  const Eigen::Vector3d& impulse, double duration, double end);
 
 /// The joints go from one pose to another under their servos; a free base answers.

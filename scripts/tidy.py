@@ -53,6 +53,8 @@ def sources(builds: list[pathlib.Path]) -> dict[pathlib.Path, tuple[str, ...]]:
             sys.exit(f"{database} is missing: cmake --preset {build.name}")
         for entry in json.loads(database.read_text()):
             file = pathlib.Path(entry["file"])
+            if file.name.startswith("unity_"):
+                sys.exit(f"{build} joins sources: cmake --preset {build.name} -DCMAKE_UNITY_BUILD=OFF")
             if file.suffix == ".cpp" and file.is_relative_to(REPOSITORY) and not file.is_relative_to(REPOSITORY / "build"):
                 found.setdefault(file.relative_to(REPOSITORY), flags_of(entry["command"]))
     return found

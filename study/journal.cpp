@@ -3,6 +3,7 @@
 #include "base/archive.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "study/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,6 @@
 #include <cassert>
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -27,10 +27,6 @@ constexpr std::string_view schema = "snare-journal/1 ";
 constexpr std::size_t sum_size = 16;         // hexadecimal digits
 constexpr double flush_every = 1.0;          // what a loss of power may take [s]
 constexpr std::size_t chunk_size = 1 << 18;  // read at a time [byte]
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string sum_of(std::string_view text) {
   return fmt::format("{:016x}", base::fingerprint(text));

@@ -3,6 +3,7 @@
 #include "base/archive.hpp"
 #include "base/errors.hpp"
 #include "base/index.hpp"
+#include "study/clock.hpp"
 
 #include <fmt/format.h>
 
@@ -19,10 +20,6 @@ enum class Word : char { ready, alive, work, end };
 
 constexpr double alive_every = 1.0;                      // [s]
 constexpr std::chrono::microseconds pause_between(200);  // looks for messages
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Task {
   std::uint64_t index = 0;

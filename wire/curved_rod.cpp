@@ -14,8 +14,6 @@ using numerics::DaePoint;
 
 namespace {
 
-constexpr int block = RodModel::block;
-
 Vector2d stiffness_of(const RodModel& model) {
   return {model.properties().bending_stiffness, model.properties().second_bending_stiffness};
 }
@@ -64,8 +62,8 @@ void add_curved_edges(const RodModel& model, const RodInstant& instant, const Da
     const Edge edge = edge_of(model, instant, at, e);
     const Vector3d force = edge.beam.tension * edge.tangent;
     out.energy += edge.beam.energy + bent * model.rest_length(e);
-    out.gradient.segment<3>(block * e) -= force;
-    out.gradient.segment<3>(block * (e + 1)) += force;
+    out.gradient.segment<3>(RodModel::block * e) -= force;
+    out.gradient.segment<3>(RodModel::block * (e + 1)) += force;
     by_curvature.col(e) += edge.beam.gradient.segment<2>(EdgeBeam::near);
     by_curvature.col(e + 1) += edge.beam.gradient.segment<2>(EdgeBeam::far);
   }
@@ -101,7 +99,8 @@ void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const
     const Matrix3d by_edge = (h(EdgeBeam::chord, EdgeBeam::chord) - lateral) * along + lateral * Matrix3d::Identity();
     for (const int row : {0, 1}) {
       for (const int column : {0, 1}) {
-        slots.add_places(block * (e + row), block * (e + column), row == column ? by_edge : Matrix3d(-by_edge), values);
+        slots.add_places(RodModel::block * (e + row), RodModel::block * (e + column),
+                         row == column ? by_edge : Matrix3d(-by_edge), values);
       }
     }
     const Eigen::Matrix<double, 3, 4> by_ends = edge.tangent * h.row(EdgeBeam::chord).tail<4>();

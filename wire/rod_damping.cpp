@@ -8,8 +8,6 @@ using numerics::DaePoint;
 
 namespace {
 
-constexpr int block = RodModel::block;
-
 Vector3d edge_of(const RodInstant& instant, int e) {
   return vertex(instant.state, e + 1) - vertex(instant.state, e);
 }
@@ -52,8 +50,8 @@ void add_axial_damping(const RodModel& model, const RodInstant& instant, const D
     const double rest = model.rest_length(e);
     const double rate = t.dot(at.y.segment<3>(model.velocity_of(e + 1)) - at.y.segment<3>(model.velocity_of(e))) / rest;
     const double force = model.damping().axial_time * model.properties().axial_stiffness * rate;
-    gradient.segment<3>(block * e) -= force * t;
-    gradient.segment<3>(block * (e + 1)) += force * t;
+    gradient.segment<3>(RodModel::block * e) -= force * t;
+    gradient.segment<3>(RodModel::block * (e + 1)) += force * t;
     power += force * rate * rest;
   }
 }
@@ -77,8 +75,8 @@ void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant
         for (const int column_vertex : {0, 1}) {
           for (int s = 0; s < 3; ++s) {
             const double sign = row_vertex == column_vertex ? 1.0 : -1.0;
-            const int row = block * (e + row_vertex) + r;
-            const int column = block * (e + column_vertex) + s;
+            const int row = RodModel::block * (e + row_vertex) + r;
+            const int column = RodModel::block * (e + column_vertex) + s;
             slots.add_place(row, column, sign * by_edge(r, s), values);
             slots.add_rate(row, column, sign * by_rate(r, s), values);
           }

@@ -15,8 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int block = SpatialRod::block;
-
 /// Power that the damping takes at the velocities of a mode [W].
 double lost_power(RodInMotion rod, const RodDamping& damping, const Eigen::Matrix3Xd& rest,
                   const Eigen::Matrix3Xd& shape, const VectorXd& turning) {
@@ -57,7 +55,7 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < 3; ++k) {
       if (part.is_held(i, k)) continue;
-      moving.push_back(block * i + k);
+      moving.push_back(SpatialRod::block * i + k);
       moving_rows.push_back({part.velocity_of(i) + k, part.position_of(i) + k});
     }
     if (i + 1 < n && !(twist_free && i == 0)) {
@@ -83,7 +81,7 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
   MatrixXd stiffness = entries(moving_rows, moving_rows) + entries(moving_rows, following) * follow;
   VectorXd root_mass(static_cast<Index>(moving.size()));
   for (std::size_t a = 0; a < moving.size(); ++a)
-    root_mass[static_cast<Index>(a)] = std::sqrt(part.mass_of(moving[a] / block));
+    root_mass[static_cast<Index>(a)] = std::sqrt(part.mass_of(moving[a] / SpatialRod::block));
   stiffness = root_mass.cwiseInverse().asDiagonal() * stiffness * root_mass.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (stiffness + stiffness.transpose()));
   const VectorXd& squares = solver.eigenvalues();
@@ -98,7 +96,7 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
     mode.natural = std::sqrt(squares[m]);
     mode.shape = Eigen::Matrix3Xd::Zero(3, n);
     for (std::size_t a = 0; a < moving.size(); ++a)
-      mode.shape(moving[a] % block, moving[a] / block) = x[static_cast<Index>(a)];
+      mode.shape(moving[a] % SpatialRod::block, moving[a] / SpatialRod::block) = x[static_cast<Index>(a)];
     const VectorXd turns = follow * x;
     VectorXd rates = VectorXd::Zero(n);
     for (std::size_t a = 0; a < turning.size(); ++a) rates[turning[a]] = turns[static_cast<Index>(a)];

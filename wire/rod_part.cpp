@@ -19,13 +19,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::DaePoint;
 
-namespace {
-
-constexpr int block = RodModel::block;
-constexpr int angle = RodModel::angle;
-
-}  // namespace
-
 RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances)
     : name_(std::move(name)), tolerances_(tolerances), model_(rod) {
   band_.resize(model_.bands());
@@ -48,7 +41,7 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   assert(positions.cols() == n);
   Eigen::VectorXd q = Eigen::VectorXd::Zero(model_.bands());
   for (int i = 0; i < n; ++i) {
-    q.segment<3>(block * i) = positions.col(i);
+    q.segment<3>(RodModel::block * i) = positions.col(i);
     y.segment<3>(position_of(i)) = positions.col(i);
     y[angle_of(i)] = 0.0;
     y.segment<3>(velocity_of(i)).setZero();
@@ -66,8 +59,8 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
 
 void RodPart::take_unknowns(const numerics::VectorView& y) {
   for (int i = 0; i < vertices(); ++i) {
-    band_.segment<3>(block * i) = y.segment<3>(position_of(i));
-    band_[block * i + angle] = y[angle_of(i)];
+    band_.segment<3>(RodModel::block * i) = y.segment<3>(position_of(i));
+    band_[RodModel::block * i + RodModel::angle] = y[angle_of(i)];
   }
 }
 
@@ -160,10 +153,11 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
         rows[v] += at.y[v];
       } else {
         rows[x] += at.rate[x] - at.y[v];
-        rows[v] += inertia * at.rate[v] + drag * at.y[v] + assembly_.gradient[block * i + k];
+        rows[v] += inertia * at.rate[v] + drag * at.y[v] + assembly_.gradient[RodModel::block * i + k];
       }
     }
-    rows[angle_of(i)] += model_.holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[block * i + angle];
+    rows[angle_of(i)] +=
+        model_.holds_angle(i) ? at.y[angle_of(i)] : assembly_.gradient[RodModel::block * i + RodModel::angle];
     if (model_.is_curved()) rows.segment<2>(model_.curvature_of(i)) += by_curvature_.col(i);
     if (model_.strands().act()) {
       rows.segment<2>(strand_of(i)) += at.rate.segment<2>(strand_of(i)) - losses_.strand_rates[base::at(i)];
@@ -187,8 +181,9 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
     } else {
       RodSlots::add_to(values, d.place, c);
       RodSlots::add_to(values, d.place_by_velocity, -1.0);
-      RodSlots::add_to(values, d.velocity,
-                       c * model_.inertia_of(i / block) + model_.damping().mass_rate * mass_of(i / block));
+      RodSlots::add_to(
+          values, d.velocity,
+          c * model_.inertia_of(i / RodModel::block) + model_.damping().mass_rate * mass_of(i / RodModel::block));
     }
   }
   // d2E, both triangles of the band.
@@ -201,7 +196,7 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
     }
   }
   if (model_.spin_drag() > 0.0)
-    RodSlots::add_to(values, slots_.diagonal(angle).place, c * model_.spin_drag());  // theta_0
+    RodSlots::add_to(values, slots_.diagonal(RodModel::angle).place, c * model_.spin_drag());  // theta_0
   if (model_.is_curved()) add_curved_jacobian(model_, trial_, at, slots_, values);
   add_losses_jacobian(at, c, values);
 }
@@ -330,7 +325,7 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
     const SpatialEnd& end = model_.properties().end(which);
     if (end.kind == SpatialEnd::Kind::free || is_carried(which)) continue;
     const int i = model_.vertex_at(which);
-    result.mount_forces[side] = assembly_.gradient.segment<3>(block * i);
+    result.mount_forces[side] = assembly_.gradient.segment<3>(RodModel::block * i);
     if (!is_held(i, 0)) {
       result.mount_forces[side].x() = -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
     }

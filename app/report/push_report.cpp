@@ -62,16 +62,16 @@ void series_plots(ReportPage& page, const std::vector<Series>& series, const std
       force.curves.push_back(make_curve(model.name, travel, model.predictions[k].force, model.style, colour++));
     page.line_plot(force);
     if (readings.empty()) continue;
-    PlotSpecification left{"What is left: " + series[k].name, {"travel", "mm"}, {"measured less computed", "N"}};
+    PlotSpecification remainder{"What is left: " + series[k].name, {"travel", "mm"}, {"measured less computed", "N"}};
     colour = 1;
     for (const Model& model : models) {
       Values rest;
       const Values& computed = model.predictions[k].force;
       for (std::size_t i = 0; i < std::min(readings.size(), computed.size()); ++i)
         rest.push_back(readings[i] - computed[i]);
-      left.curves.push_back(make_curve(model.name, travel, rest, model.style, colour++));
+      remainder.curves.push_back(make_curve(model.name, travel, rest, model.style, colour++));
     }
-    page.line_plot(left);
+    page.line_plot(remainder);
   }
 }
 

@@ -88,20 +88,20 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
       for (const ChannelError& e : trace.final.errors)
         if (e.sensor == record.channels[c].sensor) unit = e.unit;
       PlotSpecification plot{record.channels[c].sensor, {"time", "s"}, {record.channels[c].sensor, unit}};
-      PlotSpecification left{"measured less simulated", {"time", "s"}, {"difference", unit}};
-      plot.width = left.width = PlotWidth::full;
+      PlotSpecification remainder{"measured less simulated", {"time", "s"}, {"difference", unit}};
+      plot.width = remainder.width = PlotWidth::full;
       plot.curves.push_back(curve_of("measured", record.times, measured, CurveStyle::points, 0));
       const auto add = [&](const char* name, const MotionStage& stage, CurveStyle style, int colour) {
         if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return;
         const Eigen::VectorXd& y = stage.predictions[r].channels[c];
         plot.curves.push_back(curve_of(name, record.times, y, style, colour));
-        left.curves.push_back(curve_of(name, record.times, measured - y, style, colour));
+        remainder.curves.push_back(curve_of(name, record.times, measured - y, style, colour));
       };
       add("declared", trace.declared, CurveStyle::dashes, 1);
       add("base fit", trace.base, CurveStyle::line, 2);
       if (!trace.selected.empty()) add("traced", trace.final, CurveStyle::line, 3);
       page.line_plot(plot);
-      page.line_plot(left);
+      page.line_plot(remainder);
     }
   }
 }

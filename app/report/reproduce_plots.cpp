@@ -26,7 +26,7 @@ constexpr int published_colour = 0;
 constexpr int first_model_colour = 1;
 
 /// A curve that reaches this many times beyond the published and the best computed one gets a close-up.
-constexpr double dwarfing_ratio = 1.5;
+constexpr double close_up_ratio = 1.5;
 
 constexpr const char* scatter_note = "Band: published curve \u00b1 {} \u03c3.";
 
@@ -75,7 +75,7 @@ void add_close_up(PlotSpecification& plot, const Words& reference_names) {
     if (curve.y.empty() || is_reference(curve)) continue;
     const Range range = extent({curve});
     const double beyond = std::max(reference->lower - range.lower, range.upper - reference->upper);
-    if (beyond < (dwarfing_ratio - 1.0) * size_of(*reference)) continue;
+    if (beyond < (close_up_ratio - 1.0) * size_of(*reference)) continue;
     const double far = std::abs(range.lower) > std::abs(range.upper) ? range.lower : range.upper;
     outside.push_back(fmt::format("{} (to {} {})", curve.name, format_significant(far), plot.y.unit));
   }

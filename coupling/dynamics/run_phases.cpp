@@ -14,12 +14,12 @@ using Eigen::Vector3d;
 double MotionRun::tension(int wire) {
   if (at(wire) >= rods_.size()) return law_wires_[at(wire) - rods_.size()].shape(y_).tension;
   const wire::RodPart& rod = rods_[at(wire)];
-  std::optional<std::array<Vector3d, 2>> standing;
+  std::optional<std::array<Vector3d, 2>> at_start;
   std::array<Vector3d, 2> forces;
   for (const wire::End end : wire::ends) {
     const std::optional<Vector3d> moving = constraints_->mount_force(wire, end, y_);
-    if (!moving && !standing) standing = rods_[at(wire)].energies({time_, y_, rate_}).mount_forces;
-    forces[index_of(end)] = moving ? *moving : (*standing)[index_of(end)];
+    if (!moving && !at_start) at_start = rods_[at(wire)].energies({time_, y_, rate_}).mount_forces;
+    forces[index_of(end)] = moving ? *moving : (*at_start)[index_of(end)];
   }
   const auto vertex = [&](int i) { return y_.segment<3>(rod.position_of(i)); };
   const int n = rod.vertices() - 1;

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr int newton_iterations = 50;  // from a shape that was only interpolated
+constexpr int most_corrections = 50;  // from a shape that was only interpolated
 
 }  // namespace
 
@@ -55,14 +55,14 @@ bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::Pa
   const wire::PlanarState moved = system.state(point);
   const VertexTangent v = system.tangent_at(pusher, moved);
   point.border[rows.gap] = pusher.side * v.normal.dot(wire::vertex(moved, pusher.node) - centre) - pusher.radius;
-  if (!numerics::correct(system, point, workspace, newton_iterations).usable()) return false;
+  if (!numerics::correct(system, point, workspace, most_corrections).usable()) return false;
   if (point.border[rows.gap] >= 0.0) return true;
   // Inside the pusher: pressed out.
   pusher.status = pusher.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
   pusher.last_coordinate = point.border[rows.coordinate];
   pusher.last_tangent = system.tangent_at(pusher, system.state(point)).t;
   point.border[rows.gap] = 0.0;
-  if (!numerics::correct(system, point, workspace, newton_iterations).usable()) return false;
+  if (!numerics::correct(system, point, workspace, most_corrections).usable()) return false;
   const VertexTangent pressed = system.tangent_at(pusher, system.state(point));
   return pusher.side * pressed.normal.dot(point.border.segment<2>(rows.force)) >= 0.0;
 }

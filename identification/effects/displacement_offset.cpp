@@ -7,7 +7,7 @@ namespace snare::identification {
 namespace {
 
 /// Recorded displacement at the first touch: the travel falls as it grows.
-Parameter offset() {
+Parameter recorded_displacement() {
   return {.key = "reading.displacement_offset_mm",
           .unit = "mm",
           .unit_size = base::mm,
@@ -24,7 +24,7 @@ Effect displacement_offset_effect() {
   return {.name = "displacement_offset",
           .channel = Channel::sensor,
           .meaning = "the zero of the travel is not at the first touch",
-          .numbers = {{offset(), -3.0, 3.0}},
+          .numbers = {{recorded_displacement(), -3.0, 3.0}},
           .independent_check = "find the first touch electrically or by eye, and begin the record well before it"};
 }
 

@@ -5,7 +5,7 @@ namespace snare::identification {
 namespace {
 
 /// Recorded force without contact.
-Parameter offset() {
+Parameter recorded_force() {
   return {.key = "reading.force_offset_N",
           .unit = "N",
           .number = member([](auto&, auto& r) -> auto& { return r.force_offset; }),
@@ -21,7 +21,7 @@ Effect force_offset_effect() {
   return {.name = "force_offset",
           .channel = Channel::sensor,
           .meaning = "the load cell does not read zero without load",
-          .numbers = {{offset(), -1e3, 1e3}},
+          .numbers = {{recorded_force(), -1e3, 1e3}},
           .independent_check = "record some readings before the touch"};
 }
 

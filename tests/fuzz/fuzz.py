@@ -67,6 +67,15 @@ def build(clang, folder, name, sources, linked):
             subprocess.run([*CACHE, clang, *FLAGS, *MORE_FLAGS, "-MD", "-MF", str(needs), "-c", source, "-o", str(made)], cwd=ROOT, check=True)
         return str(made)
 
+    # The effects are many and small: headers take most of the time to compile each.
+    effects = [source for source in sources if source.startswith("identification/effects/")]
+    if effects:
+        joined = folder / "effects.cpp"
+        text = "".join(f'#include "{source}"\n' for source in effects)
+        if not joined.exists() or joined.read_text() != text:
+            joined.write_text(text)
+        sources = [*(source for source in sources if source not in effects), str(joined)]
+
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         objects = list(pool.map(compiled, sources))
     program = folder / name

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "base/index.hpp"
+#include "base/toml_reader.hpp"
+#include "multibody/arm/drive.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace snare::scenario {
+
+/// What the drives of an arm do: what its file says, nothing, or keep their motors where they stand.
+enum class Hold { as_described, limp, locked };
+
+/// The words of the key `hold`.
+inline constexpr base::Choice<Hold> holds[] = {
+    {"as_described", Hold::as_described}, {"limp", Hold::limp}, {"locked", Hold::locked}};
+
+/// Drives that stand at these angles of the arm's joints [rad], one a drive.
+inline void hold(Hold how, const Eigen::VectorXd& angles, std::vector<multibody::Drive>& drives) {
+  for (int k = 0; k < static_cast<int>(drives.size()); ++k) {
+    multibody::Drive& drive = drives[base::at(k)];
+    if (how == Hold::limp) drive = multibody::Drive::limp();
+    if (how == Hold::locked) drive = multibody::Drive::locked();
+    drive.course = multibody::Course::standing(angles[k]);
+  }
+}
+
+}  // namespace snare::scenario
