@@ -21,10 +21,6 @@ namespace {
 
 constexpr int tries = 40;  // of one step
 
-struct IdaDeleter {
-  void operator()(void* memory) const noexcept { IDAFree(&memory); }
-};
-
 std::string name_of(int code) {
   const std::unique_ptr<char, decltype(&std::free)> name(IDAGetReturnFlagName(code), &std::free);
   return name.get();
@@ -50,6 +46,9 @@ Termination meaning(int code) {
 }  // namespace
 
 struct Ida::Memory {
+  struct Deleter {
+    void operator()(void* memory) const noexcept { IDAFree(&memory); }
+  };
   IdaCallbacks callbacks;
   IdaOptions options;
   sundials::Context context;
@@ -57,7 +56,7 @@ struct Ida::Memory {
   SunVector y_view, rate_view, tolerance_view, identity_view, integrals_view;
   SunMatrix matrix;
   SunLinearSolver linear;
-  std::unique_ptr<void, IdaDeleter> ida;
+  std::unique_ptr<void, Deleter> ida;
   SunNonlinearSolver newton;
   double time = 0.0;
   std::vector<int> events;

@@ -328,8 +328,8 @@ std::string c_source(const DistilledCase& one, const std::string& title, const s
   l.prelude = "#include <math.h>\n\n";
   std::string closed = closed_comments(generate(one, title, l));
   // What no other file should see.
-  for (const char* name : {"unsigned find_cell_(", "unsigned basis_("}) {
-    const std::size_t at = closed.find(std::string("\n") + name);
+  for (const char* helper : {"unsigned find_cell_(", "unsigned basis_("}) {
+    const std::size_t at = closed.find(std::string("\n") + helper);
     if (at != std::string::npos) closed.insert(at + 1, "static ");
   }
   return closed;

@@ -120,7 +120,7 @@ constexpr const char* of_table = R"(
   end @name@;
 )";
 
-constexpr const char* range = R"(
+constexpr const char* of_range = R"(
   function in_range "Whether the table holds the place"
     input Real d;
     input Real position;
@@ -172,7 +172,7 @@ std::string modelica_package(const DistilledCase& one, const std::string& title,
   text += helpers + evaluation("force", "Of the table", "nodes");
   if (one.table.unloading)
     text += evaluation("force_unloading", "The way back from the end of the travel", "nodes_unloading");
-  text += filled(range, numbers);
+  text += filled(of_range, numbers);
   for (const DistilledPlace& place : one.places) {
     for (const FittedLaw& law : place.laws) {
       const std::string function = law.form->name() + "_" + position_name(place.position);
