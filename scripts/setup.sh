@@ -59,7 +59,7 @@ snare_configure() {
   # A first build joins sources, which takes half the time; who has configured by hand keeps what he chose.
   local joined=ON cache="$snare_root/build/$preset/CMakeCache.txt"
   [[ -f $cache ]] && ! grep -q '^CMAKE_UNITY_BUILD:BOOL=ON' "$cache" && joined=OFF
-  (cd "$snare_root" && cmake --fresh --preset "$preset" -DCMAKE_UNITY_BUILD=$joined) >&2 || {
+  (cd "$snare_root" && cmake --fresh --preset "$preset" -DCMAKE_UNITY_BUILD:BOOL=$joined) >&2 || {
     snare_say "Configuring the preset '$preset' failed; see above."
     return 1
   }
