@@ -33,6 +33,10 @@ endif()
 # Private settings of our own targets; never exported.
 add_library(snare_build_settings INTERFACE)
 target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A joined source counts as a header: what is private to it would be seen by others.
+  target_compile_options(snare_build_settings INTERFACE -Wno-subobject-linkage)
+endif()
 
 # Sanitized code and the tests that use it must agree, so the flags hold for the whole tree.
 set(SNARE_SANITIZER_FLAGS "")

@@ -14,7 +14,9 @@ Prints a line a case, then what differs; status 1 if anything does.
 
 import argparse
 import json
+import os
 import pathlib
+import pty
 import random
 import re
 import subprocess
@@ -97,11 +99,24 @@ GENERATED = [
 
 
 def run(command: str, arguments: list, out: pathlib.Path) -> int:
-    """The verb's exit status; its console output goes into the folder of its results."""
-    done = subprocess.run([command, *map(str, arguments), "--out", out], capture_output=True, text=True, check=False)
-    out.mkdir(parents=True, exist_ok=True)
-    (out / "console.txt").write_text(done.stdout + done.stderr)
-    return done.returncode
+    """The verb's exit status; its console output goes into the folder of its results. Progress, which depends on the clock, is written
+    over on a terminal and so known from what is said."""
+    terminal, ours = pty.openpty()
+    with tempfile.TemporaryFile("w+") as said:
+        with subprocess.Popen([command, *map(str, arguments), "--out", out], stdout=said, stderr=ours) as process:
+            os.close(ours)
+            told = b""
+            try:
+                while part := os.read(terminal, 65536):
+                    told += part
+            except OSError:  # Linux ends a terminal so
+                pass
+        os.close(terminal)
+        said.seek(0)
+        text = re.sub(r"\r\x1b\[K[^\r\n]*(?=\r\x1b\[K|\Z)", "", told.decode(errors="replace"))
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "console.txt").write_text(said.read() + text.replace("\r\x1b[K", "").replace("\r\n", "\n"))
+    return process.returncode
 
 
 def cases(quick: bool, generated: dict) -> list:
