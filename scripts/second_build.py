@@ -2,11 +2,12 @@
 """Builds the command again from a copy of the source in another folder, without ccache: results must not know where or when they
 were computed.
 
-    second_build.py FOLDER [--only ROOM...] [--jobs N]
+    second_build.py FOLDER [--only ROOM... | --as-it-is] [--jobs N]
 
 Copies what git has of this tree to FOLDER/source. Without --only configures and builds it in FOLDER/build, which takes as long as a
 build does. With --only compiles the sources of these rooms (`coupling/dynamics`) alone, with the flags of build/release, and links
-them with its other libraries. Prints the path of the second command, which tests/promises/same_bytes.py and
+them with its other libraries. With --as-it-is compiles nothing: of a whole build in FOLDER that was left before its end, links the
+libraries that are there with the others of build/release, and says which are whose. Prints the path of the second command, which tests/promises/same_bytes.py and
 scripts/compare_results.py take.
 """
 
@@ -68,22 +69,41 @@ def some(source, build, rooms, jobs):
     environment = {**os.environ, "CCACHE_DISABLE": "1"}
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         list(pool.map(lambda c: subprocess.run(c[0], cwd=source, check=True, env=environment), commands))
-    ninja = (first / "build.ninja").read_text()
-    libraries = re.search(r"LINK_LIBRARIES = (app/libsnare_app\.a .*)", ninja).group(1).replace("$:", ":").split()
-    main = next(first.glob("CMakeFiles/snare.dir/**/main.cpp.o"), None) or next(first.rglob("main.cpp.o"))
-    command = build / "snare"
-    subprocess.run(["g++", "-fopenmp", str(main), *(str(made) for _, made in commands), *libraries, "-rdynamic", "-o", str(command)],
-                   cwd=first, check=True)
+    return linked(build / "snare", [str(made) for _, made in commands], libraries())
+
+
+def libraries():
+    """Of the first build, as it links its command."""
+    ninja = (ROOT / "build/release/build.ninja").read_text()
+    return re.search(r"LINK_LIBRARIES = (app/libsnare_app\.a .*)", ninja).group(1).replace("$:", ":").split()
+
+
+def linked(command, objects, libraries):
+    first = ROOT / "build/release"
+    main = next(first.glob("app/CMakeFiles/snare.dir/main.cpp.o"), None) or next(first.rglob("main.cpp.o"))
+    subprocess.run(["g++", "-fopenmp", str(main), *objects, *libraries, "-rdynamic", "-o", str(command)], cwd=first, check=True)
     return command
+
+
+def as_it_is(build):
+    own = [str(build / name) if (build / name).is_file() else name for name in libraries()]
+    for name in own:
+        if name.endswith(".a") and "snare" in name:
+            print("second" if name.startswith(str(build)) else "first", pathlib.Path(name).name, file=sys.stderr)
+    return linked(build / "snare_as_it_is", [], own)
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("--only", nargs="+", default=[])
+    parser.add_argument("--as-it-is", action="store_true")
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     folder = pathlib.Path(options.folder).resolve()
+    if options.as_it_is:
+        print(as_it_is(folder / "build"))
+        return
     source = copied(folder)
     command = some(source, folder / "build", options.only, options.jobs) if options.only else whole(source, folder / "build", options.jobs)
     print(command)
