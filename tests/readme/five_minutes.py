@@ -8,12 +8,14 @@ Takes the marked blocks of a page in their order, in a folder that looks like th
     <!-- test: file NAME -->              the file as it stands
     <!-- test: from TEXT on NAME -->      NAME has the block in place of everything from the line TEXT on
 First README.md's own data, then docs/tutorial.md from its first block, the published tests, to the trace of one's own wire; last README.md's lines of
-Python, where the module was built.
+Python, where the module was built. What counts is the processors' time, which a machine with other work does not change; the clock's is told too, and
+is not larger where nothing else runs.
 """
 
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -26,24 +28,34 @@ LIMIT = 300.0  # [s]
 MARKER = re.compile(r"^<!-- test: (?:(run)|file (\S+)|from (\S+) on (\S+)) -->\n```\w*\n(.*?)^```$", re.M | re.S)
 
 
+def clocks():
+    """Processors' time of what was run, and the clock's [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime, time.monotonic()
+
+
+def since(begin):
+    return tuple(now - then for now, then in zip(clocks(), begin))
+
+
 def run(command, folder, page):
-    begin = time.monotonic()
+    begin = clocks()
     print(f"{page}: {command}", flush=True)
     done = subprocess.run(["bash", "-c", command], cwd=folder, env=os.environ, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"{page}: `{command}` ended with status {done.returncode}: {done.stderr}")
-    print(f"    {time.monotonic() - begin:.1f} s", flush=True)
+    print("    {:.1f} s, {:.1f} s by the clock".format(*since(begin)), flush=True)
 
 
 def follow(page, name, folder):
     """Runs a page; returns the time to the first result of a file that the user has written."""
-    begin, own, first = time.monotonic(), False, None
+    begin, own, first = clocks(), False, None
     for runs, file, text, edited, block in MARKER.findall(page):
         if runs:
             for command in commands(block):
                 run(command, folder, name)
                 if own and first is None:
-                    first = time.monotonic() - begin
+                    first = since(begin)
         elif file:
             (folder / file).write_text(block, encoding="utf-8")
             own = True
@@ -61,7 +73,7 @@ def own_data(repository, folder):
     """README's own data alone: the files, then the first command that names one."""
     blocks = list(marked_blocks((repository / "README.md").read_text(encoding="utf-8")))
     names = [name for _, name, _ in blocks if name]
-    begin = time.monotonic()
+    begin = clocks()
     for _, name, text in blocks:
         if name:
             (folder / name).write_text(text, encoding="utf-8")
@@ -69,7 +81,7 @@ def own_data(repository, folder):
         for command in commands(text) if name is None else []:
             if any(n in command for n in names):
                 run(command, folder, "README.md")
-                return time.monotonic() - begin
+                return since(begin)
     raise SystemExit("README.md: no command runs its own data")
 
 
@@ -97,8 +109,8 @@ def main():
             if not (folder / "picture.png").is_file():
                 raise SystemExit("README.md: its lines of Python have drawn no picture")
     for page, took in times.items():
-        print(f"{page}: {took:.1f} s to the first result of one's own")
-    return 0 if max(times.values()) < LIMIT else 1
+        print("{}: {:.1f} s, {:.1f} s by the clock, to the first result of one's own".format(page, *took))
+    return 0 if max(took for took, _ in times.values()) < LIMIT else 1
 
 
 if __name__ == "__main__":
