@@ -8,7 +8,7 @@ namespace snare::reduction {
 
 /// Memory of a load/unload law: 1 on the loading branch, -1 on the unloading one, between them after a turn.
 struct LoadUnloadState {
-  double branch = 1.0;
+  double branch = 1.0;  ///< a number without unit, -1 to 1
   double travel = 0.0;  ///< where the memory was last brought up to date [m]
 };
 

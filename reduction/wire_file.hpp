@@ -15,12 +15,12 @@ namespace snare::reduction {
 
 /// An interval that is asked for; low == high is a fixed value.
 struct Interval {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0;   ///< in SI units
+  double high = 0.0;  ///< in SI units
 
-  [[nodiscard]] bool fixed() const noexcept { return low == high; }
-  [[nodiscard]] double middle() const noexcept { return 0.5 * (low + high); }
-  [[nodiscard]] bool contains(double x) const noexcept { return x >= low && x <= high; }
+  [[nodiscard]] bool fixed() const noexcept { return low == high; }                       ///< one value
+  [[nodiscard]] double middle() const noexcept { return 0.5 * (low + high); }             ///< in SI units
+  [[nodiscard]] bool contains(double x) const noexcept { return x >= low && x <= high; }  ///< ends count
 };
 
 /// One wire with its pusher, and the ranges over which its force is asked. SI units.

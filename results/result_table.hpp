@@ -17,7 +17,7 @@ class TableSink {
   TableSink(const TableSink&) = delete;
   TableSink& operator=(const TableSink&) = delete;
 
-  virtual void begin(std::vector<std::string> names) = 0;
+  virtual void begin(std::vector<std::string> names) = 0;  ///< names of the columns, once
   /// As many cells as there are columns.
   virtual void row(const std::vector<base::CsvCell>& cells) = 0;
 
@@ -32,7 +32,7 @@ class CsvSink final : public TableSink {
 
   void begin(std::vector<std::string> names) override { writer_.emplace(file_, std::move(names)); }
   void row(const std::vector<base::CsvCell>& cells) override { writer_->row(cells); }
-  void commit() { writer_->commit(); }
+  void commit() { writer_->commit(); }  ///< the file is whole
 
  private:
   std::filesystem::path file_;

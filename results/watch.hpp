@@ -13,7 +13,7 @@ struct Watch {
   void say(const std::string& stage) const {
     if (progress) progress(stage);
   }
-  [[nodiscard]] bool stopped() const { return stop && stop(); }
+  [[nodiscard]] bool stopped() const { return stop && stop(); }  ///< somebody wants the work to end
 };
 
 }  // namespace snare::results

@@ -20,7 +20,7 @@ class Dispatcher {
   Dispatcher(Scheduler scheduler, std::function<void(std::uint64_t index, const std::string& result)> finished,
              std::function<bool()> stop);
 
-  [[nodiscard]] std::vector<std::uint64_t> take(int worker);
+  [[nodiscard]] std::vector<std::uint64_t> take(int worker);  ///< cases for a worker; empty: there are no more
   void report(int worker, std::uint64_t index, const std::string& result, double seconds);
   /// given_up: result of a case that is not handed out again.
   void lost(int worker, const std::function<std::string(std::uint64_t index)>& given_up);

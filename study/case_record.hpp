@@ -17,7 +17,7 @@ struct CaseRecord {
   std::vector<nlohmann::json> fields;  ///< one a collected field: number, boolean, text or null; none where it is not done
   std::vector<double> values;          ///< of the variables, where the design does not say them
 
-  [[nodiscard]] bool done() const noexcept { return status == "done"; }
+  [[nodiscard]] bool done() const noexcept { return status == "done"; }  ///< the case has a result
   /// A field as a number, a boolean as 0 or 1; nothing where it is neither.
   [[nodiscard]] std::optional<double> number(std::size_t field) const;
 };

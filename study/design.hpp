@@ -51,9 +51,9 @@ class Design {
   Design(Design&&) noexcept;
   Design& operator=(Design&&) noexcept;
 
-  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
-  [[nodiscard]] const DesignSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }  ///< of cases
+  [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }  ///< what differs from case to case
+  [[nodiscard]] const DesignSettings& settings() const noexcept { return settings_; }  ///< as they were given
 
   /// What the variables are in a case < count(): a number, or the index of a level.
   [[nodiscard]] std::vector<double> values(std::uint64_t index) const;

@@ -34,7 +34,7 @@ class Journal {
   /// Waits until what was appended is on the disk.
   void flush();
 
-  [[nodiscard]] bool has(std::uint64_t index) const;
+  [[nodiscard]] bool has(std::uint64_t index) const;  ///< the case is finished
   /// Result of a case; nothing where there is none. Throws std::system_error.
   [[nodiscard]] std::optional<std::string> result(std::uint64_t index) const;
   [[nodiscard]] std::uint64_t finished() const;

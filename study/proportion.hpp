@@ -6,8 +6,8 @@ namespace snare::study {
 
 /// An interval of probabilities.
 struct ProbabilityInterval {
-  double low = 0.0;
-  double high = 1.0;
+  double low = 0.0;  ///< share
+  double high = 1.0;  ///< share
 };
 
 /// 95 % interval of a probability from `hits` in `cases` independent trials (Clopper, Pearson 1934): never shorter than it

@@ -35,7 +35,7 @@ class RankLeader {
            const std::function<std::vector<double>(std::uint64_t)>& values,
            const std::function<std::string(std::uint64_t)>& given_up);
 
-  [[nodiscard]] int lost() const noexcept { return lost_; }
+  [[nodiscard]] int lost() const noexcept { return lost_; }  ///< ranks that were lost
 
  private:
   struct Other {

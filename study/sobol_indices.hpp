@@ -17,7 +17,7 @@ struct SobolIndex {
 struct SobolIndices {
   std::vector<SobolIndex> of;  ///< one a variable; empty where the variance is zero or less than two rows are whole
   double mean = 0.0;
-  double variance = 0.0;
+  double variance = 0.0;  ///< of the field, in its unit squared
   std::uint64_t rows = 0;     ///< that were used
   std::uint64_t dropped = 0;  ///< in which a case has no result
 };

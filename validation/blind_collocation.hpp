@@ -45,8 +45,8 @@ class Collocation {
  public:
   Collocation(const BlindWire& wire, double contact);
 
-  [[nodiscard]] std::size_t nodes() const { return left_ + right_ + 1; }
-  [[nodiscard]] std::size_t contact_node() const { return left_; }
+  [[nodiscard]] std::size_t nodes() const { return left_ + right_ + 1; }  ///< of the whole wire
+  [[nodiscard]] std::size_t contact_node() const { return left_; }        ///< where the pusher is
 
   /// Fraction of the way from S_0 to S_c, or from S_c to L, of a node; the coordinate of a node [m].
   [[nodiscard]] double coordinate(const Unknowns& z, std::size_t node) const;

@@ -72,6 +72,7 @@ docs/effects
 :maxdepth: 1
 :caption: Programs
 
+docs/examples
 docs/python
 library
 python_reference

@@ -26,7 +26,9 @@ struct QuadraticLaw {
   double r_squared = 1.0;  ///< coefficient of determination that was printed with it, in (0, 1]
   double to = 0.0;         ///< the range is 0 to this travel [m], > 0
 
-  [[nodiscard]] double force(double displacement) const noexcept { return (a * displacement + b) * displacement + c; }
+  [[nodiscard]] double force(double displacement) const noexcept {
+    return (a * displacement + b) * displacement + c;
+  }  ///< [N] at a displacement [m]
   /// Standard deviation of the lost readings about the law that R^2 implies for readings evenly spread
   /// over the range: sqrt((1 - R^2) / R^2 * variance of the law over the range) [N].
   [[nodiscard]] double scatter() const;

@@ -32,8 +32,8 @@ class Model {
   /// number of threads. thin: see PredictionOptions.
   Model(std::vector<Series> series, const SolverSettings& solver, bool thin = true);
 
-  [[nodiscard]] const std::vector<Series>& series() const { return series_; }
-  [[nodiscard]] const SolverSettings& solver() const { return solver_; }
+  [[nodiscard]] const std::vector<Series>& series() const { return series_; }  ///< as declared
+  [[nodiscard]] const SolverSettings& solver() const { return solver_; }       ///< how it is solved
   /// Declared value of a number: that of the first series.
   [[nodiscard]] double declared(const Parameter& parameter) const;
   /// As files show it, in its unit.

@@ -36,8 +36,8 @@ class SharedPredictions {
     static const std::vector<Prediction> none;
     return predictions_ ? *predictions_ : none;
   }
-  [[nodiscard]] bool empty() const { return get().empty(); }
-  [[nodiscard]] std::size_t size() const { return get().size(); }
+  [[nodiscard]] bool empty() const { return get().empty(); }       ///< nothing was predicted
+  [[nodiscard]] std::size_t size() const { return get().size(); }  ///< of series
   const Prediction& operator[](std::size_t series) const { return get()[series]; }
   [[nodiscard]] auto begin() const { return get().begin(); }
   [[nodiscard]] auto end() const { return get().end(); }

@@ -26,7 +26,7 @@ enum class BoundedEnd {
 
 struct BoundedResult {
   Eigen::VectorXd x;
-  double chi2 = 0.0;
+  double chi2 = 0.0;  ///< sum of squares, a number without unit
   int iterations = 0;
   BoundedEnd end = BoundedEnd::converged;
 };

@@ -25,7 +25,7 @@ struct RecordPrediction {
   std::vector<Eigen::VectorXd> channels;
   std::string failure;  ///< why there is none; empty: there is
 
-  [[nodiscard]] bool usable() const { return failure.empty(); }
+  [[nodiscard]] bool usable() const { return failure.empty(); }  ///< the run came to its end
 };
 
 /// Numbers with their values.
@@ -47,8 +47,8 @@ class MotionModel {
   /// and for keys of free numbers that are none.
   explicit MotionModel(const RecordSet& set, std::function<bool()> stop = {});
 
-  [[nodiscard]] const RecordSet& records() const { return set_; }
-  [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }
+  [[nodiscard]] const RecordSet& records() const { return set_; }               ///< as read
+  [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }  ///< the scenario as its file says
   /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
   [[nodiscard]] std::vector<MotionSetting> free(const std::vector<std::size_t>& records) const;
   /// Unit of a channel's column, from the sensor's name: "mm".
@@ -67,8 +67,8 @@ class MotionModel {
       const std::vector<RecordPrediction>* base = nullptr,
       const std::vector<std::optional<std::size_t>>& only = {}) const;
 
-  [[nodiscard]] long simulations() const { return simulations_; }
-  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+  [[nodiscard]] long simulations() const { return simulations_; }  ///< runs so far
+  [[nodiscard]] bool stopped() const { return stop_ && stop_(); }  ///< somebody wants the work to end
 
  private:
   /// Null with `failure` set where the scenario cannot be simulated.

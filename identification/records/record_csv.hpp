@@ -28,7 +28,7 @@ struct RecordCsv {
 
 /// Times on the scenario's clock and values of the columns.
 struct RecordReadings {
-  std::vector<double> times;
+  std::vector<double> times;  ///< on the record's clock [s]
   std::vector<std::vector<double>> values;
   RecordFilter filter;
 };

@@ -57,7 +57,7 @@ struct LeftOut {
 class HeldOut {
  public:
   HeldOut(const std::vector<Series>& series, const SolverSettings& solver);
-  [[nodiscard]] bool empty() const { return !model_; }
+  [[nodiscard]] bool empty() const { return !model_; }  ///< no series is held out
   /// Of the model with these settings [N]; absent without such series and where a curve ends early.
   [[nodiscard]] std::optional<double> rmse(const std::vector<Setting>& settings) const;
 
