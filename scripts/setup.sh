@@ -56,13 +56,9 @@ snare_configure() {
   local preset=$1 stamp="$snare_root/build/$1/configured.stamp"
   [[ -f $snare_root/build/$preset/build.ninja && $stamp -nt $snare_root/CMakePresets.json &&
      $(<"$stamp") == "$snare_root" ]] && return 0
-  # A first release build joins sources, which takes half the time; who has configured by hand keeps what he chose.
-  local joined=OFF cache="$snare_root/build/$preset/CMakeCache.txt"
-  if [[ -f $cache ]]; then
-    if grep -q '^CMAKE_UNITY_BUILD:BOOL=ON' "$cache"; then joined=ON; fi
-  elif [[ $preset == release ]]; then
-    joined=ON
-  fi
+  # A first build joins sources, which takes half the time; who has configured by hand keeps what he chose.
+  local joined=ON cache="$snare_root/build/$preset/CMakeCache.txt"
+  if [[ -f $cache ]] && ! grep -q '^CMAKE_UNITY_BUILD:BOOL=ON' "$cache"; then joined=OFF; fi
   (cd "$snare_root" && cmake --fresh --preset "$preset" -DCMAKE_UNITY_BUILD:BOOL=$joined) >&2 || {
     snare_say "Configuring the preset '$preset' failed; see above."
     return 1
