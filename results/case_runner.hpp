@@ -32,7 +32,9 @@ class CaseRunner {
   /// that names both, for messages. Throws base::InputError.
   CaseRunner(std::filesystem::path file, const std::string& verb, const std::filesystem::path& asked_by);
 
+  /// The verb whose code runs.
   [[nodiscard]] const std::string& verb() const noexcept { return verb_; }
+  /// The file that is read.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
   /// Reads the file as a case would. Throws base::InputError with everything that is wrong.

@@ -31,6 +31,7 @@ struct FieldAnswer {
   [[nodiscard]] double quantile(double p) const;
 };
 
+/// How often a field is beyond a bound.
 struct LimitAnswer {
   std::string name;
   std::uint64_t count = 0, hits = 0;  ///< cases that have the field, that are beyond the bound
@@ -53,17 +54,20 @@ struct MapAnswer {
   std::vector<double> sum;
 };
 
+/// A field over a variable, a point a case.
 struct ScatterAnswer {
-  std::string x, y;
-  std::vector<double> at, value;
+  std::string x, y;               ///< names of the variable, of the field
+  std::vector<double> at, value;  ///< in the units of the files, which the names say
 };
 
+/// What a subset simulation says of a rare event.
 struct SubsetAnswer {
-  double probability = 0.0, variation = 0.0;
-  bool reached = false;
+  double probability = 0.0, variation = 0.0;  ///< of the event; coefficient of variation of that [-]
+  bool reached = false;                       ///< some case had the event
   std::vector<study::SubsetSimulation::Level> levels;
 };
 
+/// What the cases of a sweep say together.
 struct SweepAnswers {
   std::uint64_t cases = 0;  ///< there are; 0: unknown before the end
   std::uint64_t finished = 0;

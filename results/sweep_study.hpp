@@ -20,7 +20,9 @@ class SweepStudy {
   /// Reads both files; throws base::InputError with everything that is wrong in them and in the values of some cases.
   SweepStudy(const std::filesystem::path& file, const std::vector<base::Override>& overrides);
 
+  /// The sweep file.
   [[nodiscard]] const study::SweepFile& sweep() const noexcept { return sweep_; }
+  /// Who runs its case.
   [[nodiscard]] const CaseRunner& runner() const noexcept { return runner_; }
   /// Cases there are; 0: known at the end only.
   [[nodiscard]] std::uint64_t count() const noexcept;

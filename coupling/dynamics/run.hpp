@@ -45,6 +45,7 @@ constexpr Eigen::Index contacts = 8;
   return round_off * std::max(1.0, time);
 }
 
+/// Whether a time is the limit or behind it, round-off aside [s].
 [[nodiscard]] inline bool reached(double time, double limit) {
   return time >= limit - time_resolution(limit);
 }
