@@ -198,7 +198,7 @@ LookupTable lookup_table(const DistilledCase& one) {
     error = bilinear_error(table, slack, grid);
     if (error <= one.table.loading_error.bound) break;
   }
-  std::string text = "NaN";
+  std::string text;
   for (const double s : grid.position) text += fmt::format(",{}", s);
   text += "\n";
   for (Eigen::Index i = 0; i < grid.force.rows(); ++i) {

@@ -18,7 +18,7 @@ namespace snare::reduction {
 
 /// Numbers for a block that interpolates linearly in two inputs, as Simulink's 2-D Lookup Table does.
 struct LookupTable {
-  std::string csv;             ///< NaN and positions [m]; below travel [m] and forces [N] at the slack of the wire
+  std::string csv;  ///< an empty cell and positions [m]; below travel [m] and forces [N] at the slack of the wire
   double largest_error = 0.0;  ///< of linear interpolation against the table, between the knots [N]
 };
 /// With so many knots that the error is within the stated bound of the table, where sixteen times as many on either axis suffice.
