@@ -2,9 +2,9 @@
 
 #include "results/result_table.hpp"
 
-#include <nlohmann/json_fwd.hpp>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>

@@ -4,9 +4,9 @@
 #include "scenario/distilled_law.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,8 +39,8 @@ Numbers numbers(const py::object& given, const char* name) {
   const py::array any(given);  // raises what NumPy has to say: of rows that are not of one length, of memory
   const char kind = any.dtype().kind();
   if (std::string_view("fiubO").find(kind) == std::string_view::npos) {
-    throw py::type_error(fmt::format("{} = {}, must be a number or an array of real numbers", name,
-                                     std::string(py::repr(given))));
+    throw py::type_error(
+        fmt::format("{} = {}, must be a number or an array of real numbers", name, std::string(py::repr(given))));
   }
   return Numbers(any);
 }
@@ -127,7 +127,8 @@ Outside outside_of(const std::string& word) {
 
 const ForceTable& table_of(const DistilledLaw& law, bool unloading) {
   if (!unloading) return *law.loading;
-  if (!law.unloading) throw std::invalid_argument("unloading = True: nothing dissipates in this wire, see `dissipates`");
+  if (!law.unloading)
+    throw std::invalid_argument("unloading = True: nothing dissipates in this wire, see `dissipates`");
   return *law.unloading;
 }
 
@@ -150,9 +151,7 @@ py::object stiffness(const DistilledLaw& law, const py::object& d, const py::obj
 }
 
 py::object in_range(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack) {
-  return points(law, d, s, slack).map<bool>([&](double x, double y, double z) {
-    return law.in_range(x, y, z);
-  });
+  return points(law, d, s, slack).map<bool>([&](double x, double y, double z) { return law.in_range(x, y, z); });
 }
 
 template <double (coupling::SpringLaw::*number)(double) const>
@@ -173,7 +172,8 @@ py::dict parameters_of(const SimpleLaw& one) {
 DistilledLaw from_file(const std::filesystem::path& file, std::size_t number) {
   const std::vector<DistilledLaw> laws = scenario::read_law_file(file);
   if (number >= laws.size())
-    throw py::index_error(fmt::format("case = {}: {} has {} cases, counted from 0", number, file.string(), laws.size()));
+    throw py::index_error(
+        fmt::format("case = {}: {} has {} cases, counted from 0", number, file.string(), laws.size()));
   return laws[number];
 }
 
@@ -186,9 +186,10 @@ py::list laws_of(const nlohmann::json& document) {
 }
 
 void add_laws(py::module_& module) {
-  py::class_<SimpleLaw>(module, "SimpleLaw",
-                        "A law of a few numbers, fitted to the full wire at one position. Force, stiffness and energy are\n"
-                        "functions of the travel d [m]: a number or an array of any shape. Without contact (d < 0) they are 0.")
+  py::class_<SimpleLaw>(
+      module, "SimpleLaw",
+      "A law of a few numbers, fitted to the full wire at one position. Force, stiffness and energy are\n"
+      "functions of the travel d [m]: a number or an array of any shape. Without contact (d < 0) they are 0.")
       .def_readonly("position", &SimpleLaw::position, "s, of the pusher along the chord from the left mount [m].")
       .def_readonly("name", &SimpleLaw::name, "As in law.json: 'quadratic', 'power_law', ...")
       .def_readonly("formula", &SimpleLaw::formula, "The law, for people.")
@@ -204,41 +205,50 @@ void add_laws(py::module_& module) {
       });
 
   const auto interval = [](const std::array<double, 2>& range) { return py::make_tuple(range[0], range[1]); };
-  py::class_<DistilledLaw>(module, "Law",
-                           "The force of one wire as a table over travel, position and slack, with the simple laws fitted to it.\n\n"
-                           "Law(file, case=0) reads a law.json; `distil` returns laws, too. Lengths are in m, forces in N.")
+  py::class_<DistilledLaw>(
+      module, "Law",
+      "The force of one wire as a table over travel, position and slack, with the simple laws fitted to it.\n\n"
+      "Law(file, case=0) reads a law.json; `distil` returns laws, too. Lengths are in m, forces in N.")
       .def(py::init(&from_file), py::arg("file"), py::arg("case") = 0)
-      .def("force", &force, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(), py::kw_only(),
-           py::arg("outside") = "refuse", py::arg("unloading") = false,
-           "Force [N] on the pusher at travel d [m] from first touch, position s [m] along the chord from the left mount, and\n"
-           "slack [m], length less span (None: the nominal one).\n\n"
-           "Numbers or arrays; shapes are broadcast as NumPy does, and the result has theirs. Negative travel is no contact: 0.\n"
-           "outside: 'refuse' raises ValueError for a point outside the table's range, 'extrapolate' goes on linearly.\n"
-           "unloading: on the way back from the end of the travel, where something dissipates.")
+      .def(
+          "force", &force, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(), py::kw_only(),
+          py::arg("outside") = "refuse", py::arg("unloading") = false,
+          "Force [N] on the pusher at travel d [m] from first touch, position s [m] along the chord from the left "
+          "mount, and\n"
+          "slack [m], length less span (None: the nominal one).\n\n"
+          "Numbers or arrays; shapes are broadcast as NumPy does, and the result has theirs. Negative travel is no "
+          "contact: 0.\n"
+          "outside: 'refuse' raises ValueError for a point outside the table's range, 'extrapolate' goes on linearly.\n"
+          "unloading: on the way back from the end of the travel, where something dissipates.")
       .def("stiffness", &stiffness, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(), py::kw_only(),
            py::arg("outside") = "refuse", py::arg("unloading") = false, "dF/dd [N/m], arguments as of `force`.")
       .def("in_range", &in_range, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(),
            "Whether the table has these points; arguments as of `force`.")
       .def_readonly("title", &DistilledLaw::title, "Of the wire file.")
-      .def_property_readonly("span", [](const DistilledLaw& law) { return law.loading->span(); },
-                             "Distance of the mounts [m].")
-      .def_property_readonly("travel", [interval](const DistilledLaw& law) { return interval(law.travel); },
-                             "(from, to), the range of d [m].")
-      .def_property_readonly("position", [interval](const DistilledLaw& law) { return interval(law.position); },
-                             "(from, to), the range of s [m]; the mirror image belongs to it where mounts are alike.")
-      .def_property_readonly("slack", [interval](const DistilledLaw& law) { return interval(law.slack); },
-                             "(from, to), the range of the slack [m].")
+      .def_property_readonly(
+          "span", [](const DistilledLaw& law) { return law.loading->span(); }, "Distance of the mounts [m].")
+      .def_property_readonly(
+          "travel", [interval](const DistilledLaw& law) { return interval(law.travel); },
+          "(from, to), the range of d [m].")
+      .def_property_readonly(
+          "position", [interval](const DistilledLaw& law) { return interval(law.position); },
+          "(from, to), the range of s [m]; the mirror image belongs to it where mounts are alike.")
+      .def_property_readonly(
+          "slack", [interval](const DistilledLaw& law) { return interval(law.slack); },
+          "(from, to), the range of the slack [m].")
       .def_readonly("nominal_slack", &DistilledLaw::nominal_slack, "Length less span of the wire file [m].")
       .def_readonly("bound", &DistilledLaw::bound, "Stated largest error of the table [N].")
       .def_readonly("force_range", &DistilledLaw::force_range, "Range of the full wire's force [N].")
-      .def_property_readonly("dissipates", [](const DistilledLaw& law) { return law.unloading != nullptr; },
-                             "Whether the way back has a force of its own.")
+      .def_property_readonly(
+          "dissipates", [](const DistilledLaw& law) { return law.unloading != nullptr; },
+          "Whether the way back has a force of its own.")
       .def_readonly("simple", &DistilledLaw::simple, "The simple laws, a list of SimpleLaw.")
       .def("__repr__", [](const DistilledLaw& law) {
-        return fmt::format("<snare.Law '{}': travel {:.4g} to {:.4g} m, position {:.4g} to {:.4g} m, slack {:.4g} to {:.4g} m, "
-                           "within {:.3g} N>",
-                           law.title, law.travel[0], law.travel[1], law.position[0], law.position[1], law.slack[0],
-                           law.slack[1], law.bound);
+        return fmt::format(
+            "<snare.Law '{}': travel {:.4g} to {:.4g} m, position {:.4g} to {:.4g} m, slack {:.4g} to {:.4g} m, "
+            "within {:.3g} N>",
+            law.title, law.travel[0], law.travel[1], law.position[0], law.position[1], law.slack[0], law.slack[1],
+            law.bound);
       });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <pybind11/pybind11.h>
+#include <nlohmann/json_fwd.hpp>
 
 namespace snare::python {
 

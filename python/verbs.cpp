@@ -24,9 +24,9 @@
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -117,8 +117,8 @@ py::tuple traced_records(const Path& file, const Pairs& set, int threads, const 
         };
         Traced one{identification::trace_records(*records, watched), {}};
         if (one.trace.report.usable()) {
-          one.document = effects ? results::record_trace_json(*records, one.trace)
-                                 : results::record_fit_json(*records, one.trace);
+          one.document =
+              effects ? results::record_trace_json(*records, one.trace) : results::record_fit_json(*records, one.trace);
         }
         return one;
       },
@@ -143,8 +143,7 @@ py::tuple fit(const Path& file, const Pairs& set, int threads, const py::object&
 }
 
 py::tuple distil(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto wire =
-      std::make_shared<const reduction::WireFile>(reduction::read_wire_file(file, overrides_of(set)));
+  const auto wire = std::make_shared<const reduction::WireFile>(reduction::read_wire_file(file, overrides_of(set)));
   const auto distilled = made(
       [wire](const results::Watch& watch) {
         return reduction::distil(*wire, {}, [&watch](std::size_t finished, std::size_t wanted) {
@@ -160,14 +159,13 @@ py::tuple distil(const Path& file, const Pairs& set, int threads, const py::obje
 }
 
 py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto asked =
-      std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
+  const auto asked = std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
   ColumnSink history, telemetry;
   json document;
   if (const auto* motions = std::get_if<scenario::WireMotions>(&asked->content)) {
-    const auto records = made(
-        [asked, motions](const results::Watch& watch) { return results::simulate_all(motions->runs, watch); }, threads,
-        progress);
+    const auto records =
+        made([asked, motions](const results::Watch& watch) { return results::simulate_all(motions->runs, watch); },
+             threads, progress);
     const std::vector<results::FinishedMotion> finished = results::finished_motions(*motions, *records);
     document = results::motion_summary(*asked, *motions, finished);
     document["interrupted"] = results::left_undone(motions->runs, *records);
@@ -176,9 +174,9 @@ py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::ob
     if (!motions->sensors.empty()) results::give_telemetry(telemetry, *motions, finished.front().samples);
   } else {
     const auto& motion = std::get<scenario::ArmMotion>(asked->content);
-    const auto record = made(
-        [asked, &motion](const results::Watch& watch) { return results::simulate_arm(motion, watch); }, threads,
-        progress);
+    const auto record =
+        made([asked, &motion](const results::Watch& watch) { return results::simulate_arm(motion, watch); }, threads,
+             progress);
     document = results::arm_summary(*asked, motion, *record);
     document["interrupted"] = record->history.report.termination == numerics::Termination::interrupted;
     results::give_history(history, motion.scenario.arm, record->history);
@@ -193,8 +191,8 @@ std::string schema_of(const Path& file) {
 }
 
 json compared_pushes(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto comparison = std::make_shared<const results::StaticComparison>(
-      results::read_static_comparison(file, overrides_of(set)));
+  const auto comparison =
+      std::make_shared<const results::StaticComparison>(results::read_static_comparison(file, overrides_of(set)));
   const auto compared = made(
       [comparison](const results::Watch& watch) {
         std::vector<reduction::CaseComparison> done;
@@ -213,9 +211,9 @@ json compared_motions(const Path& file, const Pairs& set, int threads, const py:
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(set));
   const auto comparison = std::make_shared<const results::MotionComparison>(
       results::with_every_model(file, overrides_of(set), results::composed_motions(file, asked)));
-  const auto records = made(
-      [comparison](const results::Watch& watch) { return results::simulate_all(comparison->motions.runs, watch); },
-      threads, progress);
+  const auto records =
+      made([comparison](const results::Watch& watch) { return results::simulate_all(comparison->motions.runs, watch); },
+           threads, progress);
   return results::comparison_json(asked, *comparison, *records);
 }
 

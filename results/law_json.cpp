@@ -177,7 +177,8 @@ json case_json(const DistilledCase& one) {
           {"map", map_json(one.map)},
           {"exports",
            {{"mujoco", {{"form", "k0 d + k1 d^2 + k2 d^3"}, {"largest_error_N", joint_errors(one)}}},
-            {"simulink", {{"form", "linear in travel and position"}, {"largest_error_N", lookup_table(one).largest_error}}}}}};
+            {"simulink",
+             {{"form", "linear in travel and position"}, {"largest_error_N", lookup_table(one).largest_error}}}}}};
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "results/motion_summary.hpp"
 #include "results/in_mm.hpp"
 
-#include "results/finite_json.hpp"
-#include "results/version.hpp"
 #include "base/index.hpp"
 #include "base/units.hpp"
+#include "results/finite_json.hpp"
+#include "results/version.hpp"
 
 #include <algorithm>
 #include <array>

@@ -40,8 +40,8 @@ nlohmann::json summary(const identification::Series& series, const identificatio
 }  // namespace
 
 bool PushResult::complete() const {
-  return std::ranges::all_of(
-      predictions, [](const identification::Prediction& p) { return p.curve.curve.report.usable(); });
+  return std::ranges::all_of(predictions,
+                             [](const identification::Prediction& p) { return p.curve.curve.report.usable(); });
 }
 
 PushResult push(const identification::Experiment& experiment, const Watch& watch) {
@@ -58,11 +58,11 @@ PushResult push(const identification::Experiment& experiment, const Watch& watch
   PushResult result;
   result.predictions = identification::predict_all(experiment.series, experiment.solver, {}, options);
   bool interrupted = false;
-  result.document = {
-      {"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
+  result.document = {{"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
   for (std::size_t k = 0; k < result.predictions.size(); ++k) {
     result.document["series"].push_back(summary(experiment.series[k], result.predictions[k]));
-    interrupted = interrupted || result.predictions[k].curve.curve.report.termination == numerics::Termination::interrupted;
+    interrupted =
+        interrupted || result.predictions[k].curve.curve.report.termination == numerics::Termination::interrupted;
   }
   result.document["interrupted"] = interrupted;
   result.document["warnings"] = push_warnings(experiment.series, result.predictions);

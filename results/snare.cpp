@@ -12,7 +12,8 @@ nlohmann::json document(const std::filesystem::path& file, const char* verb, con
   runner.check(overrides);
   watch.say(verb);
   nlohmann::json result;
-  const results::CaseEnd end = runner.run(overrides, [&watch] { return watch.stopped(); }, result);
+  const results::CaseEnd end = runner.run(
+      overrides, [&watch] { return watch.stopped(); }, result);
   if (end.status != results::CaseEnd::Status::done) throw SolverStopped(file.string() + ": " + end.reason);
   return result;
 }

@@ -1,7 +1,7 @@
 #include "results/sweep_answers.hpp"
 
-#include "results/version.hpp"
 #include "results/finite_json.hpp"
+#include "results/version.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -115,8 +115,8 @@ class SweepRun {
     const double share =
         static_cast<double>(done - before_) / static_cast<double>(std::max<std::uint64_t>(1, total_ - before_));
     watch_.say(fmt::format("{} of {} cases{}, {} to go", done, total_,
-                                  without_ > 0 ? fmt::format(" ({} without a result)", without_) : "",
-                                  time_words(elapsed * (1.0 - share) / share)));
+                           without_ > 0 ? fmt::format(" ({} without a result)", without_) : "",
+                           time_words(elapsed * (1.0 - share) / share)));
   }
 
   const SweepStudy& study_;

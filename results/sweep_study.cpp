@@ -1,8 +1,8 @@
 #include "results/sweep_study.hpp"
 
-#include "results/version.hpp"
 #include "base/archive.hpp"
 #include "base/errors.hpp"
+#include "results/version.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

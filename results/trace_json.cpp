@@ -1,11 +1,11 @@
 #include "results/trace_json.hpp"
 
+#include "identification/effects/catalogue.hpp"
 #include "results/finite_json.hpp"
-#include "results/version.hpp"
-#include "results/warnings.hpp"
 #include "results/in_mm.hpp"
 #include "results/trace_findings.hpp"
-#include "identification/effects/catalogue.hpp"
+#include "results/version.hpp"
+#include "results/warnings.hpp"
 
 #include <nlohmann/json.hpp>
 

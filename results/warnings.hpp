@@ -1,8 +1,8 @@
 #pragma once
 
-#include "results/motion_record.hpp"
 #include "identification/tracing/trace.hpp"
 #include "reduction/wire_file.hpp"
+#include "results/motion_record.hpp"
 
 #include <string>
 #include <vector>

@@ -81,11 +81,11 @@ void walk(const json& node, const Collected& field, std::size_t step, std::vecto
     next = element(node, key);
   }
   if (next == nullptr) {
-    throw std::out_of_range(node.is_structured()
-                                ? fmt::format("the result has no {}: no {} there; there are: {}", field.text, key,
-                                              node.empty() ? "none" : words_of(node))
-                                : fmt::format("the result has no {}: nothing is below what stands before {}",
-                                              field.text, key));
+    throw std::out_of_range(
+        node.is_structured()
+            ? fmt::format("the result has no {}: no {} there; there are: {}", field.text, key,
+                          node.empty() ? "none" : words_of(node))
+            : fmt::format("the result has no {}: nothing is below what stands before {}", field.text, key));
   }
   walk(*next, field, step + 1, found);
 }

@@ -3,8 +3,8 @@
 #include "base/index.hpp"
 #include "study/random_access.hpp"
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 #include <boost/random/sobol.hpp>
 
 #include <algorithm>

@@ -26,8 +26,8 @@ enum class DesignKind {
   latin_hypercube,  ///< of n slices of equal probability every variable has one case in each
   sobol,            ///< Sobol's sequence, shifted at random
   file,             ///< a table of cases
-  sensitivity,      ///< Saltelli's: n times the rows A, B and A with a column of B                            theory.md (S.4)
-  subset            ///< the next cases depend on the last ones: no list beforehand
+  sensitivity,  ///< Saltelli's: n times the rows A, B and A with a column of B                            theory.md (S.4)
+  subset        ///< the next cases depend on the last ones: no list beforehand
 };
 
 struct DesignSettings {
@@ -52,7 +52,9 @@ class Design {
   Design& operator=(Design&&) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }  ///< of cases
-  [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }  ///< what differs from case to case
+  [[nodiscard]] const std::vector<Variable>& variables() const noexcept {
+    return variables_;
+  }  ///< what differs from case to case
   [[nodiscard]] const DesignSettings& settings() const noexcept { return settings_; }  ///< as they were given
 
   /// What the variables are in a case < count(): a number, or the index of a level.

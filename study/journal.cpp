@@ -50,8 +50,7 @@ Journal::Journal(std::filesystem::path file, const std::string& identity, std::u
   assert(identity.find('\n') == std::string::npos);
   if (count > 0) offsets_.resize(count);
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0)
-    throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
   try {
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode))  // a device may have no end
@@ -137,8 +136,8 @@ void Journal::write(std::string_view text) {
 int Journal::try_write(std::string_view text) noexcept {
   std::size_t written = 0;
   while (written < text.size()) {
-    const ssize_t n = ::pwrite(descriptor_, text.data() + written, text.size() - written,
-                               static_cast<off_t>(size_ + written));
+    const ssize_t n =
+        ::pwrite(descriptor_, text.data() + written, text.size() - written, static_cast<off_t>(size_ + written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       const int error = n < 0 ? errno : ENOSPC;

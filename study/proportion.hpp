@@ -6,7 +6,7 @@ namespace snare::study {
 
 /// An interval of probabilities.
 struct ProbabilityInterval {
-  double low = 0.0;  ///< share
+  double low = 0.0;   ///< share
   double high = 1.0;  ///< share
 };
 

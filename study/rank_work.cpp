@@ -78,8 +78,8 @@ void RankLeader::hear(Dispatcher& dispatcher) {
     std::vector<Done> results;
     reader(identity)(results);
     if (identity != settings_.identity) {
-      throw base::InputError({"", 0, "rank", std::to_string(m->from),
-                              "must read the same files as rank 0, and be the same version"});
+      throw base::InputError(
+          {"", 0, "rank", std::to_string(m->from), "must read the same files as rank 0, and be the same version"});
     }
     for (const Done& done : results) dispatcher.report(worker_of(m->from), done.index, done.result, done.seconds);
     other.idle = true;
@@ -91,7 +91,8 @@ void RankLeader::run(Dispatcher& dispatcher, const RunWithValues& run,
                      const std::function<std::string(std::uint64_t)>& given_up) {
   // The leader's own cases on a thread of their own: this one talks.
   std::thread own([&] {
-    run_cases(dispatcher, settings_.threads, [&](std::uint64_t index) { return run(index, values(index)); }, Idle::wait);
+    run_cases(
+        dispatcher, settings_.threads, [&](std::uint64_t index) { return run(index, values(index)); }, Idle::wait);
   });
   try {
     for (Other& other : others_) other.heard = now();  // nobody listened in the meantime

@@ -19,9 +19,9 @@ using RunWithValues = std::function<std::string(std::uint64_t index, const std::
 class RankLeader {
  public:
   struct Settings {
-    std::string identity;      ///< of the study; ranks that have read something else are refused
-    double silence_s = 15.0;   ///< [s]
-    int threads = 1;           ///< of the leader's own
+    std::string identity;     ///< of the study; ranks that have read something else are refused
+    double silence_s = 15.0;  ///< [s]
+    int threads = 1;          ///< of the leader's own
   };
   RankLeader(Ranks& ranks, Settings settings);
   /// Tells the others that it is over.
@@ -40,8 +40,8 @@ class RankLeader {
  private:
   struct Other {
     bool gone = false;
-    bool idle = false;    ///< waits for cases
-    double heard = 0.0;   ///< last [s]
+    bool idle = false;   ///< waits for cases
+    double heard = 0.0;  ///< last [s]
   };
   void hear(Dispatcher& dispatcher);
 

@@ -41,11 +41,11 @@ class Scheduler {
 
   Settings settings_;
   std::function<bool(std::uint64_t)> has_;
-  std::uint64_t next_ = 0;                          // not yet handed out, nor any after it
-  std::deque<std::uint64_t> again_;                 // of lost workers
-  std::map<int, std::vector<std::uint64_t>> out_;   // what workers have, in their order
-  std::map<std::uint64_t, int> lost_with_;          // how often a case's worker was lost
-  double seconds_ = 0.0;                            // of the finished cases
+  std::uint64_t next_ = 0;                         // not yet handed out, nor any after it
+  std::deque<std::uint64_t> again_;                // of lost workers
+  std::map<int, std::vector<std::uint64_t>> out_;  // what workers have, in their order
+  std::map<std::uint64_t, int> lost_with_;         // how often a case's worker was lost
+  double seconds_ = 0.0;                           // of the finished cases
   std::uint64_t timed_ = 0;
 };
 

@@ -38,8 +38,10 @@ SobolIndices sobol_indices(std::size_t variables, std::uint64_t rows,
         whole = whole && one;
         y[k] = one.value_or(0.0);
       }
-      if (whole) use();
-      else ++indices.dropped;
+      if (whole)
+        use();
+      else
+        ++indices.dropped;
     }
   };
   for_rows([&] {

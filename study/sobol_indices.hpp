@@ -9,15 +9,15 @@ namespace snare::study {
 
 /// Share of the variance of a result that is due to one variable.                            theory.md (S.4)
 struct SobolIndex {
-  double first = 0.0;  ///< by itself
-  double total = 0.0;  ///< by itself and with others
+  double first = 0.0;                           ///< by itself
+  double total = 0.0;                           ///< by itself and with others
   double first_error = 0.0, total_error = 0.0;  ///< standard errors, as if the rows were drawn independently
 };
 
 struct SobolIndices {
   std::vector<SobolIndex> of;  ///< one a variable; empty where the variance is zero or less than two rows are whole
   double mean = 0.0;
-  double variance = 0.0;  ///< of the field, in its unit squared
+  double variance = 0.0;      ///< of the field, in its unit squared
   std::uint64_t rows = 0;     ///< that were used
   std::uint64_t dropped = 0;  ///< in which a case has no result
 };

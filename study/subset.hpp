@@ -55,14 +55,14 @@ class SubsetSimulation {
   [[nodiscard]] double variation_of(double threshold, double probability) const;
 
   Settings settings_;
-  std::size_t seeds_ = 1;       // chains of a level
-  std::size_t length_ = 1;      // of a chain
+  std::size_t seeds_ = 1;   // chains of a level
+  std::size_t length_ = 1;  // of a chain
   std::vector<std::vector<State>> chains_;
   std::vector<std::vector<double>> asked_;
   std::vector<Level> levels_;
-  double threshold_ = 0.0;      // of the level at hand
-  double step_ = 0.6;           // l of the next step
-  std::size_t steps_ = 0;       // of the level
+  double threshold_ = 0.0;  // of the level at hand
+  double step_ = 0.6;       // l of the next step
+  std::size_t steps_ = 0;   // of the level
   std::uint64_t told_ = 0;
   bool first_ = true;
   bool reached_ = false;

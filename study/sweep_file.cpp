@@ -86,11 +86,18 @@ class Reader {
     std::vector<Variable> variables;
     for (Draft& d : drafts_) variables.push_back(std::move(d.variable));
     std::string canonical = document_.canonical() + beside_;
-    return {file_,  title,
-            source, case_file,
-            verb,   fixed,
+    return {file_,
+            title,
+            source,
+            case_file,
+            verb,
+            fixed,
             Design(std::move(variables), std::move(settings)),
-            collect, limits, subset, time_limit, std::move(canonical)};
+            collect,
+            limits,
+            subset,
+            time_limit,
+            std::move(canonical)};
   }
 
  private:
@@ -107,7 +114,8 @@ class Reader {
     for (const base::TomlEntry& entry : node->entries) {
       [[maybe_unused]] const bool known = table.has(entry.key);
       const std::string text = literal_of(entry.node);
-      if (text.empty()) table.fail(entry.key, "must be a number, a text, a boolean or an array of them; quote a key with dots");
+      if (text.empty())
+        table.fail(entry.key, "must be a number, a text, a boolean or an array of them; quote a key with dots");
       fixed.push_back({entry.key, text});
     }
     return fixed;
@@ -218,7 +226,8 @@ class Reader {
 
   void read_range(Draft& d, const char* source) {
     const std::vector<double> ends = d.table.numbers(source, 2, 2, Range::finite());
-    if (std::string_view(source) == "range" && kind_ == DesignKind::grid) d.points = d.table.integer("points", 1, 100000);
+    if (std::string_view(source) == "range" && kind_ == DesignKind::grid)
+      d.points = d.table.integer("points", 1, 100000);
     if (ends.size() != 2) return;
     if (!(ends[0] < ends[1])) {
       d.table.fail(source, "must be [low, high], low < high");
@@ -279,7 +288,8 @@ class Reader {
     s.kind = kind_;
     const bool counted = kind_ != DesignKind::grid && kind_ != DesignKind::file;
     if (counted) {
-      const double most = case_limit / (kind_ == DesignKind::sensitivity ? 2.0 + static_cast<double>(drafts_.size()) : 1.0);
+      const double most =
+          case_limit / (kind_ == DesignKind::sensitivity ? 2.0 + static_cast<double>(drafts_.size()) : 1.0);
       s.cases = static_cast<std::uint64_t>(top_.integer("cases", 1, static_cast<int>(most)));
       s.seed = static_cast<std::uint64_t>(top_.integer_or("seed", 1, 0, 2147483647));
     } else {
@@ -289,7 +299,8 @@ class Reader {
     if (kind_ == DesignKind::grid) {
       double count = 1.0;
       for (const Draft& d : drafts_) count *= static_cast<double>(d.variable.levels.size());
-      if (count > case_limit) top_.fail("vary", fmt::format("makes {:.3g} cases, must make at most {:g}", count, case_limit));
+      if (count > case_limit)
+        top_.fail("vary", fmt::format("makes {:.3g} cases, must make at most {:g}", count, case_limit));
     }
     if (kind_ == DesignKind::file) {
       s.table = read_table();
@@ -349,13 +360,16 @@ class Reader {
     if (!any) return;
     if (kind_ == DesignKind::grid || kind_ == DesignKind::file || kind_ == DesignKind::sensitivity) {
       // Sobol's indices are of independent variables; a grid and a table have no distribution.
-      if (listed) top_.fail("correlate", "must be left out in this design");
+      if (listed)
+        top_.fail("correlate", "must be left out in this design");
       else if (kind_ == DesignKind::sensitivity)
-        document_.add({file_.string(), 0, "from_trace", "", "numbers of a trace that are correlated have no Sobol indices"});
+        document_.add(
+            {file_.string(), 0, "from_trace", "", "numbers of a trace that are correlated have no Sobol indices"});
       return;
     }
     if (matrix.allFinite() && !is_correlation(matrix))
-      top_.fail(listed ? "correlate" : "vary", "the correlations contradict each other: the matrix is not positive definite");
+      top_.fail(listed ? "correlate" : "vary",
+                "the correlations contradict each other: the matrix is not positive definite");
     s.correlation = matrix;
   }
 
@@ -374,8 +388,9 @@ class Reader {
       if (text.empty()) continue;
       std::optional<Collected> field = parse_collected(entry.key, text);
       if (!field) {
-        table.fail(entry.key, "must be the place of a field, as outcome.caught or series[s40].largest_force_N; with [*] "
-                              "and with nothing else one of min, max, sum, mean, count before it");
+        table.fail(entry.key,
+                   "must be the place of a field, as outcome.caught or series[s40].largest_force_N; with [*] "
+                   "and with nothing else one of min, max, sum, mean, count before it");
         continue;
       }
       if (!names.insert(entry.key).second || entry.key.find_first_of(",\"\n\r#") != std::string::npos)
@@ -401,7 +416,8 @@ class Reader {
         all.reserve(fields.size());
         for (const Collected& f : fields) all.push_back(f.name);
         const std::string near = base::nearest_word(of, all);
-        table.fail("of", near.empty() ? "must be a name of [collect]" : fmt::format("must be a name of [collect]; did you mean {}?", near));
+        table.fail("of", near.empty() ? "must be a name of [collect]"
+                                      : fmt::format("must be a name of [collect]; did you mean {}?", near));
       }
       limit.field = static_cast<std::size_t>(found - fields.begin());
       limit.above = table.has("above");
@@ -427,12 +443,14 @@ class Reader {
     s.level_probability = table.number_or("level_probability", s.level_probability, Range::above(0.0, 0.5));
     s.most_levels = table.integer_or("levels", s.most_levels, 1, 100);
     if (limits.size() != 1)
-      document_.add({file_.string(), 0, "limits", "", "must be one [[limits]]: the event whose probability is asked for"});
+      document_.add(
+          {file_.string(), 0, "limits", "", "must be one [[limits]]: the event whose probability is asked for"});
     for (const Draft& d : drafts_)
       if (!d.variable.levels.empty()) d.table.fail("values", "must be a distribution in this design");
     const double n = static_cast<double>(std::max(1, top_.integer_or("cases", 1, 1, static_cast<int>(case_limit))));
     if (n * s.level_probability < 10.0 && top_.has("cases"))
-      top_.fail("cases", fmt::format("must be at least {:.0f}: ten cases start the next level", std::ceil(10.0 / s.level_probability)));
+      top_.fail("cases", fmt::format("must be at least {:.0f}: ten cases start the next level",
+                                     std::ceil(10.0 / s.level_probability)));
     return s;
   }
 

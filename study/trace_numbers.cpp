@@ -30,7 +30,8 @@ double TraceNumbers::correlation_of(const std::string& one, const std::string& o
 TraceNumbers read_trace_numbers(const std::filesystem::path& file) {
   const json whole = json::parse(base::read_text(file, std::size_t{64} << 20u), nullptr, false);
   if (!whole.is_object()) refuse(file, "", "is no JSON object; must be what snare trace or snare fit has written");
-  const std::string schema = whole.contains("schema") && whole["schema"].is_string() ? whole["schema"].get<std::string>() : "";
+  const std::string schema =
+      whole.contains("schema") && whole["schema"].is_string() ? whole["schema"].get<std::string>() : "";
   const char* const part = schema == "snare-trace/1" ? "final" : schema == "snare-fit/1" ? "fit" : nullptr;
   if (part == nullptr) refuse(file, "schema", "must be \"snare-trace/1\" or \"snare-fit/1\"");
   if (!whole.contains(part) || !whole[part].is_object() || !whole[part].contains("parameters") ||
@@ -40,7 +41,8 @@ TraceNumbers read_trace_numbers(const std::filesystem::path& file) {
   std::vector<double> errors;
   for (const auto& [key, number] : whole[part]["parameters"].items()) {
     if (!number.is_object() || !number.contains("value") || !number["value"].is_number()) continue;
-    if (!number.contains("stderr") || !number["stderr"].is_number() || !(number["stderr"].get<double>() > 0.0)) continue;
+    if (!number.contains("stderr") || !number["stderr"].is_number() || !(number["stderr"].get<double>() > 0.0))
+      continue;
     numbers.keys.push_back(key);
     numbers.values.push_back(number["value"].get<double>());
     numbers.errors.push_back(number["stderr"].get<double>());
