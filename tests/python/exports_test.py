@@ -73,6 +73,18 @@ class Exports(unittest.TestCase):
             printed = subprocess.run([self.out / program], check=True, capture_output=True, text=True).stdout
             np.testing.assert_allclose([float(v) for v in printed.split()], self.expected(), rtol=1e-12, atol=1e-12)
 
+    def test_the_example_in_c_stops_where_the_work_of_the_wire_is_the_kinetic_energy(self):
+        out = self.out / "example"
+        out.mkdir()
+        wire = setting.small_wire(out, "\n[table]\npoints = [12, 4, 3]\nmost_points = [12, 4, 3]\n")
+        setting.run_command("distil", str(wire), "--out", str(out), "--set", 'exports.name="wire"')
+        subprocess.run(["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-I", str(out),
+                        str(setting.SOURCE / "examples/use_law.c"), str(out / "law.c"), "-lm", "-o", str(out / "run")], check=True)
+        said = subprocess.run([out / "run"], check=True, capture_output=True, text=True).stdout
+        deepest, back = (float(line.split(": ")[1].split()[0]) for line in said.strip().splitlines())
+        self.assertAlmostEqual(deepest, 2.6581, delta=0.005)  # of the full wire: tests/examples
+        self.assertAlmostEqual(back, 1.0, delta=1e-4)
+
     def test_modelica_says_what_the_library_says(self):
         values = []
         for name in self.laws:
