@@ -71,9 +71,7 @@ ExitStatus run_one_case(const SweepStudy& study, const CommonOptions& options, C
 /// What the cases in the journal say, into the folder.
 SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, const SweepEnd& end,
                            const CommonOptions& options) {
-  SweepAnswers answers = sweep_answers(study, journal, end.cases);
-  answers.subset = end.subset;
-  answers.interrupted = end.partial;
+  SweepAnswers answers = sweep_answers(study, journal, end);
   CsvSink csv(options.out / "cases.csv");
   give_cases(csv, study, journal, end.cases);
   csv.commit();

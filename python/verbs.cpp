@@ -255,11 +255,8 @@ py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::objec
         study::Journal journal(kept->path / "cases.journal", study->identity(), study->count());
         const results::SweepEnd end = results::run_sweep_cases(*study, journal, {wanted, wanted, nullptr, {}}, watch);
         journal.flush();
-        results::SweepAnswers answers = results::sweep_answers(*study, journal, end.cases);
-        answers.subset = end.subset;
-        answers.interrupted = end.partial;
         results::give_cases(*cases, *study, journal, end.cases);
-        return results::sweep_summary(*study, answers);
+        return results::sweep_summary(*study, results::sweep_answers(*study, journal, end));
       },
       threads, progress);
   return py::make_tuple(to_python(*summary), cases->take());

@@ -38,9 +38,8 @@ JointPolynomial joint_polynomial(const DistilledPlace& place, double end) {
   return result;
 }
 
-/// Travel up to which the laws of a place were fitted [m].
-double end_of_travel(const DistilledPlace& place) {
-  return place.laws.front().range.high;
+const FittedLaw& linear_law(const DistilledPlace& place) {
+  return *std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
 }
 
 }  // namespace
@@ -59,8 +58,8 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
       "<mujoco model=\"snare_wire\">\n  <worldbody>\n",
       words);
   for (const DistilledPlace& place : one.places) {
-    const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
-    const double end = end_of_travel(place);
+    const FittedLaw& linear = linear_law(place);
+    const double end = linear.range.high;
     const JointPolynomial spring = joint_polynomial(place, end);
     const double loss = place.dissipation ? place.dissipation->damping_times_rate : 0.0;
     const bool impact = !place.impacts.empty() && place.impacts.front().damping.has_value();
@@ -75,8 +74,8 @@ std::string mujoco_snippet(const DistilledCase& one, const std::string& title) {
         "damping=\"{}\"\n"
         "             limited=\"true\" range=\"0 {}\"/>\n"
         "      <geom type=\"sphere\" size=\"0.001\" mass=\"0.001\" contype=\"0\" conaffinity=\"0\"/>\n    </body>\n",
-        1e3 * place.position, 1e3 * end, spring.largest_error, linear->error.force_range, linear->values[0],
-        linear->error.largest_force,
+        1e3 * place.position, 1e3 * end, spring.largest_error, linear.error.force_range, linear.values[0],
+        linear.error.largest_force,
         impact ? fmt::format("that of an impact at {:.4g} m/s", place.impacts.front().speed)
                : "not known: no impacts were asked",
         loss, name, name, spring.stiffness[0], spring.stiffness[1], spring.stiffness[2],
@@ -212,7 +211,7 @@ LookupTable lookup_table(const DistilledCase& one) {
 std::vector<double> joint_errors(const DistilledCase& one) {
   std::vector<double> errors;
   for (const DistilledPlace& place : one.places)
-    errors.push_back(joint_polynomial(place, end_of_travel(place)).largest_error);
+    errors.push_back(joint_polynomial(place, linear_law(place).range.high).largest_error);
   return errors;
 }
 

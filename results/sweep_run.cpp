@@ -149,4 +149,11 @@ SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepW
   return end;
 }
 
+SweepAnswers sweep_answers(const SweepStudy& study, const Journal& journal, const SweepEnd& end) {
+  SweepAnswers answers = sweep_answers(study, journal, end.cases);
+  answers.subset = end.subset;
+  answers.interrupted = end.partial;
+  return answers;
+}
+
 }  // namespace snare::results

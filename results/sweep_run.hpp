@@ -33,4 +33,7 @@ struct SweepEnd {
 [[nodiscard]] SweepEnd run_sweep_cases(const SweepStudy& study, study::Journal& journal, const SweepWorkers& workers,
                                        const Watch& watch);
 
+/// What the cases in the journal say together, a sweep that is not at its end included.
+[[nodiscard]] SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journal, const SweepEnd& end);
+
 }  // namespace snare::results

@@ -1,5 +1,6 @@
 #include "results/warnings.hpp"
 
+#include "coupling/statics/largest_stress.hpp"
 #include "identification/fitting/model.hpp"
 #include "wire/physical_range.hpp"
 
@@ -51,12 +52,8 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
   for (std::size_t k = 0; k < std::min(series.size(), predictions.size()); ++k) {
     const wire::WireSpecification& wire = series[k].test.wire;
     const std::vector<PushPoint>& points = predictions[k].curve.curve.points;
-    double stress = 0.0;
-    for (const PushPoint& p : points)
-      stress =
-          std::max(stress, wire::largest_stress(wire, std::max(p.tension_left, p.tension_right), p.bending_moment));
     const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
-    sentences.add(whose, wire::overload(wire, stress));
+    sentences.add(whose, wire::overload(wire, coupling::largest_stress(wire, points)));
     sentences.add(whose, left_behind(points));
   }
   return sentences.take();

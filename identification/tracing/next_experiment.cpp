@@ -1,5 +1,6 @@
 #include "identification/tracing/next_experiment.hpp"
 
+#include "coupling/statics/largest_stress.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "wire/physical_range.hpp"
 
@@ -55,9 +56,8 @@ Design design(const Series& present, double travel, double duration, double frac
 double largest_stress(const Evaluation& evaluation, const std::vector<Series>& series) {
   double stress = 0.0;
   for (std::size_t k = 0; k < std::min(series.size(), evaluation.predictions.size()); ++k) {
-    for (const coupling::PushPoint& p : evaluation.predictions[k].curve.curve.points)
-      stress = std::max(stress, wire::largest_stress(series[k].test.wire, std::max(p.tension_left, p.tension_right),
-                                                     p.bending_moment));
+    stress =
+        std::max(stress, coupling::largest_stress(series[k].test.wire, evaluation.predictions[k].curve.curve.points));
   }
   return stress;
 }
