@@ -79,6 +79,12 @@ Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body
   return J;
 }
 
+void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W, const Wrench& F_W,
+               Eigen::Ref<Eigen::VectorXd> forces) {
+  const Wrench about_origin{F_W.moment + p_W.cross(F_W.force), F_W.force};
+  for_axes(tree, kinematics, body, [&](int column, int, const Twist& S) { forces[column] += dot(S, about_origin); });
+}
+
 Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame) {
   return point_jacobian(tree, kinematics, tree.frame(frame).body, frame_pose(tree, kinematics, frame).p);
 }

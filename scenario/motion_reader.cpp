@@ -80,7 +80,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   tolerance("body_velocity_tolerance_m_s", o.body_velocity_tolerance, 1.0);
   tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
-  o.max_order = solver.integer_or("max_order", 2, 1, 5);
+  if (solver.has("max_order")) o.max_order = solver.integer("max_order", 1, 5);
   o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
 }

@@ -59,7 +59,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->momentum += b.body().properties.mass * s.velocity;
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
-  for (const PressPart* p : presses_) e.strain += p->power(at.y).energy;
+  for (const PressPart* p : presses_) e.strain += p->work(at.y).power.energy;
   constraints_->add_energy(at.y, e, into);
   if (into != nullptr) constraints_->fill(at.time, at.y, *into);
   return e;
@@ -130,11 +130,11 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k, at, rates);
   ConstraintSet::Outer held = constraints_->outer(at);
   for (std::size_t k = 0; k < presses_.size(); ++k) {
-    const ContactSample s = presses_[k]->sample(at.y);
+    const auto [s, work, tension] = presses_[k]->pressing(at.y);
     const auto index = static_cast<Eigen::Index>(first_press() + k);
     rates.segment<3>(integral::contacts + 3 * index) = s.force;
     rates[integral::contacts + 3 * count + index] = s.normal_force;
-    constraints_->add_forces(*presses_[k], at, held);
+    constraints_->add_forces(*presses_[k], work, at, held);
   }
   for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
   rates.segment<3>(integral::outer) += held.force;
@@ -144,9 +144,8 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
 }
 
 // Of a wire that a law stands for tension alone is known.
-void MotionRun::watch_law_wire(std::size_t k) {
+void MotionRun::watch_law_wire(std::size_t k, double tension) {
   const LawWire& wire = motion_.law_wires[k];
-  const double tension = law_wires_[k].shape(y_).tension;
   const std::size_t index = rods_.size() + k;
   if (wire.tightness.watched) sums_.wires[index].add(wire.tightness, time_, tension);
   if (std::isinf(wire.strength.breaking_tension)) return;
@@ -189,8 +188,13 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     note(contacts_.size() + springs_.size() + k, sum, pairs_[k].observe(sum, {time_, y_}, {time_before, before}),
          false);
   }
-  for (std::size_t k = 0; k < presses_.size(); ++k)
-    forces[static_cast<Eigen::Index>(first_press() + k)] = presses_[k]->sample(y_).normal_force;
+  sums_.strength.resize(rods_.size() + law_wires_.size());
+  sums_.wires.resize(rods_.size() + law_wires_.size());
+  for (std::size_t k = 0; k < presses_.size(); ++k) {
+    const PressPart::Pressing now = presses_[k]->pressing(y_);
+    forces[static_cast<Eigen::Index>(first_press() + k)] = now.sample.normal_force;
+    if (k < law_wires_.size()) watch_law_wire(k, now.tension);
+  }
   peak_.add(time_before, time_, forces, integrals_.tail(count), sums_.peak_force);
   // Laws take no mass of the wire along at once.
   for (std::size_t k = 0; k < touching(); ++k) {
@@ -208,9 +212,6 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
                             fastest_body);
   }
   for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
-  sums_.strength.resize(rods_.size() + law_wires_.size());
-  sums_.wires.resize(rods_.size() + law_wires_.size());
-  for (std::size_t k = 0; k < law_wires_.size(); ++k) watch_law_wire(k);
   for (std::size_t w = 0; w < rods_.size(); ++w) {
     const MotionWire& wire = motion_.wires[w];
     if (const auto broken = watch_strength(wire.strength, rods_[w], at, sums_.strength[w]))

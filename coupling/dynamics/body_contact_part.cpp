@@ -70,66 +70,85 @@ std::array<FrameWrench<S>, 2> wrenches_of(const BodyContact& c,
   return wrenches;
 }
 
-/// The points that are in the shape, with its field there.
-std::vector<std::pair<std::size_t, DistanceField>> points_inside(const BodyContact& c,
-                                                                 const std::array<FrameMotion<double>, 2>& frames) {
-  std::vector<std::pair<std::size_t, DistanceField>> inside;
-  for (std::size_t k = 0; k < c.points.size(); ++k) {
-    const Vector3d p = frames[of_shape].R.transpose() * (frames[of_points].point(c.points[k]) - frames[of_shape].p);
-    if (c.shape->distance(p) < c.radius) inside.emplace_back(k, c.shape->at(p));
-  }
-  return inside;
-}
-
 }  // namespace
 
 BodyContactPart::BodyContactPart(const BodyContact& contact, MovingFrame shape, MovingFrame points)
-    : PressPart({std::move(shape), std::move(points)}), contact_(contact) {}
+    : PressPart({std::move(shape), std::move(points)}), contact_(contact), tree_(contact.points) {}
+
+Vector3d BodyContactPart::in_shape(const Frames& now, const Vector3d& point) {
+  return now[of_shape].R.transpose() * (now[of_points].point(point) - now[of_shape].p);
+}
 
 std::vector<Wrench> BodyContactPart::wrenches(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
-  const auto inside = points_inside(contact_, now);
+  const auto inside = points_inside(now);
   return inside.empty() ? std::vector<Wrench>{} : plain(wrenches_of(contact_, inside, now));
 }
 
 Eigen::MatrixXd BodyContactPart::derivatives(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
-  return derivatives_of(wrenches_of(contact_, points_inside(contact_, now), with_derivatives(now)));
+  return derivatives_of(wrenches_of(contact_, points_inside(now), with_derivatives(now)));
 }
 
-// The law's spring is not told from its dashpot: all that is taken counts as lost, and what it gives back as gained.
-FrameForces::Power BodyContactPart::power(const VectorView& y) const {
-  const auto now = motions<2>(frames(), y);
-  return {0.0, -power_of(wrenches_of(contact_, points_inside(contact_, now), now), now)};
+// A ball round some points that the shape is farther from than from the ball's radius has none of them inside.
+std::vector<std::pair<std::size_t, DistanceField>> BodyContactPart::points_inside(const Frames& now) const {
+  std::vector<std::pair<std::size_t, DistanceField>> inside;
+  tree_.visit([&](const PointTree::Ball& ball) {
+    const Vector3d p = in_shape(now, ball.centre);
+    if (contact_.shape->distance(p) - ball.radius >= contact_.radius) return false;
+    if (ball.point) inside.emplace_back(*ball.point, contact_.shape->at(p));
+    return true;
+  });
+  std::ranges::sort(inside, {}, [](const auto& point) { return point.first; });
+  return inside;
 }
 
 double BodyContactPart::depth(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
   double deepest = -std::numeric_limits<double>::max();
-  for (const Vector3d& p : contact_.points) {
-    const Vector3d local = now[of_shape].R.transpose() * (now[of_points].point(p) - now[of_shape].p);
-    deepest = std::max(deepest, contact_.radius - contact_.shape->distance(local));
-  }
+  tree_.visit([&](const PointTree::Ball& ball) {
+    const double distance = contact_.shape->distance(in_shape(now, ball.centre));
+    if (ball.point) deepest = std::max(deepest, contact_.radius - distance);
+    // What is said of distances holds outside.
+    return distance < 0.0 || contact_.radius - (distance - ball.radius) > deepest;
+  });
   return deepest;
 }
 
-ContactSample BodyContactPart::sample(const VectorView& y) const {
+// Of balls that are outside as a whole, how deep they are at most.
+double BodyContactPart::touches(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
-  ContactSample sum;
-  sum.gap = -depth(y);
+  double deepest = -std::numeric_limits<double>::max();
+  tree_.visit([&](const PointTree::Ball& ball) {
+    const double most = contact_.radius + ball.radius - contact_.shape->distance(in_shape(now, ball.centre));
+    if (!ball.point && most > 0.0) return true;
+    deepest = std::max(deepest, most);
+    return false;
+  });
+  return deepest;
+}
+
+// The law's spring is not told from its dashpot: all that is taken counts as lost, and what it gives back as gained.
+PressPart::Pressing BodyContactPart::pressing(const VectorView& y) const {
+  const auto now = motions<2>(frames(), y);
+  const auto inside = points_inside(now);
+  Pressing p;
+  if (inside.empty()) return p;
   double largest = 0.0;
-  for (const auto& [index, field] : points_inside(contact_, now)) {
+  for (const auto& [index, field] : inside) {
     const Pressed<double> a = press(contact_, index, field, now);
     if (!(a.normal > 0.0)) continue;
-    sum.closed = true;
-    sum.normal_force += a.normal;
-    sum.force -= a.n * a.normal + smooth_friction(contact_.friction, a.slide, a.normal);
+    p.sample.closed = true;
+    p.sample.normal_force += a.normal;
+    p.sample.force -= a.n * a.normal + smooth_friction(contact_.friction, a.slide, a.normal);
     if (a.normal <= largest) continue;
     largest = a.normal;
-    sum.point = a.point;
-    sum.slip_speed = a.slide.norm();
+    p.sample.point = a.point;
+    p.sample.slip_speed = a.slide.norm();
   }
-  return sum;
+  const auto wrenches = wrenches_of(contact_, inside, now);
+  p.work = {plain(wrenches), {0.0, -power_of(wrenches, now)}};
+  return p;
 }
 
 }  // namespace snare::coupling

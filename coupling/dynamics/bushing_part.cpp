@@ -99,13 +99,12 @@ BushingPart::State BushingPart::state(const VectorView& y) const {
 }
 
 std::vector<Wrench> BushingPart::wrenches(const VectorView& y) const {
-  const State s = state(y);
-  return {s.on_first, s.on_second};
+  return work(y).wrenches;
 }
 
-FrameForces::Power BushingPart::power(const VectorView& y) const {
+FrameForces::Work BushingPart::work(const VectorView& y) const {
   const State s = state(y);
-  return {s.energy, s.lost_power};
+  return {{s.on_first, s.on_second}, {s.energy, s.lost_power}};
 }
 
 Eigen::MatrixXd BushingPart::derivatives(const VectorView& y) const {

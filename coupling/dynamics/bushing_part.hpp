@@ -28,7 +28,7 @@ class BushingPart final : public FrameForces {
   };
   [[nodiscard]] State state(const numerics::VectorView& y) const;
   [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
-  [[nodiscard]] Power power(const numerics::VectorView& y) const override;
+  [[nodiscard]] Work work(const numerics::VectorView& y) const override;
 
  private:
   [[nodiscard]] Eigen::MatrixXd derivatives(const numerics::VectorView& y) const override;

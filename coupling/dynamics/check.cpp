@@ -103,10 +103,11 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   positive("body_velocity_tolerance", options.body_velocity_tolerance);
   positive("angle_tolerance", options.angle_tolerance);
   positive("spin_tolerance", options.spin_tolerance);
-  positive("newton_share", options.newton_share);
+  positive("newton_share", options.newton_share.value_or(1.0));
   c.require(options.peak_window >= 0.0, "peak_window", options.peak_window, "must be >= 0");
   c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
-  c.require(options.max_order >= 1 && options.max_order <= 5, "max_order", options.max_order, "must be 1 to 5");
+  const int order = options.max_order.value_or(1);
+  c.require(order >= 1 && order <= 5, "max_order", order, "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
     positive(w.name + ".length", w.rod.length);
     positive(w.name + ".mass_per_length", w.rod.mass_per_length);

@@ -315,9 +315,10 @@ bool ConstraintSet::counted(const MovingFrame& frame) const {
 }
 
 // Of forces between what is counted and what is not.
-void ConstraintSet::add_forces(const FrameForces& forces, const DaePoint& at, Outer& sum) const {
-  sum.lost += forces.power(at.y).lost;
-  const std::vector<multibody::Wrench> wrenches = forces.wrenches(at.y);
+void ConstraintSet::add_forces(const FrameForces& forces, const FrameForces::Work& work, const DaePoint& at,
+                               Outer& sum) const {
+  sum.lost += work.power.lost;
+  const std::vector<multibody::Wrench>& wrenches = work.wrenches;
   for (std::size_t k = 0; k < wrenches.size(); ++k) {
     const MovingFrame& frame = forces.frames()[k];
     const MovingFrame::State carrier = frame.state(at.y);
@@ -357,7 +358,7 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   };
   for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
   for (const MountPart& m : mounts_) add(m, -m.moment(at));
-  for (const BushingPart& b : bushings_) add_forces(b, at, sum);
+  for (const BushingPart& b : bushings_) add_forces(b, b.work(at.y), at, sum);
   for (std::size_t k = 0; k < arms_.size(); ++k) {
     if (!arms_[k].floats) continue;
     const multibody::Tree& tree = arms_[k].model.tree;

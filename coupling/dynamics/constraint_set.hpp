@@ -78,7 +78,8 @@ class ConstraintSet {
   [[nodiscard]] Outer outer(const numerics::DaePoint& at) const;
   /// What forces between frames, and loads, add to that.
   void add_load(const LoadPart& load, const numerics::DaePoint& at, Outer& sum) const;
-  void add_forces(const FrameForces& forces, const numerics::DaePoint& at, Outer& sum) const;
+  void add_forces(const FrameForces& forces, const FrameForces::Work& work, const numerics::DaePoint& at,
+                  Outer& sum) const;
   /// Force of a moving mount on its wire's end, if the end has one [N].
   [[nodiscard]] std::optional<Eigen::Vector3d> mount_force(int wire, wire::End end,
                                                            const numerics::VectorView& y) const;

@@ -1,5 +1,7 @@
 #include "coupling/dynamics/frame_forces.hpp"
 
+#include <algorithm>
+
 namespace snare::coupling {
 
 using Eigen::Index;
@@ -19,11 +21,22 @@ void FrameForces::sparsity(std::vector<std::pair<int, int>>& entries) const {
   }
 }
 
+void FrameForces::attach_pattern(const numerics::SparseMatrix& pattern) {
+  pattern_ = &pattern;
+  carriers_.clear();
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const std::vector<int> coordinates = frames_[k].coordinates();
+    const auto same = std::ranges::find_if(carriers_, [&](const Carrier& c) { return c.coordinates == coordinates; });
+    if (same != carriers_.end())
+      same->frames.push_back(k);
+    else
+      carriers_.push_back({{k}, coordinates, frames_[k].velocities(), frames_[k].moves_freely()});
+  }
+}
+
 void FrameForces::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   const std::vector<Wrench> w = wrenches(at.y);
-  for (std::size_t k = 0; k < w.size(); ++k) {
-    if (frames_[k].moves_freely()) frames_[k].push(frames_[k].jacobian(at.y), w[k], rows);
-  }
+  for (std::size_t k = 0; k < w.size(); ++k) frames_[k].push(at.y, w[k], rows);
 }
 
 void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
@@ -32,28 +45,35 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
   const numerics::PatternValues into(*pattern_, values);
   const MatrixXd D = derivatives(at.y);
   std::vector<MovingFrame::Derivatives> d;
-  std::vector<std::vector<int>> q, v;
-  for (const MovingFrame& frame : frames_) {
-    d.push_back(frame.differentiate(at.y));
-    q.push_back(frame.coordinates());
-    v.push_back(frame.velocities());
-  }
-  // The rows of a carrier follow each other.
-  const auto add = [&into](const std::vector<int>& rows, const std::vector<int>& columns, const MatrixXd& block) {
-    for (Index j = 0; j < block.cols(); ++j)
-      into.add(rows.front(), columns[static_cast<std::size_t>(j)], -block.col(j));
-  };
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    if (!frames_[i].moves_freely()) continue;
-    for (std::size_t k = 0; k < frames_.size(); ++k) {
-      const auto by = D.block(wrench_rows * static_cast<Index>(i), motion_columns * static_cast<Index>(k), wrench_rows,
-                              motion_columns);
-      if (!q[k].empty())
-        add(v[i], q[k], d[i].jacobian.transpose() * (by.leftCols<6>() * d[k].place + by.rightCols<6>() * d[k].motion));
-      if (d[k].jacobian.cols() > 0) add(v[i], v[k], d[i].jacobian.transpose() * (by.rightCols<6>() * d[k].jacobian));
+  d.reserve(frames_.size());
+  for (const MovingFrame& frame : frames_) d.push_back(frame.differentiate(at.y));
+  for (const Carrier& by : carriers_) {
+    if (by.coordinates.empty()) continue;
+    // Of all wrenches by what this carrier does.
+    const auto nq = static_cast<Index>(by.coordinates.size()), nv = static_cast<Index>(by.velocities.size());
+    MatrixXd dW = MatrixXd::Zero(D.rows(), nq + nv);
+    for (const std::size_t k : by.frames) {
+      const auto D_k = D.middleCols<motion_columns>(motion_columns * static_cast<Index>(k));
+      dW.leftCols(nq).noalias() += D_k.leftCols<6>().lazyProduct(d[k].place);
+      dW.leftCols(nq).noalias() += D_k.rightCols<6>().lazyProduct(d[k].motion);
+      if (d[k].jacobian.cols() > 0) dW.rightCols(nv).noalias() += D_k.rightCols<6>().lazyProduct(d[k].jacobian);
     }
-    // The Jacobian of the carrier turns with it.
-    add(v[i], q[i], d[i].force(w[i]));
+    for (const Carrier& on : carriers_) {
+      if (!on.moves_freely) continue;
+      MatrixXd block = MatrixXd::Zero(static_cast<Index>(on.velocities.size()), nq + nv);
+      for (const std::size_t i : on.frames) {
+        block.noalias() -=
+            d[i].jacobian.transpose().lazyProduct(dW.middleRows<wrench_rows>(wrench_rows * static_cast<Index>(i)));
+        // The Jacobian of the carrier turns with it.
+        if (&on == &by) block.leftCols(nq) -= d[i].force(w[i]);
+      }
+      // The rows of a carrier follow each other.
+      for (Index j = 0; j < nq + nv; ++j) {
+        const int column =
+            j < nq ? by.coordinates[static_cast<std::size_t>(j)] : by.velocities[static_cast<std::size_t>(j - nq)];
+        into.add(on.velocities.front(), column, block.col(j));
+      }
+    }
   }
 }
 

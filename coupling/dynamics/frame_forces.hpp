@@ -21,7 +21,7 @@ class FrameForces : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& /*layout*/) override {}
   void sparsity(std::vector<std::pair<int, int>>& entries) const final;
-  void attach_pattern(const numerics::SparseMatrix& pattern) final { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) final;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) final;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) final;
 
@@ -33,7 +33,12 @@ class FrameForces : public numerics::DaePart {
     double energy = 0.0;
     double lost = 0.0;
   };
-  [[nodiscard]] virtual Power power(const numerics::VectorView& y) const = 0;
+  /// Both at once.
+  struct Work {
+    std::vector<multibody::Wrench> wrenches;
+    Power power;
+  };
+  [[nodiscard]] virtual Work work(const numerics::VectorView& y) const = 0;
 
  protected:
   static constexpr int wrench_rows = 6;      // moment, force
@@ -42,7 +47,15 @@ class FrameForces : public numerics::DaePart {
   [[nodiscard]] virtual Eigen::MatrixXd derivatives(const numerics::VectorView& y) const = 0;
 
  private:
+  /// Who carries frames, with the unknowns on which they depend.
+  struct Carrier {
+    std::vector<std::size_t> frames;
+    std::vector<int> coordinates, velocities;
+    bool moves_freely = false;
+  };
+
   std::vector<MovingFrame> frames_;
+  std::vector<Carrier> carriers_;
   const numerics::SparseMatrix* pattern_ = nullptr;
 };
 

@@ -210,31 +210,30 @@ Eigen::MatrixXd LawWirePart::derivatives(const VectorView& y) const {
   return derivatives_of(act(with_derivatives(motions<3>(frames(), y))).wrenches);
 }
 
-// The string stores what it is stretched by; of a rod's law all that is taken counts as lost, and what it gives back as gained.
-FrameForces::Power LawWirePart::power(const VectorView& y) const {
-  const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
-  const Action<double> a = act(frames);
-  const double taken = -power_of(a.wrenches, frames);
-  if (wire_.kind == LawWire::Kind::rod) return {0.0, taken};
-  const double by_friction = -smooth_friction(wire_.friction, a.slide, a.normal).dot(a.slide);
-  return {a.energy, (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction};
-}
-
 double LawWirePart::depth(const VectorView& y) const {
   return now(y).depth;
 }
 
-ContactSample LawWirePart::sample(const VectorView& y) const {
-  const Action<double> a = now(y);
-  ContactSample s;
-  s.closed = a.touches && a.acts;
-  s.gap = -a.depth;
-  s.normal_force = a.normal;
-  s.force = s.closed ? -a.wrenches[on_shaft].force : Vector3d(Vector3d::Zero());
-  s.point = a.point;
-  s.arc = a.share * wire_.length;
-  s.slip_speed = a.slide.norm();
-  return s;
+// The string stores what it is stretched by; of a rod's law all that is taken counts as lost, and what it gives back as gained.
+PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
+  const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
+  const Action<double> a = act(frames);
+  Pressing p;
+  p.sample.closed = a.touches && a.acts;
+  p.sample.normal_force = a.normal;
+  if (p.sample.closed) p.sample.force = -a.wrenches[on_shaft].force;
+  p.sample.point = a.point;
+  p.sample.arc = a.share * wire_.length;
+  p.sample.slip_speed = a.slide.norm();
+  p.tension = a.tension;
+  if (a.acts) p.work.wrenches = plain(a.wrenches);
+  if (wire_.kind == LawWire::Kind::rod) {
+    p.work.power.lost = -power_of(a.wrenches, frames);
+  } else {
+    const double by_friction = -smooth_friction(wire_.friction, a.slide, a.normal).dot(a.slide);
+    p.work.power = {a.energy, (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction};
+  }
+  return p;
 }
 
 LawWirePart::Shape LawWirePart::shape(const VectorView& y) const {

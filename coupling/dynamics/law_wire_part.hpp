@@ -21,12 +21,11 @@ class LawWirePart final : public PressPart {
   LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft);
 
   [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
-  [[nodiscard]] Power power(const numerics::VectorView& y) const override;
   [[nodiscard]] double depth(const numerics::VectorView& y) const override;
   [[nodiscard]] bool jumps() const override {
     return wire_.kind == LawWire::Kind::rod ? jumps_at_touch(wire_.law) : wire_.axial_time > 0.0;
   }
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const override;
+  [[nodiscard]] Pressing pressing(const numerics::VectorView& y) const override;
 
   /// What a whole wire would show.
   struct Shape {

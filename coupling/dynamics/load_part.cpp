@@ -45,7 +45,7 @@ void LoadPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
 }
 
 void LoadPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  if (frame_.moves_freely()) frame_.push(frame_.jacobian(at.y), wrench(at), rows);
+  frame_.push(at.y, wrench(at), rows);
 }
 
 // d(J^T W) = (dJ)^T W + J^T [turn] W where the wrench turns with its frame.

@@ -18,14 +18,9 @@ using numerics::VectorView;
 
 namespace {
 
-/// An axis of the joints that bear a body of a tree.
-struct ChainAxis {
-  int velocity;  ///< its index, and that of its column (s, v) in J
-  int depth;     ///< of its joint in the chain: 0 at the body, less towards the root
-};
-
-std::vector<ChainAxis> chain_of(const multibody::Tree& tree, int body) {
-  std::vector<ChainAxis> chain;
+/// The axes of the joints that bear a body of a tree.
+std::vector<MovingFrame::ChainAxis> chain_of(const multibody::Tree& tree, int body) {
+  std::vector<MovingFrame::ChainAxis> chain;
   int depth = 0;
   for (int i = body; i >= 0; i = tree.body(i).parent) {
     for (int k = 0; k < tree.body(i).velocities(); ++k) chain.push_back({tree.body(i).v_index + k, -depth});
@@ -97,73 +92,86 @@ Matrix6X MovingFrame::jacobian(const VectorView& y) const {
                                    (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p);
 }
 
+// A body's coordinates are the centre of mass and the quaternion, whose change dq turns it by phi = 4 R Q^T dq. Then
+// dp_WF = dp + phi x R p_BF, and of J = [0 R; 1 -R [p_BF]] the columns of the spin turn with R.
+// Moving axis j (s_j, and v_j at the frame's origin) of an arm carries the axes of its own joint and all outward of it along:
+// ds_i = s_j x s_i, dv_i = s_j x v_i, and moves the origin for those inward: dv_i = s_i x v_j.
+template <class Each>
+void MovingFrame::Derivatives::for_changes(const Each& each) const {
+  const auto angular = [this](int i) -> Vector3d { return jacobian.col(i).head<3>(); };
+  const auto linear = [this](int i) -> Vector3d { return jacobian.col(i).tail<3>(); };
+  if (!of_arm()) {
+    for (int j = 0; j < turn_.cols(); ++j) {
+      const Vector3d phi = turn_.col(j);
+      for (int i = spin_; i < jacobian.cols(); ++i)
+        each(i, first_turning_ + j, multibody::Twist{phi.cross(angular(i)), phi.cross(linear(i))});
+    }
+    return;
+  }
+  for (const ChainAxis& j : chain_) {
+    const Vector3d s_j = angular(j.velocity), v_j = linear(j.velocity);
+    for (const ChainAxis& i : chain_) {
+      if (i.depth >= j.depth)
+        each(i.velocity, j.velocity, multibody::Twist{s_j.cross(angular(i.velocity)), s_j.cross(linear(i.velocity))});
+      else
+        each(i.velocity, j.velocity, multibody::Twist{Vector3d::Zero(), angular(i.velocity).cross(v_j)});
+    }
+  }
+}
+
+void MovingFrame::Derivatives::add_motion(const Eigen::Ref<const Eigen::VectorXd>& velocities) {
+  Matrix6X by = Matrix6X::Zero(6, of_arm() ? jacobian.cols() : place.cols());
+  for_changes([&](int i, int j, const multibody::Twist& change) { by.col(j) += velocities[i] * change.vector(); });
+  motion = of_arm() ? Matrix6X(by * to_motion_) : by;
+}
+
+MatrixXd MovingFrame::Derivatives::force(const Wrench& wrench) const {
+  MatrixXd by = MatrixXd::Zero(jacobian.cols(), of_arm() ? jacobian.cols() : place.cols());
+  for_changes([&](int i, int j, const multibody::Twist& change) {
+    by(i, j) = change.angular.dot(wrench.moment) + change.linear.dot(wrench.force);
+  });
+  return of_arm() ? MatrixXd(by * to_motion_) : by;
+}
+
 MovingFrame::Derivatives MovingFrame::differentiate(const VectorView& y) const {
   Derivatives d;
   d.jacobian = jacobian(y);
   if (body_ != nullptr) {
-    // Coordinates: the centre of mass and the quaternion, whose change dq turns the body by phi = 4 R Q^T dq. Then
-    // dp_WF = dp + phi x R p_BF, and J = [0 R; 1 -R [p_BF]] turns with R: dR = [phi] R.
     const Vector4d q = y.segment<4>(body_->quaternion());
     const Matrix3d R = multibody::rotation(q);
-    const Eigen::Matrix<double, 3, 4> turn = 4.0 * R * multibody::quaternion_rates(q).transpose();
-    const Vector3d arm = R * X_CF_.p;
-    d.place = d.motion = Matrix6X::Zero(6, BodyPart::coordinates);
+    d.turn_ = 4.0 * R * multibody::quaternion_rates(q).transpose();
+    d.first_turning_ = body_->quaternion() - body_->position();
+    d.spin_ = body_->spin() - body_->velocity();
+    d.place = Matrix6X::Zero(6, BodyPart::coordinates);
     d.place.bottomLeftCorner<3, 3>().setIdentity();
-    d.place.topRightCorner<3, 4>() = turn;
-    d.place.bottomRightCorner<3, 4>() = -cross_matrix(arm) * turn;
-    d.jacobian_by.assign(BodyPart::coordinates, Matrix6X::Zero(6, BodyPart::velocities));
-    for (int k = 0; k < 4; ++k) {
-      const Matrix3d turned = cross_matrix(turn.col(k)) * R;
-      const int coordinate = body_->quaternion() - body_->position() + k;
-      Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(coordinate)];
-      by.topRightCorner<3, 3>() = turned;
-      by.bottomRightCorner<3, 3>() = -turned * cross_matrix(X_CF_.p);
-      d.motion.col(coordinate) << turned * y.segment<3>(body_->spin()),
-          by.bottomRightCorner<3, 3>() * y.segment<3>(body_->spin());
-    }
-    return d;
-  }
-  if (arm_ == nullptr) {
+    d.place.topRightCorner<3, 4>() = d.turn_;
+    d.place.bottomRightCorner<3, 4>() = -cross_matrix(Vector3d(R * X_CF_.p)) * d.turn_;
+    d.add_motion(y.segment<BodyPart::velocities>(body_->velocity()));
+  } else if (arm_ != nullptr) {
+    const multibody::Tree& tree = arm_->arm().tree;
+    d.chain_ = chain_of(tree, tree_body_);
+    d.to_motion_ = multibody::coordinate_motion(tree, y.segment(arm_->coordinates(), tree.coordinates()));
+    d.place = d.jacobian * d.to_motion_;
+    d.add_motion(y.segment(arm_->velocities(), tree.velocities()));
+  } else {
     d.place = d.motion = Matrix6X::Zero(6, 0);
-    return d;
-  }
-  // Moving axis j (s_j, and v_j at the frame's origin) carries the axes of its own joint and all outward of it along:
-  // ds_i = s_j x s_i, dv_i = s_j x v_i, and moves the origin for those inward: dv_i = s_i x v_j.
-  const multibody::Tree& tree = arm_->arm().tree;
-  const int nv = tree.velocities(), nq = tree.coordinates();
-  const std::vector<ChainAxis> chain = chain_of(tree, tree_body_);
-  std::vector<Matrix6X> by_motion(static_cast<std::size_t>(nv), Matrix6X::Zero(6, nv));
-  for (const ChainAxis& j : chain) {
-    const Vector3d s_j = d.jacobian.col(j.velocity).head<3>(), v_j = d.jacobian.col(j.velocity).tail<3>();
-    Matrix6X& by = by_motion[static_cast<std::size_t>(j.velocity)];
-    for (const ChainAxis& i : chain) {
-      const Vector3d s_i = d.jacobian.col(i.velocity).head<3>(), v_i = d.jacobian.col(i.velocity).tail<3>();
-      if (i.depth >= j.depth) {
-        by.col(i.velocity) << s_j.cross(s_i), s_j.cross(v_i);
-      } else {
-        by.col(i.velocity).tail<3>() = s_i.cross(v_j);
-      }
-    }
-  }
-  const MatrixXd to_motion = multibody::coordinate_motion(tree, y.segment(arm_->coordinates(), nq));
-  d.place = d.jacobian * to_motion;
-  d.jacobian_by.assign(static_cast<std::size_t>(nq), Matrix6X::Zero(6, nv));
-  d.motion = Matrix6X::Zero(6, nq);
-  for (int k = 0; k < nq; ++k) {
-    Matrix6X& by = d.jacobian_by[static_cast<std::size_t>(k)];
-    for (int j = 0; j < nv; ++j) {
-      if (to_motion(j, k) != 0.0) by += to_motion(j, k) * by_motion[static_cast<std::size_t>(j)];
-    }
-    d.motion.col(k) = by * y.segment(arm_->velocities(), nv);
   }
   return d;
 }
 
-MatrixXd MovingFrame::Derivatives::force(const Wrench& wrench) const {
-  MatrixXd result(jacobian.cols(), static_cast<Eigen::Index>(jacobian_by.size()));
-  for (std::size_t k = 0; k < jacobian_by.size(); ++k)
-    result.col(static_cast<Eigen::Index>(k)) = jacobian_by[k].transpose() * wrench.vector();
-  return result;
+void MovingFrame::push(const VectorView& y, const Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const {
+  if (!moves_freely()) return;
+  if (body_ != nullptr) {
+    const Matrix3d R = multibody::rotation(y.segment<4>(body_->quaternion()));
+    rows.segment<3>(body_->velocity()) -= wrench.force;
+    rows.segment<3>(body_->spin()) -=
+        R.transpose() * wrench.moment + X_CF_.p.cross(Vector3d(R.transpose() * wrench.force));
+    return;
+  }
+  const multibody::Kinematics& kinematics = arm_->kinematics(y);
+  multibody::add_force(
+      arm_->arm().tree, kinematics, tree_body_, (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p,
+      {-wrench.moment, -wrench.force}, rows.segment(arm_->velocities(), arm_->arm().tree.velocities()));
 }
 
 void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const {

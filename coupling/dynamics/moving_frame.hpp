@@ -22,6 +22,11 @@ class MovingFrame {
   /// X_BF: in the frame of a body of the arm's tree; body -1: the world.
   MovingFrame(const multibody::ElasticArmPart& arm, int body, const multibody::Pose& X_BF);
 
+  /// An axis of the joints that bear a body of a tree.
+  struct ChainAxis {
+    int velocity = 0;  ///< its index, and that of its column (s, v) in J
+    int depth = 0;     ///< of its joint in the chain: 0 at the body, less towards the root
+  };
   /// Pose in the world, angular velocity, and velocity of the origin, in the axes of the world.
   struct State {
     multibody::Pose X_WF;
@@ -31,13 +36,26 @@ class MovingFrame {
   [[nodiscard]] State state(const numerics::VectorView& y) const;
 
   /// Derivatives at one y, angular over linear, in the axes of the world.
-  struct Derivatives {
+  class Derivatives {
+   public:
     multibody::Matrix6X jacobian;  ///< motion by velocities: J
     multibody::Matrix6X place;     ///< turn and shift by coordinates
     multibody::Matrix6X motion;    ///< motion by coordinates
     /// (columns of the jacobian x coordinates): derivative of J^T F for a wrench that is fixed in the world, by M and F.
     [[nodiscard]] Eigen::MatrixXd force(const multibody::Wrench& wrench) const;
-    std::vector<multibody::Matrix6X> jacobian_by;  ///< J by each coordinate
+
+   private:
+    friend class MovingFrame;
+    /// Calls `each(i, j, change)` with the change of column i of J when j moves: an axis of the arm, or a component of the quaternion.
+    template <class Each>
+    void for_changes(const Each& each) const;
+    void add_motion(const Eigen::Ref<const Eigen::VectorXd>& velocities);
+    [[nodiscard]] bool of_arm() const { return to_motion_.size() > 0; }
+
+    std::vector<ChainAxis> chain_;        // of an arm
+    Eigen::MatrixXd to_motion_;           // (velocities x coordinates) of an arm: motions of its joints by coordinates
+    Eigen::Matrix<double, 3, 4> turn_{};  // of a body: its turn by the quaternion
+    int first_turning_ = 0, spin_ = 0;    // of a body: the quaternion among coordinates, the spin among velocities
   };
   [[nodiscard]] Derivatives differentiate(const numerics::VectorView& y) const;
   /// J alone.
@@ -47,7 +65,8 @@ class MovingFrame {
   [[nodiscard]] std::vector<int> velocities() const;
   /// Whether forces on it move it.
   [[nodiscard]] bool moves_freely() const;
-  /// Adds -J^T F to the rows of whoever carries it.
+  /// Adds -J^T F to the rows of whoever carries it; the first without a Jacobian.
+  void push(const numerics::VectorView& y, const multibody::Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const;
   void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
             Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier.

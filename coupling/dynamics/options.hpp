@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 
 namespace snare::coupling {
 
@@ -19,8 +20,9 @@ struct MotionOptions {
   double angle_tolerance = 1e-7;          ///< of bodies' quaternions [rad]
   double spin_tolerance = 1e-5;           ///< of bodies [rad/s]
   double force_tolerance = 1e-2;          ///< [N], of multipliers: for the Newton iteration only
-  int max_order = 2;                      ///< of IDA: see theory.md (M.2)
-  double newton_share = 2e-5;             ///< of these tolerances that Newton's method may leave at a step, in (0, 1)
+  std::optional<int> max_order;           ///< of IDA, 1 to 5; none: by what moves, theory.md (M.2)
+  /// Of these tolerances that Newton's method may leave at a step, in (0, 1); none: by what moves, theory.md (M.12).
+  std::optional<double> newton_share;
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]; no touch is missed without one
   /// Of the mean that is reported as peak force [s], >= 0; 1e-4 is an instrument of 10 kHz.     theory.md (M.10)
   double peak_window = 1e-4;

@@ -14,13 +14,27 @@ class PressPart : public FrameForces {
   using FrameForces::FrameForces;
 
   [[nodiscard]] int event_count() const final { return 1; }
-  void events(const numerics::DaePoint& at, std::span<double> values) final { values[0] = depth(at.y); }
-  /// Grows through zero where it begins to press.
+  void events(const numerics::DaePoint& at, std::span<double> values) final { values[0] = touches(at.y); }
+  /// Grows through zero where it begins to press [m].
   [[nodiscard]] virtual double depth(const numerics::VectorView& y) const = 0;
+  /// A number with the sign of the depth.
+  [[nodiscard]] virtual double touches(const numerics::VectorView& y) const { return depth(y); }
   /// Whether the force jumps there, as a dashpot's does: the integration begins anew.
   [[nodiscard]] virtual bool jumps() const = 0;
-  /// `force` on the first of those that press on each other.
-  [[nodiscard]] virtual ContactSample sample(const numerics::VectorView& y) const = 0;
+  /// What can be said of it at one place.
+  struct Pressing {
+    ContactSample sample;  ///< but for the gap; its force is that on the first of those that press on each other
+    Work work;
+    double tension = 0.0;  ///< of a wire [N]
+  };
+  [[nodiscard]] virtual Pressing pressing(const numerics::VectorView& y) const = 0;
+  /// With the gap.
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const {
+    ContactSample s = pressing(y).sample;
+    s.gap = -depth(y);
+    return s;
+  }
+  [[nodiscard]] Work work(const numerics::VectorView& y) const final { return pressing(y).work; }
 };
 
 /// Whether a law's force jumps at a touch.

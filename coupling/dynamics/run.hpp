@@ -61,6 +61,7 @@ class MotionRun {
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
+  [[nodiscard]] int default_order() const;  // of the integrator                                       theory.md (M.2)
   void require_apart();
   [[nodiscard]] bool write_until(double time);
   /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends the run; the first one
@@ -90,7 +91,7 @@ class MotionRun {
   void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
-  void watch_law_wire(std::size_t k);
+  void watch_law_wire(std::size_t k, double tension);
   [[nodiscard]] double longest_step() const;
   /// Number of all that presses.
   [[nodiscard]] std::size_t touching() const {

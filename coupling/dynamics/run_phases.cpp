@@ -12,7 +12,7 @@ using base::at;
 using Eigen::Vector3d;
 
 double MotionRun::tension(int wire) {
-  if (at(wire) >= rods_.size()) return law_wires_[at(wire) - rods_.size()].shape(y_).tension;
+  if (at(wire) >= rods_.size()) return law_wires_[at(wire) - rods_.size()].pressing(y_).tension;
   const wire::RodPart& rod = rods_[at(wire)];
   std::optional<std::array<Vector3d, 2>> at_start;
   std::array<Vector3d, 2> forces;
@@ -35,7 +35,7 @@ double MotionRun::signal(const MotionSignal& s) {
       if (k < contacts_.size()) return contacts_[k].sums(y_).normal;
       if (k < contacts_.size() + springs_.size())
         return springs_[k - contacts_.size()].sample({time_, y_, rate_}).normal_force;
-      if (k >= first_press()) return presses_[k - first_press()]->sample(y_).normal_force;
+      if (k >= first_press()) return presses_[k - first_press()]->pressing(y_).sample.normal_force;
       return pairs_[k - contacts_.size() - springs_.size()].sums(y_).normal;
     }
     case MotionSignal::Kind::wire_tension:
