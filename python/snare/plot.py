@@ -97,3 +97,26 @@ def history(result: Result, *columns: str, axes: Optional[Any] = None) -> Any:
     axes.set_xlabel("time [s]")
     axes.legend()
     return axes
+
+
+def indices(result: Result, field: Optional[str] = None, axes: Optional[Any] = None) -> Any:
+    """Shares [-] of a field's variance that are due to each variable of a ``sweep`` with ``design = "sensitivity"``: of each by itself and
+    with the others, as bars with their 95 % intervals.
+
+    result: of ``sweep``; its ``fields`` have such shares, lists of two for an interval. field: name of a collected one; the first that has
+    shares, where None. Raises ValueError where there is none."""
+    fields = {name: one["sobol"]["variables"] for name, one in result["fields"].items() if one.get("sobol", {}).get("variables")}
+    if not fields or field not in (None, *fields):
+        raise ValueError(f"field = {field!r}, must be one with Sobol indices: {', '.join(fields) or 'this sweep has none'}")
+    name = field if field is not None else next(iter(fields))
+    axes = _axes(axes)
+    places = np.arange(len(fields[name]))
+    for k, (index, label) in enumerate((("first", "by itself"), ("total", "with others"))):
+        share = np.array([one[index] for one in fields[name].values()], dtype=float)
+        ends = np.array([one[f"{index}_interval95"] for one in fields[name].values()], dtype=float)
+        axes.bar(places + 0.4 * k - 0.2, share, 0.36, label=label, color=f"C{k}")
+        axes.errorbar(places + 0.4 * k - 0.2, share, np.abs(ends.T - share), fmt="none", ecolor="0.2", capsize=3)
+    axes.set_xticks(places, list(fields[name]))
+    axes.set_ylabel(f"share of the variance of {name} [-]")
+    axes.legend()
+    return axes
