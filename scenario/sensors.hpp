@@ -38,6 +38,8 @@ struct Sensor {
 
   /// Numbers a reading has, and columns: three of a vector, else one.
   [[nodiscard]] int components() const;
+  /// SI units in one unit of its columns, 1e-3 for mm.
+  [[nodiscard]] double unit() const;
   /// Names of its columns, with units.
   [[nodiscard]] std::vector<std::string> columns() const;
 };
