@@ -5,6 +5,7 @@
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "multibody/arm/arm_file.hpp"
+#include "results/in_mm.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,7 +87,7 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
     result["joints"].push_back(
         {{"joint", joint.name},
          {"link", body.name},
-         {"angle_deg", angles[k] / degree},
+         {"angle_deg", results::in_degrees(angles[k])},
          {"link_mass_kg", body.inertia.mass},
          {"motor_inertia_kg_m2", joint.motor_inertia},
          {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},

@@ -7,6 +7,7 @@
 #include "base/files.hpp"
 #include "reduction/law_export.hpp"
 #include "reduction/law_simulators.hpp"
+#include "results/in_mm.hpp"
 #include "results/law_json.hpp"
 #include "results/warnings.hpp"
 
@@ -38,7 +39,7 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
           base::CsvCell back;
           if (one.table.unloading)
             back = t.force_scale() * one.table.unloading->nodes()[coupling::ForceTable::numbers_a_node * node];
-          csv.row({static_cast<long long>(c + 1), 1e3 * d * span, 1e3 * s * span, 1e3 * e * span,
+          csv.row({static_cast<long long>(c + 1), in_mm(d * span), in_mm(s * span), in_mm(e * span),
                    t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e, numbers[0],
                    one.groups.axial, one.groups.radius, one.groups.friction});
           ++node;

@@ -6,6 +6,7 @@
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "identification/ring_down/mode_match.hpp"
+#include "results/in_mm.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -94,7 +95,8 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   for (std::size_t s = 0; s < fits.size(); ++s) {
     const identification::RingDown& data = file.series[s].data;
     for (Eigen::Index i = 0; i < data.time.size(); ++i) {
-      csv.row({std::string_view(data.name), data.time[i], per_mm * data.displacement[i], per_mm * fits[s].fitted[i]});
+      csv.row({std::string_view(data.name), data.time[i], results::in_mm(data.displacement[i]),
+               results::in_mm(fits[s].fitted[i])});
     }
   }
   csv.commit();

@@ -50,6 +50,7 @@ class ByteWriter {
     return *this;
   }
 
+  /// What has been written so far, byte by byte; ByteReader takes it.
   [[nodiscard]] const std::string& bytes() const noexcept { return bytes_; }
 
  private:
@@ -105,6 +106,7 @@ class ByteReader {
     return *this;
   }
 
+  /// Whether everything has been read: what remains after the last value is a fault of the reader's or of the bytes.
   [[nodiscard]] bool at_end() const noexcept { return bytes_.empty(); }
 
  private:

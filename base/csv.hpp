@@ -63,6 +63,7 @@ class CsvWriter {
   void row(std::initializer_list<CsvCell> cells) { row(std::vector<CsvCell>(cells)); }
   void row(const std::vector<CsvCell>& cells);
 
+  /// Waits until all rows are on the disk and gives the file its name. To be called once, no row after it; throws std::system_error.
   void commit();
 
  private:

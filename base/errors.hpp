@@ -17,6 +17,7 @@ struct InputProblem {
   std::string value;        ///< offending value as it was written; empty when it is missing
   std::string requirement;  ///< what is allowed, e.g. "must be > 0"
 
+  /// The problem in one line, as above.
   [[nodiscard]] std::string message() const;
 };
 
@@ -26,6 +27,7 @@ class InputError : public std::runtime_error {
   explicit InputError(std::vector<InputProblem> problems);
   explicit InputError(InputProblem problem);
 
+  /// Every problem, in the order in which they were given.
   [[nodiscard]] const std::vector<InputProblem>& problems() const noexcept { return problems_; }
 
  private:
@@ -37,6 +39,7 @@ class LibraryError : public std::runtime_error {
  public:
   LibraryError(const std::string& function, int code, const std::string& meaning);
 
+  /// What the call returned: a number of the library's own.
   [[nodiscard]] int code() const noexcept { return code_; }
 
  private:

@@ -10,6 +10,7 @@
 
 namespace snare::base {
 
+/// Closes a C stream when its handle goes; what fclose says is not looked at: AtomicFile closes by itself.
 struct FileCloser {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
 };
@@ -48,6 +49,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
+  /// Appends bytes to the temporary file.
   void write(std::string_view text);
   /// To be called once; no write after it.
   void commit();

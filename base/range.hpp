@@ -14,15 +14,16 @@ struct Range {
 
   /// Every finite number.
   [[nodiscard]] static Range finite() { return {}; }
-  /// low < x <= high.
+  /// low < x <= high, both in the unit in which the user writes the number.
   [[nodiscard]] static Range above(double low, double high = std::numeric_limits<double>::infinity()) {
     return {low, high, false};
   }
-  /// low <= x <= high.
+  /// low <= x <= high, in the same unit.
   [[nodiscard]] static Range from(double low, double high = std::numeric_limits<double>::infinity()) {
     return {low, high, true};
   }
 
+  /// Whether a finite value, in the same unit, lies in the interval.
   [[nodiscard]] bool contains(double value) const noexcept;
 
   /// "> 0 and <= 100"; empty for every finite number.

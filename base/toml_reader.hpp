@@ -42,6 +42,7 @@ class TomlDocument {
   TomlDocument(const TomlDocument&) = delete;
   TomlDocument& operator=(const TomlDocument&) = delete;
 
+  /// The table of all keys at the top of the file: with it the asking begins.
   [[nodiscard]] TomlTable root();
 
   /// Adds a problem found by other means, in a file that this one names for instance. The same problem is kept once.
@@ -97,18 +98,26 @@ class TomlTable {
   /// Has the key, whatever its value. Makes the key a known one.
   [[nodiscard]] bool has(std::string_view key) const;
 
+  /// A number in `range`, both in the file's unit; `unit`: SI units in one of these (1e-3 for mm). The result is in SI, NaN after a problem.
   [[nodiscard]] double number(std::string_view key, Range range, double unit = 1.0) const;
+  /// The same, or `otherwise` (in SI) where the key is absent.
   [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range, double unit = 1.0) const;
+  /// The same; nothing where the key is absent or wrong.
   [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range range, double unit = 1.0) const;
+  /// A whole number from `low` to `high`; `low` after a problem.
   [[nodiscard]] int integer(std::string_view key, int low, int high) const;
+  /// The same, or `otherwise` where the key is absent.
   [[nodiscard]] int integer_or(std::string_view key, int otherwise, int low, int high) const;
+  /// true or false, or `otherwise` where the key is absent or wrong.
   [[nodiscard]] bool boolean_or(std::string_view key, bool otherwise) const;
+  /// A text; empty after a problem.
   [[nodiscard]] std::string text(std::string_view key) const;
+  /// The same, or `otherwise` where the key is absent.
   [[nodiscard]] std::string text_or(std::string_view key, std::string otherwise) const;
-  /// An array of numbers, `least` to `most` of them; empty after a problem.
+  /// An array of numbers, `least` to `most` of them; empty after a problem. Range in the file's unit, result in SI, see `number`.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range,
                                             double unit = 1.0) const;
-  /// An array of `count` numbers, or one number for all of them; empty after a problem.
+  /// An array of `count` numbers, or one number for all of them; empty after a problem. In SI, see `number`.
   [[nodiscard]] std::vector<double> numbers_or_one(std::string_view key, std::size_t count, Range range,
                                                    double unit = 1.0) const;
   /// An array of texts; empty when the key is absent and after a problem.

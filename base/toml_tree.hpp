@@ -46,6 +46,7 @@ struct TomlNode {
   [[nodiscard]] const TomlNode* find(std::string_view key) const noexcept;
 };
 
+/// A key of a table with its value, in the order of the file.
 struct TomlEntry {
   std::string key;
   TomlNode node;

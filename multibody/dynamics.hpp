@@ -42,12 +42,13 @@ const Eigen::VectorXd& inverse_dynamics(const Tree& tree, const Eigen::VectorXd&
                                         DynamicsWorkspace& workspace);
 
 /// Mass matrix H(q) by composite bodies (CRBA), symmetric, both triangles.    theory.md (A.6), Featherstone 2008,
-/// table 6.2
+/// table 6.2. (nv x nv) [kg m^2, kg m, kg]; q: (nq) [rad, m, -].
 const Eigen::MatrixXd& mass_matrix(const Tree& tree, const Eigen::VectorXd& q, DynamicsWorkspace& workspace);
 
 /// Forward dynamics by articulated bodies (ABA): v' of the given torques.     theory.md (A.7), Featherstone 2008,
 /// table 7.1
 /// A joint that carries no inertia at all has no acceleration: the result is then not finite.
+/// torque: (nv) [N m, N]; result: (nv) [rad/s^2, m/s^2].
 const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                         const Eigen::VectorXd& torque, BodyWrenches wrenches,
                                         DynamicsWorkspace& workspace);

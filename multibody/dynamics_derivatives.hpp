@@ -27,6 +27,7 @@ struct InverseDynamicsDerivatives {
 
 /// Derivatives of `inverse_dynamics` with wrenches that move with their bodies.                      theory.md (A.8)
 /// Agrees with Singh, Wensing and Echeandia 2022 for joints of one axis; the free joint is derived in theory.md.
+/// q: (nq), v and acceleration: (nv), results in SI units.
 const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tree, const Eigen::VectorXd& q,
                                                                  const Eigen::VectorXd& v,
                                                                  const Eigen::VectorXd& acceleration,
@@ -46,11 +47,12 @@ struct MomentumDerivatives {
 /// Motion of the coordinates as the velocities count it, for a change of the coordinates: (nv x nq), the left
 /// inverse of
 /// N(q) in q' = N(q) v. The derivative with respect to q itself is `position` times this.
+/// Entries [-], of a free joint's turn by its quaternion [rad].
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);
-/// The block of one body on a free joint.
+/// The block of one body on a free joint, rows turn [rad] and shift [m], columns place and quaternion.
 [[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q);
 
-/// Derivatives of `free_coordinate_rate`.
+/// Derivatives of `free_coordinate_rate`, rows p' [m/s] and quat' [1/s].
 struct FreeRateDerivatives {
   Eigen::Matrix<double, 7, 7> by_coordinates;
   Eigen::Matrix<double, 7, 6> by_velocities;

@@ -20,6 +20,7 @@ struct Kinematics {
 };
 
 /// Adds the velocity of a body against its joint's frame, in its own axes.                              theory.md (A.3)
+/// v: (nv) [rad/s, m/s].
 inline void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twist& V) {
   switch (body.joint) {
     case JointKind::revolute:
@@ -35,9 +36,9 @@ inline void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twi
   }
 }
 
-/// Poses for the coordinates q.
+/// Poses for the coordinates q, (nq) [rad, m, -].
 void place(const Tree& tree, const Eigen::VectorXd& q, Kinematics& kinematics);
-/// Velocities, after `place`.
+/// Velocities for v, (nv) [rad/s, m/s], after `place`.
 void set_moving(const Tree& tree, const Eigen::VectorXd& v, Kinematics& kinematics);
 
 /// Pose of a frame in the world.
@@ -51,7 +52,7 @@ struct FrameMotion {
 [[nodiscard]] FrameMotion frame_motion(const Tree& tree, const Kinematics& kinematics, int frame);
 
 /// Jacobian J(q) of a frame, (6 x nv): angular velocity over velocity of the origin, in the axes of the world, for
-/// each velocity.                                                                                    theory.md (A.4)
+/// each velocity [-, m].                                                                             theory.md (A.4)
 [[nodiscard]] Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame);
 /// J^T F of a wrench about a point p_W [m] of a body, in the axes of the world [N m, N]: added to forces (nv).
 void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W, const Wrench& F_W,
@@ -59,7 +60,7 @@ void add_force(const Tree& tree, const Kinematics& kinematics, int body, const E
 /// The Jacobian of a point p_W [m] of a body.
 [[nodiscard]] Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body,
                                       const Eigen::Vector3d& p_W);
-/// Its rate dJ/dt along the motion in `kinematics`.
+/// Its rate dJ/dt along the motion in `kinematics`, (6 x nv) [1/s, m/s].
 [[nodiscard]] Matrix6X frame_jacobian_rate(const Tree& tree, const Kinematics& kinematics, int frame);
 
 /// Kinetic energy [J].

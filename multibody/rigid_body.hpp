@@ -19,14 +19,14 @@ struct RigidBodyState {
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();                   ///< angular velocity in B [rad/s]
 };
 
-/// The first Piola form of the quaternion's rate: q' = 1/2 q (0, w) as a matrix on w; q in the order w, x, y, z.
+/// The first Piola form of the quaternion's rate: q' = 1/2 q (0, w) as a matrix on w, (4 x 3) [-]; q in the order w, x, y, z.
 ///                                                                                       theory.md (M.5)
 [[nodiscard]] Eigen::Matrix<double, 4, 3> quaternion_rates(const Eigen::Vector4d& q);
 
 /// The rotation matrix of a quaternion that need not be of unit length, R(q) = rotation of q/|q|.
 [[nodiscard]] Eigen::Matrix3d rotation(const Eigen::Vector4d& q);
 
-/// Derivative of R(q) a by q for a fixed a, of unit or nearly unit q.
+/// Derivative of R(q) a by q for a fixed a, of unit or nearly unit q; in the unit of a.
 [[nodiscard]] Eigen::Matrix<double, 3, 4> rotated_by_quaternion(const Eigen::Vector4d& q, const Eigen::Vector3d& a);
 
 /// Kinetic energy [J], and angular momentum about the world's origin [kg m^2/s].

@@ -25,6 +25,7 @@ struct Twist {
     linear += o.linear;
     return *this;
   }
+  /// Angular over linear part, (6), in the units of the parts.
   [[nodiscard]] Vector6 vector() const { return (Vector6() << angular, linear).finished(); }
 };
 
@@ -43,6 +44,7 @@ struct Wrench {
     force -= o.force;
     return *this;
   }
+  /// Moment over force, (6) [N m, N].
   [[nodiscard]] Vector6 vector() const { return (Vector6() << moment, force).finished(); }
 };
 
@@ -112,6 +114,7 @@ struct SpatialInertia {
   }
   /// The same body seen from A, this being seen from B.
   [[nodiscard]] SpatialInertia to_outer(const Pose& X_AB) const;
+  /// As a matrix on a motion, angular over linear, (6 x 6) [kg m^2, kg m, kg].
   [[nodiscard]] Matrix6 matrix() const;
   /// Centre of mass in the frame [m]; the origin for a massless body.
   [[nodiscard]] Eigen::Vector3d centre() const;

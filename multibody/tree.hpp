@@ -28,7 +28,9 @@ struct TreeBody {
   int q_index = 0;                                  ///< first coordinate
   int v_index = 0;                                  ///< first velocity
 
+  /// Entries of q that are this joint's, from q_index on.
   [[nodiscard]] int coordinates() const { return joint == JointKind::free ? 7 : 1; }
+  /// Entries of v that are this joint's, from v_index on.
   [[nodiscard]] int velocities() const { return joint == JointKind::free ? 6 : 1; }
 };
 
@@ -60,9 +62,13 @@ class Tree {
   /// world V. Gravity stays as it is.
   void move(const Pose& X_VW);
 
+  /// Moving bodies, every one behind its parent; the world is none of them.
   [[nodiscard]] const std::vector<TreeBody>& bodies() const { return bodies_; }
+  /// Body i, 0 <= i < size().
   [[nodiscard]] const TreeBody& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
+  /// Named frames, the world's first.
   [[nodiscard]] const std::vector<TreeFrame>& frames() const { return frames_; }
+  /// Frame i, as `find_frame` counts it.
   [[nodiscard]] const TreeFrame& frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
   /// Index of a frame, or -1.
   [[nodiscard]] int find_frame(std::string_view name) const;
@@ -92,10 +98,10 @@ struct TreeState {
 /// At rest in the pose where every joint is at zero.
 [[nodiscard]] TreeState zero_state(const Tree& tree);
 
-/// Pose of the body in its joint's frame.
+/// Pose of the body in its joint's frame at q, (nq) [rad, m, -].
 [[nodiscard]] Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q);
 
-/// Rate of the coordinates of a body on a free joint, with the unit quaternion's rate 1/2 quat * (0, omega).  theory.md (A.3)
+/// Rate of the coordinates of a body on a free joint, (7) [m/s, 1/s], with the unit quaternion's rate 1/2 quat * (0, omega).  theory.md (A.3)
 [[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                const Eigen::VectorXd& v);
 

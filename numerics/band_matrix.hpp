@@ -12,16 +12,19 @@ namespace snare::numerics {
 ///
 /// The discrete rod couples a vertex with its two neighbours on either side only, so that its Hessian is
 /// banded by construction and needs no ordering. n: order, > 0; b: half bandwidth, >= 0: entries with
-/// |row - column| > b are zero.
+/// |row - column| > b are zero. Entries are of any unit.
 class SymmetricBandMatrix {
  public:
   SymmetricBandMatrix() = default;
   SymmetricBandMatrix(int n, int b)
       : n_(n), b_(b), values_(static_cast<std::size_t>(n) * static_cast<std::size_t>(b + 1), 0.0) {}
 
+  /// n: rows, and columns.
   [[nodiscard]] int order() const noexcept { return n_; }
+  /// b: below the diagonal, 0 for a diagonal matrix.
   [[nodiscard]] int half_bandwidth() const noexcept { return b_; }
 
+  /// Makes all entries zero; the size stays.
   void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
   /// Entry of the lower triangle, column <= row <= column + b.
@@ -36,6 +39,7 @@ class SymmetricBandMatrix {
   /// Adds to the symmetric pair (i, j), (j, i); to the diagonal once when i == j.
   void add(int i, int j, double value) { (i >= j ? lower(i, j) : lower(j, i)) += value; }
 
+  /// Entries (j, j) ... (j + b, j) one behind the other; those beyond the last row are storage that nobody reads.
   [[nodiscard]] double* column(int j) { return values_.data() + offset(j); }
   [[nodiscard]] const double* column(int j) const { return values_.data() + offset(j); }
 
@@ -64,6 +68,7 @@ class BandLdlt {
   /// Factorises a. Returns false, and leaves the factor unusable, when a pivot is zero or not finite.
   [[nodiscard]] bool factorize(const SymmetricBandMatrix& a);
 
+  /// How many entries of D are negative, by the last `factorize`: as many eigenvalues of A are.
   [[nodiscard]] int negative_pivots() const noexcept { return negative_; }
   /// Smallest over largest |pivot| [-]. Depends on the units of the unknowns and on the mesh.
   [[nodiscard]] double pivot_ratio() const noexcept { return ratio_; }
@@ -72,7 +77,7 @@ class BandLdlt {
   /// round-off, which spoils the solution unless A is definite (a cantilever of n edges keeps about 1/n^3).
   [[nodiscard]] double pivot_share() const noexcept { return share_; }
 
-  /// Solves A X = B in place; b has n rows, every column one right-hand side.
+  /// Solves A X = B in place; b has n rows, every column one right-hand side of any unit.
   void solve(Eigen::Ref<Eigen::MatrixXd> b) const;
 
  private:

@@ -13,7 +13,7 @@ namespace snare::numerics {
 
 /// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides. Where K with its anchors is
 /// singular although the whole is not, KLU factorises the whole: when the blocks cannot be factorised, or when a
-/// pivot of K is mostly round-off and a trial solution has a componentwise backward error above 1e-8.
+/// pivot of K is mostly round-off and a trial solution has a componentwise backward error above 1e-8. Unknowns and residuals of any unit.
 class BorderedSolver {
  public:
   /// False when the whole system is singular.
@@ -26,6 +26,7 @@ class BorderedSolver {
 
   /// Negative eigenvalues of K held at its anchors.
   [[nodiscard]] int negative_pivots() const noexcept { return factor_.negative_pivots(); }
+  /// Smallest over largest |pivot| of K [-]: see BandLdlt.
   [[nodiscard]] double pivot_ratio() const noexcept { return factor_.pivot_ratio(); }
   /// Sign of the determinant of the whole system: +1, -1, or 0. It changes at folds and simple bifurcations.
   [[nodiscard]] int determinant_sign() const noexcept { return determinant_sign_; }

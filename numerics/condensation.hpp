@@ -14,7 +14,7 @@ namespace snare::numerics {
 ///   row p:  a x + b v = r   =>   v = (r - a x)/b
 ///
 /// What other rows have by v goes to the column of x; the balance that has the number of v stands in the row of x. The unknowns
-/// left keep their order.
+/// left keep their order. Unknowns and rows of any unit.
 class Condensation {
  public:
   /// pairs: (p, v) of x and v, taken where the row p has entries by p and v alone, and left as they are elsewhere.

@@ -48,10 +48,12 @@ class DaeLayout {
   int size_ = 0;
 };
 
-/// Values on a pattern, by row and column. What the pattern does not have is left out.
+/// Values on a pattern, by row and column, each in the unit of its row over that of its column: of any unit here. What the pattern does not have
+/// is left out.
 class PatternValues {
  public:
   PatternValues(const SparseMatrix& pattern, std::vector<double>& values) : pattern_(pattern), values_(values) {}
+  /// Adds to the entry (row, column).
   void add(int row, int column, double value) const {
     const int slot = pattern_.slot(row, column);
     if (slot >= 0) values_[static_cast<std::size_t>(slot)] += value;
@@ -77,7 +79,7 @@ struct DaePoint {
 /// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
 ///
 /// Order of calls: `declare` once, then `sparsity` and `attach_pattern` whenever the pattern is made, then the rest. A part may
-/// keep workspace; one part serves one integration at a time.
+/// keep workspace; one part serves one integration at a time. Unknowns, rows and rates are in SI units.
 class DaePart {
  public:
   DaePart() = default;
@@ -109,17 +111,20 @@ class DaePart {
   virtual void restore_state(const VectorView& /*y*/, std::span<const double>& /*memory*/) {}
 };
 
-/// Takes the first number off a memory. Throws InputError when there is none.
+/// Takes the first number, of any unit, off a memory. Throws InputError when there is none.
 [[nodiscard]] double take(std::span<const double>& memory);
 
-/// F(t, y, y') = 0 of several parts on one sparse pattern.                                       theory.md (M.1)
+/// F(t, y, y') = 0 of several parts on one sparse pattern, in SI units.                          theory.md (M.1)
 class DaeSystem {
  public:
   /// The parts stay the caller's and outlive the system.
   explicit DaeSystem(std::vector<DaePart*> parts);
 
+  /// Blocks of all parts, in the order of the parts.
   [[nodiscard]] const DaeLayout& layout() const noexcept { return layout_; }
+  /// Number of unknowns, and of rows.
   [[nodiscard]] int size() const noexcept { return layout_.size(); }
+  /// Functions whose zeros stop the integration, of all parts together.
   [[nodiscard]] int event_count() const noexcept { return event_count_; }
   /// The matrix of the last `jacobian`, or the pattern with zeros.
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }

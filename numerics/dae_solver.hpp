@@ -14,12 +14,13 @@
 namespace snare::numerics {
 
 /// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting, (N.7), and by KLU
-/// where a solution shows that digits are lost: the first one after each factorisation is put into the equations.
+/// where a solution shows that digits are lost: the first one after each factorisation is put into the equations. Of any unit.
 class DaeSolver {
  public:
   /// pairs: see Condensation.
   DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs);
 
+  /// The pairs that are condensed: see Condensation.
   [[nodiscard]] const std::vector<std::pair<int, int>>& pairs() const noexcept { return condensation_.pairs(); }
   /// False when the matrix is singular. Throws LibraryError when memory runs out.
   [[nodiscard]] bool factorize(const SparseMatrix& matrix);

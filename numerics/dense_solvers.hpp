@@ -5,14 +5,14 @@
 /// Decompositions of dense matrices, compiled once: in every source that uses them they take seconds.
 namespace snare::numerics {
 
-/// Eigenvalues of a symmetric matrix, rising, and its eigenvectors in the same order.
+/// Eigenvalues of a symmetric matrix, rising, and its eigenvectors in the same order. Of any unit.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
-/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls.
+/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls. Of any unit.
 struct ThinSvd {
   Eigen::MatrixXd U;
   Eigen::VectorXd s;
@@ -20,13 +20,13 @@ struct ThinSvd {
 };
 [[nodiscard]] ThinSvd thin_svd(const Eigen::MatrixXd& a);
 
-/// Pseudo-inverse, by the complete orthogonal decomposition.
+/// Pseudo-inverse, by the complete orthogonal decomposition. Of any unit.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a);
 
-/// x of least |a x - b|, and among them the one of least norm; by the same decomposition.
+/// x of least |a x - b|, and among them the one of least norm; by the same decomposition. Of any unit.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-/// x of least |a x - b| for a matrix of full rank, by Householder's QR decomposition with column pivoting.
+/// x of least |a x - b| for a matrix of full rank, by Householder's QR decomposition with column pivoting. Of any unit.
 [[nodiscard]] Eigen::VectorXd full_rank_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 }  // namespace snare::numerics

@@ -65,7 +65,7 @@ enum class IdaAdvance {
 
 /// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse
 /// Jacobian; the pattern is analysed when it changes only.                                theory.md (M.1), (M.2)
-/// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up.
+/// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up. Times in s, y in SI units.
 class Ida {
  public:
   Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals = {});
@@ -85,8 +85,11 @@ class Ida {
   /// One internal step, never beyond `limit` [s] nor longer than `max_step` [s], > 0.
   [[nodiscard]] IdaAdvance advance(double limit, double max_step = std::numeric_limits<double>::infinity());
 
+  /// Where it stands: of the last accepted step, or of the start [s].
   [[nodiscard]] double time() const;
+  /// The unknowns there.
   [[nodiscard]] const Eigen::VectorXd& y() const;
+  /// Their rates there.
   [[nodiscard]] const Eigen::VectorXd& rate() const;
   /// Derivative k of y at a time within the last step.
   [[nodiscard]] Eigen::VectorXd interpolate(double time, int derivative = 0) const;
@@ -111,7 +114,7 @@ class Ida {
 /// Called after every step; true: stop here.
 using IdaObserver = std::function<bool(const Ida&)>;
 
-/// Integrates to `end` without regard to events (they only split steps); `interrupted` when the observer says so.
+/// Integrates to `end` without regard to events (they only split steps); `interrupted` when the observer says so. end [s].
 [[nodiscard]] IdaReport integrate(Ida& ida, double end, const IdaObserver& observer = {});
 
 }  // namespace snare::numerics

@@ -15,7 +15,7 @@
 
 namespace snare::numerics {
 
-/// The numbers of a SUNDIALS vector, where they are.
+/// The numbers of a SUNDIALS vector, of any unit, where they are.
 [[nodiscard]] inline Eigen::Map<Eigen::VectorXd> map(N_Vector v) {
   return {N_VGetArrayPointer(v), N_VGetLength(v)};
 }
@@ -37,7 +37,7 @@ struct IdaCallbacks {
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
   // Of the Newton iteration: the last correction of this step, and what the last rate of convergence leaves after one.
   double last_correction = 0.0;
-  double remainder = unknown_remainder;
+  double remainder = unknown_remainder;  ///< factor on the last correction [-]
 
   static constexpr double unknown_remainder = 20.0;
 

@@ -9,7 +9,7 @@
 namespace snare::numerics {
 
 /// Sparse LU factorisation by KLU: the pattern is analysed once, values are refactorised with the pivots of the
-/// first factorisation while that stays accurate, and factorised anew otherwise (Davis and Natarajan 2010).
+/// first factorisation while that stays accurate, and factorised anew otherwise (Davis and Natarajan 2010). Of any unit.
 class Klu {
  public:
   /// Analyses the pattern. A pattern that makes every matrix singular is no error: `factorize` then is false. Throws

@@ -8,6 +8,7 @@
 
 namespace snare::numerics {
 
+/// Destroys SUNDIALS' nonlinear solver when its handle goes.
 struct NonlinearSolverDeleter {
   void operator()(SUNNonlinearSolver s) const noexcept { SUNNonlinSolFree(s); }
 };

@@ -13,11 +13,11 @@ namespace snare::numerics {
 struct PathPoint {
   Eigen::VectorXd band;
   Eigen::VectorXd border;
-  double parameter = 0.0;
+  double parameter = 0.0;  ///< in its unit
 };
 
 /// Equations F(band, border; parameter) = 0 whose solutions form the path. The parameter enters the border
-/// equations only.
+/// equations only. Unknowns and parameter in SI units.
 class PathProblem {
  public:
   virtual ~PathProblem() = default;
@@ -52,13 +52,14 @@ SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& works
 struct PathTangent {
   Eigen::VectorXd band;
   Eigen::VectorXd border;
-  double parameter = 1.0;
+  double parameter = 1.0;  ///< along the path's arc [-]
 };
 [[nodiscard]] std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
                                                  const PathTangent* like);
 
 /// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to the
 /// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)
+/// step: in the norm of PathTangent, in the units of band and parameter.
 SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start, const PathTangent& direction,
                           double step, PathWorkspace& workspace, int max_iterations);
 

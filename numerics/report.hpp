@@ -22,6 +22,7 @@ struct [[nodiscard]] SolveReport {
   double residual_norm = 0.0;  ///< largest scaled residual at the end [-]
   std::string message;         ///< one sentence for a person; empty when converged
 
+  /// Whether the result is what was asked for.
   [[nodiscard]] bool usable() const noexcept { return termination == Termination::converged; }
   /// Says how it ended and why.
   SolveReport& end(Termination how, std::string why = {}) {

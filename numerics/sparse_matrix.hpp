@@ -14,7 +14,7 @@ struct SparseMatrix {
   int order = 0;
   std::vector<int> column_start;  ///< order + 1 offsets
   std::vector<int> row;           ///< increasing within a column
-  std::vector<double> value;
+  std::vector<double> value;      ///< of every entry, in the order of `row`, in its unit
 
   /// Slot of entry (i, j) in `value`, or -1 outside the pattern.
   [[nodiscard]] int slot(int i, int j) const;
@@ -27,7 +27,7 @@ struct SparseMatrix {
 struct Triplet {
   int row = 0;
   int column = 0;
-  double value = 0.0;
+  double value = 0.0;  ///< in the unit of the matrix
 };
 /// The matrix of all of them, values at the same place added.
 [[nodiscard]] SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets);

@@ -13,7 +13,7 @@ namespace snare::numerics {
 /// Rows and columns are in the order of least degree (Amestoy, Davis and Duff 1996) of the pattern of A + A^T; what fills up is
 /// known beforehand, so that a row is eliminated by others in runs of neighbours. A chain of vertices with a few unknowns each
 /// takes a third of the time of KLU. Accurate where no pivot is small beside what stands in its row and column: the caller
-/// has to look at a solution.
+/// has to look at a solution. Of any unit.
 class StaticLu {
  public:
   /// The pattern, and with its values where the diagonal is empty: such unknowns come after their neighbours.

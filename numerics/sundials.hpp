@@ -16,12 +16,15 @@
 
 namespace snare::numerics {
 
+/// Destroys a vector of SUNDIALS when its handle goes.
 struct VectorDeleter {
   void operator()(N_Vector v) const noexcept { N_VDestroy(v); }
 };
+/// Destroys a matrix of SUNDIALS when its handle goes.
 struct MatrixDeleter {
   void operator()(SUNMatrix m) const noexcept { SUNMatDestroy(m); }
 };
+/// Destroys a linear solver of SUNDIALS when its handle goes.
 struct LinearSolverDeleter {
   void operator()(SUNLinearSolver s) const noexcept { SUNLinSolFree(s); }
 };
@@ -38,7 +41,7 @@ Pointer made(Pointer object, const std::string& function) {
   return object;
 }
 
-/// A serial vector that looks at the storage of `v`.
+/// A serial vector that looks at the storage of `v`. Of any unit.
 [[nodiscard]] SunVector view(Eigen::VectorXd& v, SUNContext context);
 /// A sparse matrix in compressed columns with room for the pattern.
 [[nodiscard]] SunMatrix make_matrix(const SparseMatrix& pattern, SUNContext context);

@@ -193,7 +193,7 @@ void add_laws(py::module_& module) {
       .def_readonly("position", &SimpleLaw::position, "s, of the pusher along the chord from the left mount [m].")
       .def_readonly("name", &SimpleLaw::name, "As in law.json: 'quadratic', 'power_law', ...")
       .def_readonly("formula", &SimpleLaw::formula, "The law, for people.")
-      .def_property_readonly("parameters", &parameters_of, "By name: (value, unit), SI.")
+      .def_property_readonly("parameters", &parameters_of, "By name: (value, unit), in SI units.")
       .def_readonly("travel", &SimpleLaw::travel, "[from, to], the travels at which it was fitted [m].")
       .def_readonly("largest_error", &SimpleLaw::largest_error, "Against the full wire over these travels [N].")
       .def("force", &of_travel<&coupling::SpringLaw::force>, py::arg("d"), "Force [N] at the travel d [m].")

@@ -39,9 +39,10 @@ struct ModelResult {
   std::string why;                     ///< it is far off; see error_reason.hpp
 };
 
+/// A case with how every model does in it.
 struct CaseComparison {
   std::string name;
-  std::vector<double> travel, measured;  ///< as given
+  std::vector<double> travel, measured;  ///< as given [m, N]
   double force_range = 0.0;              ///< of the full wire [N]
   std::vector<ModelResult> models;       ///< the full wire first
   numerics::SolveReport report;          ///< not usable: the full wire did not reach the end; no models then

@@ -57,10 +57,11 @@ class CurveStore {
   /// A curve that was sampled; throws std::out_of_range for another place.
   [[nodiscard]] const PushedCurve& at(const CurvePlace& place) const { return curves_.at(place); }
   [[nodiscard]] const std::map<CurvePlace, PushedCurve>& curves() const noexcept { return curves_; }
+  /// Travels of all curves, ascending from 0 [m].
   [[nodiscard]] const std::vector<double>& travel() const noexcept { return travel_; }
   [[nodiscard]] const WireCase& wire() const noexcept { return wire_; }
   [[nodiscard]] std::size_t solved() const noexcept { return solved_; }  ///< curves that were computed here
-  /// Where the pusher stands for the same force in a symmetric wire: at most mid-span.
+  /// Where the pusher stands for the same force in a symmetric wire: at most mid-span. position [m].
   [[nodiscard]] double folded(double position) const noexcept;
 
  private:

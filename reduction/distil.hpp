@@ -47,6 +47,7 @@ struct DistilledCase {
   LawMap map;
 };
 
+/// What came of a wire file.
 struct Distillation {
   std::vector<DistilledCase> cases;  ///< those that were finished
   std::size_t solved = 0;            ///< curves computed in this run, those of the journal not counted

@@ -44,11 +44,11 @@ struct LawRebound {
 /// steps. mass > 0 [kg], speed > 0 [m/s], damping >= 0 [N s/m]. Beyond its last knot L goes on as there.
 [[nodiscard]] LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass, double speed);
 
-/// The c of which `rebound` has the restitution asked, by bisection to 1e-10 of itself; 0 where no c loses as little.
+/// The c [N s/m] of which `rebound` has the restitution asked [-], by bisection to 1e-10 of itself; 0 where no c loses as little.
 [[nodiscard]] double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass,
                                             double speed);
 
-/// Simulates the impact at one speed and finds the dashpot of it for the law `loading` of the same position.
+/// Simulates the impact at one speed [m/s] and finds the dashpot of it for the law `loading` of the same position.
 /// `test`: wire, mounts, pusher and position; its friction acts. The wire must be elastic and naturally straight
 /// between rigid clamps or pins. A failure of the integration is in `report`.
 [[nodiscard]] ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSettings& settings,

@@ -6,7 +6,7 @@
 
 namespace snare::reduction {
 
-/// "s40", "s52_5": a position in a name that every language accepts.
+/// "s40", "s52_5": a position [m], told in mm, in a name that every language accepts.
 [[nodiscard]] std::string position_name(double position);
 
 /// Sources that need nothing but their language's standard library: the table as `force(d, s, slack)` with

@@ -33,7 +33,7 @@ struct FittedLaw {
   LawError error;
   bool converged = false;
 
-  /// Throws std::domain_error beyond the range with coupling::Outside::refuse. No contact (travel < 0): no force.
+  /// At a travel [m]. Throws std::domain_error beyond the range with coupling::Outside::refuse. No contact (travel < 0): no force.
   [[nodiscard]] coupling::LawValue at(double travel, coupling::Outside outside) const;
   [[nodiscard]] double energy(double travel) const;  ///< [J]
 };

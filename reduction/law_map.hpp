@@ -16,6 +16,7 @@ struct LawMapRow {
   std::vector<double> tensioned;  ///< k(EI, T, s) d with the tension before the push, none in a loose wire [N]
 };
 
+/// Laws without fitted numbers beside the full wire, at one position; see map_laws.
 struct LawMap {
   double position = 0.0;       ///< [m]
   std::vector<double> travel;  ///< > 0 [m]

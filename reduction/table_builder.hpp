@@ -38,7 +38,7 @@ struct BuiltTable {
   numerics::SolveReport report;
 };
 
-/// Travels at which curves are solved: evenly spread, four for every knot of the largest table; knots are taken from
+/// Travels [m] at which curves are solved: evenly spread, four for every knot of the largest table; knots are taken from
 /// these and the others check them.
 [[nodiscard]] std::vector<double> sampling_travel(const WireCase& wire, const DistilSettings& settings);
 
@@ -50,7 +50,7 @@ struct BuiltTable {
 [[nodiscard]] BuiltTable build_table(CurveStore& store, const DistilSettings& settings,
                                      const SamplingObserver& observer = {});
 
-/// Knots for functions given on candidates: ends first, then one at a time where the spline through the knots is
+/// Knots, of any unit, for functions given on candidates: ends first, then one at a time where the spline through the knots is
 /// farthest from a function. lines: each as long as candidates. Returns ascending indices, `count` of them or all.
 [[nodiscard]] std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
                                                    const std::vector<std::vector<double>>& lines, std::size_t count);

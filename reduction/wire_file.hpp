@@ -43,6 +43,7 @@ struct WireCase {
 /// Numbers of knots of a table in travel, position and slack.
 using TablePoints = std::array<int, 3>;
 
+/// How fine a table is made and how exact the curves behind it are.
 struct DistilSettings {
   int elements = 256;                   ///< edges of the finest mesh, a multiple of 4, >= 16
   bool extrapolate = true;              ///< from this mesh, the half and the quarter one

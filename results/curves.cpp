@@ -1,6 +1,7 @@
 #include "results/curves.hpp"
 
 #include "base/csv.hpp"
+#include "base/in_unit.hpp"
 #include "base/units.hpp"
 #include "results/in_mm.hpp"
 
@@ -24,7 +25,8 @@ struct PointColumn {
   CsvCell before_touch = {};
 
   [[nodiscard]] CsvCell cell(const PushPoint& p) const {
-    if (const auto* real = std::get_if<double PushPoint::*>(&number)) return p.**real / unit;
+    if (const auto* real = std::get_if<double PushPoint::*>(&number))
+      return unit == 1.0 ? p.**real : base::in_unit(p.**real, unit);
     if (const auto* count = std::get_if<int PushPoint::*>(&number)) return static_cast<long long>(p.**count);
     return static_cast<long long>(p.*std::get<bool PushPoint::*>(number));
   }

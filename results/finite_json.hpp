@@ -7,7 +7,7 @@
 
 namespace snare::results {
 
-/// The number, or null where there is none or none that JSON has.
+/// The number, in its unit, or null where there is none or none that JSON has.
 [[nodiscard]] inline nlohmann::json finite(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }

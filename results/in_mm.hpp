@@ -4,9 +4,10 @@
 
 namespace snare::results {
 
-/// A length [m] as results name it [mm]: the decimal number of at most 15 digits that is this length to the last bit, so that
-/// 1.3 mm of a file does not come back as 1.2999999999999998.
+/// A length [m] as results name it [mm], an angle [rad] as they name it [deg]: without the tail that the conversion of a decimal number
+/// leaves, see base::in_unit.
 [[nodiscard]] double in_mm(double metres);
 [[nodiscard]] std::vector<double> in_mm(std::vector<double> metres);
+[[nodiscard]] double in_degrees(double radians);
 
 }  // namespace snare::results

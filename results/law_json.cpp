@@ -17,8 +17,8 @@ using namespace reduction;
 
 constexpr double map_share = 0.05;  // of the full force
 
-json interval(const Interval& range, double unit) {
-  return json::array({range.low / unit, range.high / unit});
+json interval_in_mm(const Interval& range) {
+  return json::array({in_mm(range.low), in_mm(range.high)});
 }
 
 json error_json(const LawError& e) {
@@ -47,7 +47,7 @@ json law_entry(const FittedLaw& law) {
     covariance.push_back(row);
   }
   return {{"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
-          {"covariance", covariance},      {"travel_mm", interval(law.range, 1e-3)}, {"converged", law.converged},
+          {"covariance", covariance},      {"travel_mm", interval_in_mm(law.range)}, {"converged", law.converged},
           {"error", error_json(law.error)}};
 }
 
@@ -145,7 +145,7 @@ json map_json(const LawMap& map) {
     json entry{{"slack_mm", in_mm(row.slack)}};
     const auto add = [&](const char* name, const std::vector<double> LawMapRow::*law) {
       const auto range = map.within(row, law, map_share);
-      entry[name] = range ? interval(*range, 1e-3) : json();
+      entry[name] = range ? interval_in_mm(*range) : json();
     };
     add("stretched_wire_mm", &LawMapRow::stretched);
     add("tensioned_wire_mm", &LawMapRow::tensioned);
@@ -169,9 +169,9 @@ json case_json(const DistilledCase& one) {
             {"radius_mm", in_mm(one.wire.test.pusher.radius)},
             {"friction", one.wire.test.pusher.friction}}},
           {"ranges",
-           {{"travel_mm", interval(one.wire.travel, 1e-3)},
-            {"position_mm", interval(one.wire.position, 1e-3)},
-            {"slack_mm", interval(one.wire.slack, 1e-3)}}},
+           {{"travel_mm", interval_in_mm(one.wire.travel)},
+            {"position_mm", interval_in_mm(one.wire.position)},
+            {"slack_mm", interval_in_mm(one.wire.slack)}}},
           {"table", table_json(one.table)},
           {"positions", places},
           {"map", map_json(one.map)},

@@ -1,6 +1,7 @@
 #include "results/motion_history.hpp"
 
 #include "base/csv.hpp"
+#include "base/in_unit.hpp"
 #include "base/index.hpp"
 #include "base/units.hpp"
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,26 +22,30 @@ namespace {
 
 using base::at;
 using base::degree;
+using base::mm;
 using coupling::MotionSample;
 using Eigen::Vector3d;
 using multibody::ArmSample;
 using multibody::RigidBodyState;
 
-constexpr double mm_per_m = 1e3;
-
-/// Columns of a history, each a number of every sample.
+/// Columns of a history, each a number of every sample: in SI, written in a unit of so many SI units.
 template <class Sample>
 class Columns {
  public:
   using Number = std::function<double(const Sample&)>;
 
-  void add(std::string name, Number number) { columns_.push_back({std::move(name), std::move(number), false}); }
-  void add_count(std::string name, Number number) { columns_.push_back({std::move(name), std::move(number), true}); }
+  void add(std::string name, Number number, double unit = 1.0) {
+    columns_.push_back({std::move(name), std::move(number), unit, false});
+  }
+  void add_count(std::string name, Number number) {
+    columns_.push_back({std::move(name), std::move(number), 1.0, true});
+  }
   /// Columns BEFORExAFTER, BEFOREyAFTER and, of three, BEFOREzAFTER.
   void add_vector(const std::string& before, const std::string& after,
-                  const std::function<Vector3d(const Sample&)>& vector, int count = 3) {
+                  const std::function<Vector3d(const Sample&)>& vector, double unit = 1.0, int count = 3) {
     for (int k = 0; k < count; ++k)
-      add(fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const Sample& s) { return vector(s)[k]; });
+      add(
+          fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const Sample& s) { return vector(s)[k]; }, unit);
   }
 
   [[nodiscard]] std::vector<std::string> names() const {
@@ -50,17 +54,21 @@ class Columns {
     return names;
   }
   void append(const Sample& sample, std::vector<base::CsvCell>& row) const {
-    for (const Column& column : columns_) {
-      const double number = column.number(sample);
-      row.push_back(column.count ? base::CsvCell(static_cast<long long>(number)) : base::CsvCell(number));
-    }
+    for (const Column& column : columns_) row.push_back(column.cell(sample));
   }
 
  private:
   struct Column {
     std::string name;
     Number number;
+    double unit;
     bool count;  // written as a whole number
+
+    [[nodiscard]] base::CsvCell cell(const Sample& sample) const {
+      const double value = number(sample);
+      if (count) return static_cast<long long>(value);
+      return unit == 1.0 ? value : base::in_unit(value, unit);
+    }
   };
   std::vector<Column> columns_;
 };
@@ -82,8 +90,10 @@ double angle(const RigidBodyState& s) {
 
 void add_only_contact(Columns<MotionSample>& columns) {
   columns.add("force_N", [](const MotionSample& s) { return s.contacts.front().normal_force; });
-  columns.add("penetration_mm", [](const MotionSample& s) { return -mm_per_m * s.contacts.front().gap; });
-  columns.add("contact_arc_mm", [](const MotionSample& s) { return mm_per_m * s.contacts.front().arc; });
+  columns.add(
+      "penetration_mm", [](const MotionSample& s) { return -s.contacts.front().gap; }, mm);
+  columns.add(
+      "contact_arc_mm", [](const MotionSample& s) { return s.contacts.front().arc; }, mm);
 }
 
 /// Force on the left or the right mount's end of the first wire [N]; zero where a law stands for it.
@@ -96,15 +106,16 @@ Columns<MotionSample> body_on_wire() {
   Columns<MotionSample> columns;
   add_only_contact(columns);
   columns.add_vector(
-      "body_", "_mm", [](const MotionSample& s) { return Vector3d(mm_per_m * body(s).position); }, 2);
-  columns.add("body_angle_deg", [](const MotionSample& s) { return angle(body(s)) * 180.0 / std::numbers::pi; });
+      "body_", "_mm", [](const MotionSample& s) { return body(s).position; }, mm, 2);
+  columns.add(
+      "body_angle_deg", [](const MotionSample& s) { return angle(body(s)); }, degree);
   columns.add_vector(
-      "body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; }, 2);
+      "body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; }, 1.0, 2);
   columns.add("body_spin_rad_s", [](const MotionSample& s) { return body(s).spin.z(); });
   columns.add_vector(
-      "mount_left_", "_N", [](const MotionSample& s) { return mount_force(s, 0); }, 2);
+      "mount_left_", "_N", [](const MotionSample& s) { return mount_force(s, 0); }, 1.0, 2);
   columns.add_vector(
-      "mount_right_", "_N", [](const MotionSample& s) { return mount_force(s, 1); }, 2);
+      "mount_right_", "_N", [](const MotionSample& s) { return mount_force(s, 1); }, 1.0, 2);
   add_energies(columns);
   columns.add("slip_speed_m_s", [](const MotionSample& s) { return s.contacts.front().slip_speed; });
   columns.add_count("sticking", [](const MotionSample& s) { return s.contacts.front().sticking ? 1.0 : 0.0; });
@@ -123,16 +134,19 @@ Vector3d carried_force(const coupling::Motion& motion, const MotionSample& s) {
 Columns<MotionSample> body_on_wire_with_arm(const coupling::Motion& motion) {
   Columns<MotionSample> columns;
   add_only_contact(columns);
-  columns.add_vector("body_", "_mm", [](const MotionSample& s) { return Vector3d(mm_per_m * body(s).position); });
+  columns.add_vector(
+      "body_", "_mm", [](const MotionSample& s) { return body(s).position; }, mm);
   columns.add_vector("body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; });
   columns.add_vector("body_spin_", "_rad_s", [](const MotionSample& s) { return body(s).spin; });
   columns.add_vector("carried_", "_N", [&motion](const MotionSample& s) { return carried_force(motion, s); });
   const multibody::ElasticArm& arm = motion.arms.front().arm;
   for (int j = 0; j < arm.motors(); ++j) {
     const std::string& name = arm.joints[at(j)].name;
-    columns.add(name + "_motor_deg", [j](const MotionSample& s) { return s.arms.front().state.motor[j] / degree; });
-    columns.add(name + "_deflection_deg",
-                [&motion, j](const MotionSample& s) { return joint_deflection(motion, s, j) / degree; });
+    columns.add(
+        name + "_motor_deg", [j](const MotionSample& s) { return s.arms.front().state.motor[j]; }, degree);
+    columns.add(
+        name + "_deflection_deg", [&motion, j](const MotionSample& s) { return joint_deflection(motion, s, j); },
+        degree);
     columns.add(name + "_torque_Nm", [j](const MotionSample& s) { return s.arms.front().joint_torque[j]; });
   }
   add_energies(columns);
@@ -144,7 +158,8 @@ Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
   Columns<MotionSample> columns;
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const std::string name = motion.bodies[k].name + " ";
-    columns.add_vector(name, "_mm", [k](const MotionSample& s) { return Vector3d(mm_per_m * s.bodies[k].position); });
+    columns.add_vector(
+        name, "_mm", [k](const MotionSample& s) { return s.bodies[k].position; }, mm);
     columns.add(name + "qw", [k](const MotionSample& s) { return s.bodies[k].orientation.w(); });
     columns.add_vector(name + "q", "", [k](const MotionSample& s) { return Vector3d(s.bodies[k].orientation.vec()); });
     columns.add_vector(name + "v", "_m_s", [k](const MotionSample& s) { return s.bodies[k].velocity; });
@@ -155,8 +170,10 @@ Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
     const std::string name = contacts[k] + " ";
     columns.add(name + "points",
                 [k](const MotionSample& s) { return static_cast<double>(s.contacts[k].points.size()); });
-    columns.add(name + "gap_mm", [k](const MotionSample& s) { return mm_per_m * s.contacts[k].gap; });
-    columns.add(name + "arc_mm", [k](const MotionSample& s) { return mm_per_m * s.contacts[k].arc; });
+    columns.add(
+        name + "gap_mm", [k](const MotionSample& s) { return s.contacts[k].gap; }, mm);
+    columns.add(
+        name + "arc_mm", [k](const MotionSample& s) { return s.contacts[k].arc; }, mm);
     columns.add(name + "normal_N", [k](const MotionSample& s) { return s.contacts[k].normal_force; });
     columns.add_vector(name + "f", "_N", [k](const MotionSample& s) { return s.contacts[k].force; });
   }
@@ -171,13 +188,14 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
       const multibody::ElasticJoint& joint = arm.joints[at(j)];
       const std::string name = joint_name(motion, a, j);
       const bool slides = arm.tree.body(joint.body).joint == multibody::JointKind::prismatic;
-      const double unit = slides ? base::mm : degree;
+      const double unit = slides ? mm : degree;
       const char* angle = slides ? "mm" : "deg";
-      columns.add(fmt::format("{} motor_{}", name, angle),
-                  [a, j, unit](const MotionSample& s) { return s.arms[a].state.motor[j] / unit; });
-      columns.add(fmt::format("{} deflection_{}", name, angle), [&arm, a, j, unit](const MotionSample& s) {
-        return multibody::deflection(arm, s.arms[a].state, j) / unit;
-      });
+      columns.add(
+          fmt::format("{} motor_{}", name, angle), [a, j](const MotionSample& s) { return s.arms[a].state.motor[j]; },
+          unit);
+      columns.add(
+          fmt::format("{} deflection_{}", name, angle),
+          [&arm, a, j](const MotionSample& s) { return multibody::deflection(arm, s.arms[a].state, j); }, unit);
       columns.add(fmt::format("{} torque_{}", name, slides ? "N" : "Nm"),
                   [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; });
     }
@@ -188,10 +206,10 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
   }
   for (std::size_t b = 0; b < motion.bushings.size(); ++b) {
     const std::string name = motion.bushings[b].name + " ";
-    columns.add_vector(name + "d", "_mm",
-                       [b](const MotionSample& s) { return Vector3d(mm_per_m * s.bushings[b].shift); });
-    columns.add_vector(name + "turn_", "_deg",
-                       [b](const MotionSample& s) { return Vector3d(s.bushings[b].turn / degree); });
+    columns.add_vector(
+        name + "d", "_mm", [b](const MotionSample& s) { return s.bushings[b].shift; }, mm);
+    columns.add_vector(
+        name + "turn_", "_deg", [b](const MotionSample& s) { return s.bushings[b].turn; }, degree);
     columns.add_vector(name + "f", "_N", [b](const MotionSample& s) { return s.bushings[b].on_second.force; });
     columns.add_vector(name + "m", "_Nm", [b](const MotionSample& s) { return s.bushings[b].on_second.moment; });
   }
@@ -212,8 +230,10 @@ Columns<ArmSample> columns_of(const multibody::ElasticArm& arm) {
   Columns<ArmSample> columns;
   for (int j = 0; j < arm.motors(); ++j) {
     const std::string& name = arm.joints[at(j)].name;
-    columns.add(name + "_motor_deg", [j](const ArmSample& s) { return s.state.motor[j] / degree; });
-    columns.add(name + "_deflection_deg", [j](const ArmSample& s) { return s.deflection[j] / degree; });
+    columns.add(
+        name + "_motor_deg", [j](const ArmSample& s) { return s.state.motor[j]; }, degree);
+    columns.add(
+        name + "_deflection_deg", [j](const ArmSample& s) { return s.deflection[j]; }, degree);
     columns.add(name + "_joint_torque_Nm", [j](const ArmSample& s) { return s.joint_torque[j]; });
     columns.add(name + "_drive_torque_Nm", [j](const ArmSample& s) { return s.drive_torque[j]; });
   }
@@ -252,6 +272,12 @@ void give(TableSink& sink, const Columns<Sample>& columns, const std::vector<Run
   }
 }
 
+/// A reading, in the unit of its column: one without noise has no tail of the conversion either.
+double as_read(const scenario::Sensor& sensor, double reading) {
+  const double unit = sensor.unit();
+  return unit == 1.0 || sensor.noise > 0.0 ? reading : base::without_tail(reading, unit);
+}
+
 }  // namespace
 
 void give_history(TableSink& sink, const scenario::WireMotions& motions, const std::vector<FinishedMotion>& finished) {
@@ -272,7 +298,7 @@ void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
     readings.push_back(scenario::read_off(sensor, motions.runs.front().motion, samples));
     for (std::size_t i = 0; i < readings.back().times.size(); ++i) {
       // Rates that divide the output's give the same time from either, but for round-off.
-      const double time = std::round(readings.back().times[i] * 1e9) * 1e-9;
+      const double time = std::round(readings.back().times[i] * 1e9) / 1e9;
       lines[time].emplace_back(readings.size() - 1, i);
     }
   }
@@ -285,7 +311,7 @@ void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
         if (found == read.end())
           row.emplace_back(std::monostate{});
         else
-          row.emplace_back(component[found->second]);
+          row.emplace_back(as_read(motions.sensors[k], component[found->second]));
       }
     }
     sink.row(row);

@@ -21,10 +21,13 @@ void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
 
 // The same tables, written into files.
 
+/// The same tables in files that appear when they are whole; std::system_error where that fails.
 void write_history(const std::filesystem::path& file, const scenario::WireMotions& motions,
                    const std::vector<FinishedMotion>& finished);
+/// Of an arm alone.
 void write_history(const std::filesystem::path& file, const multibody::ElasticArm& arm,
                    const multibody::ArmHistory& history);
+/// Of the sensors.
 void write_telemetry(const std::filesystem::path& file, const scenario::WireMotions& motions,
                      const std::vector<coupling::MotionSample>& samples);
 

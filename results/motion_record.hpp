@@ -49,7 +49,7 @@ struct Touches {
 /// Most points of a contact that were closed at a sample.
 [[nodiscard]] std::size_t most_points(const FinishedMotion& run, std::size_t contact);
 
-/// Simulated over wall time; 0 where no time has passed.
+/// Simulated over wall time [-]; 0 where no time has passed.
 [[nodiscard]] double real_time_factor(const coupling::MotionResult& result);
 
 /// Deflection of a joint of the motion's first arm [rad].

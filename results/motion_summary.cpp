@@ -2,7 +2,6 @@
 #include "results/in_mm.hpp"
 
 #include "base/index.hpp"
-#include "base/units.hpp"
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
 
@@ -17,7 +16,6 @@ using nlohmann::json;
 namespace {
 
 using base::at;
-using base::degree;
 using coupling::MotionEvent;
 using coupling::MotionResult;
 using coupling::MotionSample;
@@ -25,6 +23,10 @@ using multibody::RigidBodyState;
 
 json vector_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
+}
+
+json vector_in_mm(const Eigen::Vector3d& v) {
+  return {in_mm(v.x()), in_mm(v.y()), in_mm(v.z())};
 }
 
 json time_json(const std::optional<double>& time) {
@@ -128,7 +130,7 @@ json largest_deflections(const FinishedMotion& run) {
     double largest = 0.0;
     for (const MotionSample& s : run.samples)
       largest = std::max(largest, std::abs(joint_deflection(run.asked.motion, s, j)));
-    deflections[arm.joints[at(j)].name] = largest / degree;
+    deflections[arm.joints[at(j)].name] = in_degrees(largest);
   }
   return deflections;
 }
@@ -216,7 +218,7 @@ json lists_json(const FinishedMotion& run) {
     const RigidBodyState& after = run.samples.back().bodies[k];
     json body = velocities_json(run.samples.front().bodies[k], after);
     body["body"] = motion.bodies[k].name;
-    body["position_after_mm"] = vector_json(1e3 * after.position);
+    body["position_after_mm"] = vector_in_mm(after.position);
     summary["bodies"].push_back(body);
   }
   const std::vector<std::string> contacts = motion.contact_names();
@@ -300,7 +302,7 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   outcome["enclosed"] = capture.enclosed;
   outcome["caught_since_s"] = time_json(capture.caught_since);
   outcome["shaft_speed_m_s"] = capture.speed;
-  outcome["shaft_place_mm"] = vector_json(1e3 * capture.place);
+  outcome["shaft_place_mm"] = vector_in_mm(capture.place);
   return outcome;
 }
 
@@ -335,7 +337,7 @@ json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& mot
   }
   for (const scenario::Swing& s : record.swings) {
     summary["swings"].push_back(
-        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", s.peak / degree}, {"frequency_Hz", s.frequency()}});
+        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", in_degrees(s.peak)}, {"frequency_Hz", s.frequency()}});
   }
   return summary;
 }

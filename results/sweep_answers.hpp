@@ -27,7 +27,7 @@ struct FieldAnswer {
   std::optional<study::SobolIndices> indices;
 
   static constexpr std::uint64_t sample_limit = 100000;
-  /// Of the sample, 0 < p < 1.
+  /// Of the sample, in the field's unit; 0 < p < 1.
   [[nodiscard]] double quantile(double p) const;
 };
 
@@ -83,10 +83,10 @@ struct SweepAnswers {
   std::optional<SubsetAnswer> subset;
 };
 
-/// Numbers of the variables of a case as they stand in tables: levels that are texts have none.
+/// Number of a variable in a case, in the unit of its key, as it stands in tables: levels that are texts have none.
 [[nodiscard]] std::optional<double> shown_number(const study::Variable& variable, double value);
 
-/// Values of a case: of the design, or of its record.
+/// Values of a case, in the units of their keys: of the design, or of its record.
 [[nodiscard]] std::vector<double> values_of_case(const SweepStudy& study, std::uint64_t index,
                                                  const study::CaseRecord& record);
 

@@ -29,18 +29,18 @@ class SweepStudy {
   /// One line, equal where the sweep file, its case, the files that they name and the version are.
   [[nodiscard]] const std::string& identity() const noexcept { return identity_; }
 
-  /// What a case changes in the file, its values given.
+  /// What a case changes in the file, its values given in the units of their keys (the index of a level where there are levels).
   [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<double>& values) const {
     return study::overrides_of(sweep_, values);
   }
 
-  /// Runs one case; never throws. stop: asked often.
+  /// Runs one case, values as above in the units of their keys; never throws. stop: asked often.
   [[nodiscard]] study::CaseRecord run(const std::vector<double>& values, const std::function<bool()>& stop) const;
 
-  /// The command that runs a case by itself.
+  /// The command that runs a case by itself, values in the units of their keys.
   [[nodiscard]] std::string command_of(const std::vector<double>& values) const;
 
-  /// Of a subset simulation: how far a case's field is beyond the bound.
+  /// Of a subset simulation: how far a case's field is beyond the bound, in the field's unit; nothing where the case has no result.
   [[nodiscard]] std::optional<double> margin_of(const study::CaseRecord& record) const;
   [[nodiscard]] study::SubsetSimulation::Settings subset_settings() const;
 

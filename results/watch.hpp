@@ -10,6 +10,7 @@ struct Watch {
   std::function<void(const std::string& stage)> progress;  ///< what is under way, for a person
   std::function<bool()> stop;                              ///< true: the work ends at the next point where it can
 
+  /// Tells a stage where somebody listens.
   void say(const std::string& stage) const {
     if (progress) progress(stage);
   }

@@ -16,7 +16,7 @@ namespace snare::scenario {
 [[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description,
                                                 const Eigen::VectorXd& angles, int joint, double step, double end);
 
-/// The same with the motor driven by its servo to the new angle, as a command would.
+/// The same with the motor driven by its servo to the new angle, as a command would. angles and step [rad], end [s].
 [[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
                                                     const Eigen::VectorXd& angles, int joint, double step, double end);
 
@@ -27,7 +27,7 @@ namespace snare::scenario {
                                                  const Eigen::Vector3d& impulse, double duration, double end);
 
 /// The joints go from one pose to another under their servos; a free base answers.
-/// Throws std::invalid_argument when a joint has no servo.
+/// angles from and to [rad]; duration and end [s]. Throws std::invalid_argument when a joint has no servo.
 [[nodiscard]] multibody::ArmScenario joint_motion(const multibody::ArmDescription& description,
                                                   const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                                                   double duration, double end);

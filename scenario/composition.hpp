@@ -25,7 +25,7 @@ struct MotorJoint {
 /// The wires of a snare, and how its ring turns about z.
 struct SnareWires {
   std::vector<int> wires;
-  double sense = 1.0;
+  double sense = 1.0;  ///< +1: to the left about its z, -1: to the right [-]
 };
 
 /// A shape of the list, for contacts of bodies.
@@ -61,9 +61,10 @@ struct Composition {
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key) const;
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key, const std::string& name) const;
   [[nodiscard]] int wire(const base::TomlTable& table, std::string_view key) const;
-  /// A body on which a shape or a weld may sit where a frame is: that of the frame, a light one welded to an arm's, or one at rest.
+  /// A body on which a shape or a weld may sit where a frame is: that of the frame, a light one of this mass [kg] welded to an arm's, or one at
+  /// rest.
   int body_on(const PlacedFrame& frame, const std::string& name, double mass);
-  /// Adds a shape on its frame, in contact with the declared wires of these indices, but for those that laws stand for.
+  /// Adds a shape on its frame, in contact with the declared wires of these indices, but for those that laws stand for. mass [kg]: as of body_on.
   void add_shape(const std::string& name, const coupling::MotionContact& shape, const PlacedFrame& frame, double mass,
                  const std::vector<int>& on);
 };

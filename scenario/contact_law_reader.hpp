@@ -10,7 +10,7 @@ namespace snare::scenario {
 /// The laws of penetration that files name by `model`, with their numbers beside it: docs/scenario_file.md.
 enum class LawModel { spring_dashpot, power, step_damped, quadratic, stretched_wire, stretched_wire_linear };
 
-/// The law; empty where a number is wrong, which is reported.
+/// The law, force [N] of penetration [m] and rate [m/s]; empty where a number is wrong, which is reported.
 [[nodiscard]] coupling::ContactLaw read_contact_law(const base::TomlTable& table, LawModel model);
 
 /// Of Honda's stretched wire: stiffness of one half, half its length, half the distance of its ends.

@@ -35,7 +35,7 @@ struct DistilledLaw {
   double nominal_slack = 0.0;                             ///< length less span [m]
   std::vector<SimpleLaw> simple;
 
-  /// Whether the range of the table has this place; slack counts as met to 1e-9 of the span.
+  /// Whether the range of the table has travel d, position s and slack e [m]; slack counts as met to 1e-9 of the span.
   [[nodiscard]] bool in_range(double d, double s, double e) const noexcept;
   /// Force [N] at travel d, position s and slack e [m] of `table`, one of the two above; no contact (d < 0): 0. The same number
   /// as ForceTable::at gives, in half the time. Throws std::domain_error as that does, and for a number that is not finite.

@@ -20,16 +20,16 @@ inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts
 inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
 inline constexpr double farthest_mm = 1e5;                ///< of anything from anything [mm]
 
-/// Three numbers under a key; nothing when they are wrong.
+/// Three numbers under a key; nothing when they are wrong. Range in the file's unit, of which one is `unit` SI units; result in SI.
 [[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const base::TomlTable& table, std::string_view key,
                                                          base::Range range, double unit);
-/// The same, zero where the key is missing.
+/// The same, zero where the key is missing. In SI likewise.
 [[nodiscard]] Eigen::Vector3d read_vector_or_zero(const base::TomlTable& table, std::string_view key, base::Range range,
                                                   double unit);
 
-/// Rotation R by an axis times an angle in degrees under a key; the identity where it is missing.
+/// Rotation matrix R by an axis times an angle in degrees under a key; the identity where it is missing.
 [[nodiscard]] Eigen::Matrix3d read_rotation_vector(const base::TomlTable& table, std::string_view key);
-/// R = Rz(yaw) Ry(pitch) Rx(roll) of roll, pitch, yaw in degrees under a key, as in URDF; the identity where it is missing.
+/// R = Rz(yaw) Ry(pitch) Rx(roll) [-] of roll, pitch, yaw in degrees under a key, as in URDF; the identity where it is missing.
 [[nodiscard]] Eigen::Matrix3d read_roll_pitch_yaw(const base::TomlTable& table, std::string_view key);
 
 /// `mass_kg` and `inertia_kg_m2`, about the principal axes.
@@ -38,7 +38,7 @@ inline constexpr double farthest_mm = 1e5;                ///< of anything from 
 /// Finishes a document that has not given the file it must name under a key: throws InputError.
 [[noreturn]] void finish_without(base::TomlDocument& document, std::string_view key);
 
-/// Reports an interval of output that gives too many lines.
+/// Reports an interval of output [s] that gives too many lines in a duration [s].
 void check_output_interval(const base::TomlTable& root, double duration, double interval);
 
 /// What `[output]` says beside the interval.
@@ -65,7 +65,7 @@ void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& o
 /// `formulation` of a wire: how its bending is discretised.
 [[nodiscard]] wire::Formulation read_formulation(const base::TomlTable& table);
 
-/// Law, coefficients, speeds and bristle of the friction. dynamic: the coefficient of fast sliding; dynamic_key: its key in the file.
+/// Law, coefficients [-], speeds and bristle of the friction. dynamic: the coefficient of fast sliding; dynamic_key: its key in the file.
 [[nodiscard]] coupling::MotionFriction read_friction(const base::TomlTable& table, double dynamic,
                                                      std::string_view dynamic_key);
 

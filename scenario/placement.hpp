@@ -43,6 +43,7 @@ class Placement {
   /// What brings frames of this name, or of names that begin with it and "::", has failed: they are not reported as missing.
   void excuse(const std::string& own) { excused_.push_back(own); }
 
+  /// Whether `excuse` was told of what brings this name.
   [[nodiscard]] bool is_excused(const std::string& name) const;
 
   /// The frame under a key of a table, "world" where it is missing: all must be resolved. Nothing after a problem.

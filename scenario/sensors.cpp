@@ -120,6 +120,10 @@ int Sensor::components() const {
   return kind <= Kind::rate ? 3 : 1;
 }
 
+double Sensor::unit() const {
+  return unit_of(*this).size;
+}
+
 std::vector<std::string> Sensor::columns() const {
   const Unit unit = unit_of(*this);
   if (components() == 1) return {fmt::format("{}_{}", name, unit.suffix)};

@@ -36,7 +36,10 @@ struct Sensor {
   double noise = 0.0;     ///< standard deviation of a reading, in the unit of its column
   unsigned seed = 1;
 
+  /// Numbers a reading has, and columns: three of a vector, else one.
   [[nodiscard]] int components() const;
+  /// SI units in one unit of its columns, 1e-3 for mm.
+  [[nodiscard]] double unit() const;
   /// Names of its columns, with units.
   [[nodiscard]] std::vector<std::string> columns() const;
 };

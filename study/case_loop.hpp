@@ -51,6 +51,7 @@ enum class Idle { leave, wait };
 /// Runs cases on threads of this machine until nothing is left to take. A case that ran while everything ended is not reported.
 void run_cases(Dispatcher& dispatcher, int threads, const RunCase& run, Idle idle = Idle::leave);
 
+/// What a case gave, and how long that took.
 struct TimedResult {
   std::string result;    ///< one line; empty: it was stopped before
   double seconds = 0.0;  ///< [s]

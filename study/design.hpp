@@ -21,6 +21,7 @@ struct Variable {
   Distribution distribution;
 };
 
+/// How the cases of a study are chosen.
 enum class DesignKind {
   grid,             ///< every combination of levels, the last variable fastest
   latin_hypercube,  ///< of n slices of equal probability every variable has one case in each
@@ -30,6 +31,7 @@ enum class DesignKind {
   subset        ///< the next cases depend on the last ones: no list beforehand
 };
 
+/// What a design depends on beside its variables; equal settings give equal cases.
 struct DesignSettings {
   DesignKind kind = DesignKind::grid;
   /// latin_hypercube, sobol: cases; sensitivity: n; subset: cases a level.
@@ -57,10 +59,10 @@ class Design {
   }  ///< what differs from case to case
   [[nodiscard]] const DesignSettings& settings() const noexcept { return settings_; }  ///< as they were given
 
-  /// What the variables are in a case < count(): a number, or the index of a level.
+  /// What the variables are in a case < count(): a number, in the unit of its keys, or the index of a level.
   [[nodiscard]] std::vector<double> values(std::uint64_t index) const;
 
-  /// Of normal scores, independent and standard: what a case with them would be.
+  /// Of normal scores [-], independent and standard: what a case with them would be.
   [[nodiscard]] std::vector<double> values_of_scores(const std::vector<double>& scores) const;
 
  private:
@@ -75,7 +77,7 @@ class Design {
   std::unique_ptr<Sequence> sequence_;
 };
 
-/// A value of a variable as a TOML literal: the level, or the number with the fewest digits that read back to it.
+/// A value of a variable, in the unit of its keys, as a TOML literal: the level, or the number with the fewest digits that read back to it.
 [[nodiscard]] std::string literal(const Variable& variable, double value);
 
 /// Whether a matrix is a correlation: symmetric, 1 on the diagonal, positive definite.

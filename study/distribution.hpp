@@ -9,6 +9,7 @@ namespace snare::study {
 ///   normal       a: mean, b > 0: standard deviation
 ///   lognormal    a: mean, b > 0: standard deviation of the logarithm
 ///   triangular   a, b: ends, c: mode, a <= c <= b, a < b
+/// Numbers are in the unit of the key, those of a logarithm without one [-].
 struct Distribution {
   enum class Shape { uniform, normal, lognormal, triangular };
 
@@ -20,16 +21,16 @@ struct Distribution {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// P(X <= x).
+/// P(X <= x) [-], x in the unit of the distribution.
 [[nodiscard]] double probability_below(const Distribution& d, double x);
 
-/// The x with P(X <= x) = p, 0 < p < 1; inside [lower, upper].
+/// The x, in the unit of the distribution, with P(X <= x) = p, 0 < p < 1; inside [lower, upper].
 [[nodiscard]] double quantile(const Distribution& d, double p);
 
 /// Whether what is inside [lower, upper] can be drawn: it has a probability above 1e-9.
 [[nodiscard]] bool drawable(const Distribution& d);
 
-/// Distribution function of the standard normal, and its inverse for 0 < p < 1.
+/// Distribution function of the standard normal [-], and its inverse for 0 < p < 1.
 [[nodiscard]] double normal_probability(double z);
 [[nodiscard]] double normal_quantile(double p);
 

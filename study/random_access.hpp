@@ -4,7 +4,7 @@
 
 namespace snare::study {
 
-/// A number in (0, 1) that depends on nothing but its arguments: row 137 of a design is known without the 136 before it.
+/// A number in (0, 1) [-] that depends on nothing but its arguments: row 137 of a design is known without the 136 before it.
 /// 53 bits of SplitMix64 (Steele, Lea, Flood 2014) of the three, never 0 or 1.
 [[nodiscard]] double hashed_uniform(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) noexcept;
 

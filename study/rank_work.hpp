@@ -29,7 +29,7 @@ class RankLeader {
   RankLeader(const RankLeader&) = delete;
   RankLeader& operator=(const RankLeader&) = delete;
 
-  /// Until everything is done or has ended. values: of a case, sent with it; may be empty. given_up: as of Dispatcher.
+  /// Until everything is done or has ended. values: of a case, in the units of their keys, sent with it; may be empty. given_up: as of Dispatcher.
   /// Throws what the dispatcher was ended with; base::InputError when a rank has read other files.
   void run(Dispatcher& dispatcher, const RunWithValues& run,
            const std::function<std::vector<double>(std::uint64_t)>& values,

@@ -28,10 +28,10 @@ class SubsetSimulation {
 
   explicit SubsetSimulation(const Settings& settings);
 
-  /// Standard normal scores of the next cases, which may run at a time; none: it is finished.
+  /// Standard normal scores [-] of the next cases, which may run at a time; none: it is finished.
   [[nodiscard]] const std::vector<std::vector<double>>& next() const noexcept { return asked_; }
-  /// Margins of the cases that next() has given: >= 0 where the event happens; nothing where the case has no result, which counts
-  /// as far from the event.
+  /// Margins of the cases that next() has given, in the field's unit: >= 0 where the event happens; nothing where the case has no result, which
+  /// counts as far from the event.
   void tell(const std::vector<std::optional<double>>& margins);
 
   /// Cases that were told before those of next().

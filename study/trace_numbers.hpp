@@ -15,7 +15,7 @@ struct TraceNumbers {
   std::vector<double> errors;   ///< standard deviations, > 0
   Eigen::MatrixXd correlation;  ///< of all of them; no rows where the trace does not say
 
-  /// 0 where the trace does not say. Expects known keys.
+  /// Correlation coefficient of two numbers [-]; 0 where the trace does not say. Expects known keys.
   [[nodiscard]] double correlation_of(const std::string& one, const std::string& other) const;
 };
 

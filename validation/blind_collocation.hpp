@@ -43,6 +43,7 @@ struct Unknowns {
 /// (which keeps boundary layers stable), the globals by their Schur complement.
 class Collocation {
  public:
+  /// The mesh for a wire that is touched at about this unstressed coordinate [m].
   Collocation(const BlindWire& wire, double contact);
 
   [[nodiscard]] std::size_t nodes() const { return left_ + right_ + 1; }  ///< of the whole wire

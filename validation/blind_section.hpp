@@ -37,7 +37,7 @@ class Section {
   /// Curvature from the moment. rate: tau over the time step [-]; guess: a curvature nearby [1/m].
   [[nodiscard]] Response bend(double M, double S, double rate, double guess) const;
 
-  /// Axial strain from the tension.
+  /// Axial strain [-] from the tension N [N] at S [m]; rate as above.
   [[nodiscard]] Response stretch(double N, double S, double rate) const;
 
   /// Material points [m].
@@ -50,7 +50,7 @@ class Section {
  private:
   struct Place {
     std::size_t j;
-    double part;
+    double part;  ///< of the way to the next one [-]
   };
   [[nodiscard]] Place find(double S) const;
   [[nodiscard]] std::array<double, 2> at(const std::vector<double>& field, Place p) const;

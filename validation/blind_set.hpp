@@ -29,8 +29,9 @@ struct BlindSet {
 [[nodiscard]] std::vector<std::string> effects_in(const std::string& name);
 
 /// Three positions, two slacks, load and unload at two speeds, normal noise; EI and EA of the wire off the
-/// declared ones by about 10 %. effect: one, or several joined by "+", each alone of that size. The same seed gives the same wire for every effect and size. size: wanted, >
-/// 0; effects with a largest size (a slipping mount) stay below it where they must. "none" ignores it.
+/// declared ones by about 10 %. effect: one, or several joined by "+", each alone of that size. The same seed gives the same wire for
+/// every effect and size. size: wanted, > 0, in standard deviations of the noise (see BlindSet); effects with a largest size (a slipping
+/// mount) stay below it where they must. "none" ignores it.
 [[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed);
 
 }  // namespace snare::validation

@@ -32,7 +32,7 @@ enum class ColumnEnds { clamped_free, pinned_pinned, clamped_pinned, clamped_cla
 /// Second buckling load of a clamped-clamped column, antisymmetric: 4 x^2 EI/l^2 [N] with tan x = x, 80.7629.
 [[nodiscard]] double second_clamped_buckling_load(double bending_stiffness, double length);
 
-/// Smallest positive root of tan x = x, 4.493409.
+/// Smallest positive root of tan x = x, 4.493409 [rad].
 [[nodiscard]] double first_root_of_tan_x_equals_x();
 
 /// Ratio of the tensions of a flexible line slipping over a fixed pin: exp(mu phi) [-].

@@ -34,7 +34,7 @@ struct CantileverTip {
 /// bending_stiffness: EI [N m^2], > 0; length: L [m], > 0; force: F [N], with alpha in [1e-3, 1e3].
 [[nodiscard]] CantileverTip cantilever_tip(double bending_stiffness, double length, double force);
 
-/// Cantilever under a moment at the tip: a circular arc of angle M L/EI. Same fields.
+/// Cantilever under a moment at the tip: a circular arc of angle M L/EI. Same fields. moment: M [N m].
 [[nodiscard]] CantileverTip cantilever_under_moment(double bending_stiffness, double length, double moment);
 
 }  // namespace snare::validation

@@ -28,16 +28,17 @@ struct ElasticaSection {
 
 /// Internal force n = (x, y): what the part at larger S exerts on the part at smaller S.
 struct ElasticaForce {
-  double x = 0.0;
-  double y = 0.0;
+  double x = 0.0;  ///< along the chord [-]
+  double y = 0.0;  ///< towards the bulge [-]
 };
 
 /// Axial force and shear force of a section.
 struct SectionForces {
-  double tension = 0.0;
-  double shear = 0.0;
+  double tension = 0.0;  ///< N [-]
+  double shear = 0.0;    ///< V [-]
 };
 
+/// A force's parts along and across the tangent at this angle [rad].
 [[nodiscard]] SectionForces section_forces(ElasticaForce force, double angle);
 
 /// Derivative of the section with respect to S: the right-hand side of the equations above.

@@ -10,17 +10,20 @@ struct ElasticaWire {
   double natural_curvature = 0.0;  ///< uniform, positive turns the tangent counter-clockwise [1/m]
 };
 
+/// How both mounts hold the wire.
 enum class ElasticaEnds {
   clamped,  ///< position held, tangent along the chord
   pinned    ///< position held, no moment
 };
 
+/// What the pusher does to the wire where it touches.
 enum class ElasticaContact {
   sliding,        ///< force on the wire's normal, or inclined to it by atan(friction_slope)
   sticking,       ///< the material point of the first touch stays at the pusher's tip; radius 0 only
   material_point  ///< a force along y at a given material point, which is free along the chord
 };
 
+/// From which side the pusher comes.
 enum class ElasticaSide {
   with_bulge,    ///< pusher below the wire, moves towards +y
   against_bulge  ///< pusher above the wire, moves towards -y

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 // The last equation, which picks one state of the path.
 enum class Control { no_force, height, arc_length };
 
+/// What the last equation asks for. All dimensionless.
 struct Demand {
   Control control = Control::no_force;
   double height = 0.0;  // of the pusher, over L
@@ -24,12 +25,13 @@ struct Demand {
   double step = 0.0;
 };
 
+/// The equations at one z, and their derivatives by z; as many as unknowns. All dimensionless.
 struct System {
   VectorXd residual;
   MatrixXd jacobian;
 };
 
-// Unknowns z: the sections at the start of every piece (left side, then right side), n on the left, n on
+// Unknowns z, dimensionless: the sections at the start of every piece (left side, then right side), n on the left, n on
 // the right, unstressed arc length of the contact (point: one; wrapped: both lift-off points), height of
 // the pusher. Lengths in units of L, forces in EI/L^2.
 class Shooting {
@@ -49,16 +51,24 @@ class Shooting {
     law_.natural_curvature = w.natural_curvature * w.length;
   }
 
+  /// Number of unknowns and of equations; `wrapped`: the wire lies on the pusher over an arc.
   [[nodiscard]] Index size(bool wrapped) const { return 8 * pieces_ + (wrapped ? 7 : 6); }
+  /// First of the two unknowns of n on the left, and of those on the right.
   [[nodiscard]] Index left_force() const { return 8 * pieces_; }
   [[nodiscard]] Index right_force() const { return 8 * pieces_ + 2; }
+  /// Unknown of the unstressed arc length at the contact, or at its two ends where it is wrapped.
   [[nodiscard]] Index begin() const { return 8 * pieces_ + 4; }
   [[nodiscard]] Index end(bool wrapped) const { return 8 * pieces_ + (wrapped ? 5 : 4); }
+  /// Unknown of the pusher's height.
   [[nodiscard]] Index height(bool wrapped) const { return 8 * pieces_ + (wrapped ? 6 : 5); }
+  /// Pieces on either side of the contact.
   [[nodiscard]] int pieces() const { return pieces_; }
+  /// +1: the pusher comes with the bulge, -1: against it.
   [[nodiscard]] double sigma() const { return sigma_; }
+  /// Compliance and natural curvature, over L.
   [[nodiscard]] const ElasticaLaw& law() const { return law_; }
 
+  /// The section at the start of a piece, as z has it; and the force of which the first component is unknown `at`.
   [[nodiscard]] static ElasticaSection section(const VectorXd& z, Index piece) {
     return {z[4 * piece], z[4 * piece + 1], z[4 * piece + 2], z[4 * piece + 3]};
   }
@@ -71,9 +81,13 @@ class Shooting {
     return -sigma_ * radius_ * (law_.natural_curvature + p.moment) / (1.0 + law_.compliance * tension);
   }
 
+  /// Equations and their derivatives at z.
   [[nodiscard]] System assemble(const VectorXd& z, bool wrapped, const Demand& demand) const;
+  /// Newton's method from z, halved on the residual; z is the solution when the report is usable.
   [[nodiscard]] numerics::SolveReport solve(VectorXd& z, bool wrapped, const Demand& demand) const;
+  /// Sign of the Jacobian's determinant under control of the height (over L): it changes where a fold is passed.
   [[nodiscard]] bool determinant_positive(const VectorXd& z, bool wrapped, double height) const;
+  /// The unloaded wire at its touch: z becomes the buckled, or the straight, shape without a force.
   [[nodiscard]] numerics::SolveReport start(VectorXd& z);
 
  private:

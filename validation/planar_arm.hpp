@@ -8,7 +8,7 @@ namespace snare::validation {
 
 /// A uniform link of the plane.
 struct PlanarLink {
-  double mass = 10.0;
+  double mass = 10.0;    ///< [kg]
   double length = 1.0;   ///< to the next joint [m]
   double centre = 0.5;   ///< of mass, from its joint [m]
   double inertia = 0.9;  ///< about the centre of mass [kg m^2]
@@ -20,19 +20,19 @@ struct PlanarLink {
 [[nodiscard]] Eigen::Vector2d planar_bias(const PlanarLink& first, const PlanarLink& second, double q2,
                                           const Eigen::Vector2d& rate);
 
-/// The same two links as an elastic arm about z, both joints with the same motor inertia and spring.
+/// The same two links as an elastic arm about z, both joints with the same motor inertia [kg m^2] and spring.
 [[nodiscard]] multibody::ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second, double motor_inertia,
                                                const multibody::DeflectionLaw& law);
 
-/// One link with the given moment of inertia about its joint.
+/// One link with the given moment of inertia about its joint [kg m^2].
 [[nodiscard]] multibody::ElasticArm one_joint_arm(double link_inertia, double motor_inertia,
                                                   const multibody::DeflectionLaw& law);
 
-/// `arm` at rest in its zero pose, all drives alike, both tolerances the same.
+/// `arm` at rest in its zero pose, all drives alike, both tolerances the same [-]. end [s].
 [[nodiscard]] multibody::ArmScenario at_rest(const multibody::ElasticArm& arm, const multibody::Drive& drive,
                                              double end, double tolerance);
 
-/// Table 2 of Abiko et al. with the constants as printed; damping times a factor.
+/// Table 2 of Abiko et al. with the constants as printed; damping times a factor [-]. jump_width [rad].
 [[nodiscard]] multibody::DeflectionLaw table2_law(double damping_factor, multibody::StiffnessReading reading,
                                                   double jump_width = 0.0);
 
@@ -52,7 +52,7 @@ struct PlainRun {
 /// An inertia [kg m^2] let go at `start` [deg] on Table 2, by Runge and Kutta with 2e-5 s.
 [[nodiscard]] PlainRun swing_on_table2(double inertia, double start, double end, bool literal);
 
-/// Integral by Gauss and Legendre's five points on each of n intervals.
+/// Integral by Gauss and Legendre's five points on each of n intervals; f and its argument of any unit.
 template <class Function>
 double integral(const Function& f, double from, double to, int n) {
   constexpr double node[] = {0.0, 0.5384693101056831, 0.9061798459386640};

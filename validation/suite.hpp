@@ -19,9 +19,9 @@ struct Row {
   std::string unit;    ///< of reference and value; empty for a pure number
   std::string source;  ///< of the reference
   double reference = 0.0;
-  double value = 0.0;
+  double value = 0.0;  ///< in the unit
   ErrorKind kind = ErrorKind::relative;
-  double limit = 0.0;  ///< of the error, > 0
+  double limit = 0.0;  ///< of the error, > 0, in the unit or, of a relative error, [-]
 
   /// |value - reference|, over |reference| for a relative error. A value that is not finite is out of every limit.
   [[nodiscard]] double error() const;

@@ -22,7 +22,7 @@ struct CellRows {
 using CellVector = Eigen::Matrix<double, CellRows::count, 1>;
 using CellMatrix = Eigen::Matrix<double, CellRows::count, CellRows::count>;
 
-/// Derivatives by the cell's unknowns from those by its edges and angles.
+/// Derivatives by the cell's unknowns [m, rad] from those by its edges and angles.
 [[nodiscard]] CellVector to_cell(const PairGradient& g);
 [[nodiscard]] CellMatrix to_cell(const PairHessian& h);
 
@@ -35,7 +35,7 @@ struct BendingCell {
   /// Of the cell's unknowns, relative to a mount that spins: e' - w x e of the edge beside it, theta' - w.t
   /// of its angle.                                                                           theory.md (M.17)
   CellVector rate = CellVector::Zero();
-  /// Change of `rate` with the cell's places at given velocities; zero but beside a mount that spins.
+  /// Change of `rate` with the cell's places at given velocities [1/s]; zero but beside a mount that spins.
   [[nodiscard]] CellMatrix rate_by_place() const;
 
   /// Whether vertex i bends: not at an end without a clamp.
@@ -44,7 +44,7 @@ struct BendingCell {
 
   /// kappa_j, j = 0 or 1.
   [[nodiscard]] WeightedCurvature curvature(int j) const { return curvature(Eigen::Vector2d::Unit(j)); }
-  /// sum_j weights_j kappa_j.
+  /// sum_j weights_j kappa_j, weights of any unit.
   [[nodiscard]] WeightedCurvature curvature(const Eigen::Vector2d& weights) const {
     return {turn, before, after, weights};
   }

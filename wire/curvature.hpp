@@ -18,21 +18,23 @@ struct Turn {
   double chi = 2.0;
 };
 
+/// How the unit tangents before and after turn into each other. Not for tangents that are opposite: chi = 0.
 [[nodiscard]] Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after);
 
-/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) and their twist angles.
+/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) [m] and their twist angles [rad]: each in the unit of the
+/// scalar over that.
 struct PairGradient {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double theta_a = 0.0;
   double theta_b = 0.0;
 
-  /// By one edge and its angle.
+  /// By one edge and its angle, in the same units.
   [[nodiscard]] Eigen::Vector4d of_before() const { return {a.x(), a.y(), a.z(), theta_a}; }
   [[nodiscard]] Eigen::Vector4d of_after() const { return {b.x(), b.y(), b.z(), theta_b}; }
 };
 
-/// Second derivatives of a scalar of a vertex; `ab` has rows of a and columns of b.
+/// Second derivatives of a scalar of a vertex, in their units likewise; `ab` has rows of a and columns of b.
 struct PairHessian {
   Eigen::Matrix3d aa = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d ab = Eigen::Matrix3d::Zero();
@@ -45,7 +47,7 @@ struct PairHessian {
   double theta_ab = 0.0;
   double theta_bb = 0.0;
 
-  /// By one edge and its angle.
+  /// By one edge and its angle, in the same units.
   [[nodiscard]] Eigen::Matrix4d of_before() const {
     return (Eigen::Matrix4d() << aa, a_theta_a, a_theta_a.transpose(), theta_aa).finished();
   }
@@ -61,7 +63,7 @@ struct InverseLengths {
   double b = 0.0;
 };
 
-/// Adds first * gradient of c.                                                              theory.md (W.23)
+/// Adds first * gradient of c; first: of any unit.                                        theory.md (W.23)
 ///   dc/da = (u - c t)/|a|,  dc/db = (t - c u)/|b|
 void add_cosine_gradient(const Turn& turn, const InverseLengths& inverse, double first, PairGradient& out);
 
@@ -87,6 +89,7 @@ struct Directors {
 /// Novelia and O'Reilly 2018, sec. 7.2, there for kappa_1 and kappa_2 one by one. The weights are constants.
 class WeightedCurvature {
  public:
+  /// weights: g_1, g_2, of any unit.
   WeightedCurvature(const Turn& turn, const Directors& before, const Directors& after, const Eigen::Vector2d& weights);
 
   /// kappa_w [-].

@@ -24,7 +24,7 @@ namespace snare::wire {
 /// k - n of a vertex that does not bend.
 void add_curved_edges(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at, RodAssembly& out,
                       Eigen::Matrix2Xd& by_curvature);
-/// The same of vertex i, which bends.
+/// The same of vertex i, which bends. by_curvature: [N m^2].
 void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at,
                        RodAssembly& out, Eigen::Matrix2Xd& by_curvature);
 /// Adds all second derivatives.

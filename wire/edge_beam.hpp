@@ -26,18 +26,20 @@ struct EdgeBeam {
   Eigen::Matrix<double, count, 1> gradient;
   Eigen::Matrix<double, count, count> hessian;
 };
+/// chord: l [m], > 0; near, far: k_a, k_b [1/m].
 [[nodiscard]] EdgeBeam edge_beam(const EdgeBeamConstants& constants, double chord, const Eigen::Vector2d& near,
                                  const Eigen::Vector2d& far);
 
 /// A flexibility of a beam under tension and its derivatives by z.
 struct Flexibility {
-  double value, first, second;
+  double value, first, second;  ///< C or D and its derivatives by z [-]
 };
 /// C of a beam whose ends turn alike, D of one whose ends turn against each other.             theory.md (W.32)
 /// For z < -4, a compression of 4/pi^2 of the load that buckles the edge itself, their parabolas at -4.
 struct Flexibilities {
   Flexibility alike, against;
 };
+/// z [-], as above.
 [[nodiscard]] Flexibilities flexibilities(double z);
 
 }  // namespace snare::wire

@@ -16,12 +16,14 @@ enum class Branch {
   nearest  ///< the one that Newton's method reaches from the start, stable or not
 };
 
+/// Which equilibrium is sought, and when the search ends.
 struct EquilibriumOptions {
   Branch branch = Branch::stable;
   int max_iterations = 200;
   double tolerance = 1e-10;  ///< of the largest force residual over the force scale of the rod [-]
 };
 
+/// How the search ended, and whether what it found is stable.
 struct EquilibriumReport : numerics::SolveReport {
   int negative_pivots = 0;   ///< of the tangent at the end: 0 means stable
   double pivot_ratio = 0.0;  ///< smallest over largest |pivot|: near 0 means a neutral direction

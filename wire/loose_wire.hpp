@@ -27,7 +27,7 @@ struct LooseWire {
 [[nodiscard]] SpatialState in_space(const SpatialRod& rod, const PlanarState& planar, double plane = 0.0);
 
 /// The loose wire in space, buckled in the given mode in the plane at angle `plane` about the chord. `planar`
-/// is the same wire in its plane. Weight and natural curvature then shape it further.
+/// is the same wire in its plane. Weight and natural curvature then shape it further. plane [rad].
 struct LooseSpatialWire {
   SpatialState state;
   EquilibriumReport report;

@@ -33,13 +33,14 @@ class MaterialMesh {
  public:
   /// left_edges, right_edges: number of edges on either side of the contact, >= 2.
   /// grading: 0 gives equal edges on each side; larger values draw vertices towards mounts and contact,
-  /// xi(u) = (1 + tanh(g (2u - 1)) / tanh g) / 2, in [0, 4].
+  /// xi(u) = (1 + tanh(g (2u - 1)) / tanh g) / 2, in [0, 4]. grading: g [-].
   MaterialMesh(int left_edges, int right_edges, double grading);
 
   /// The mesh whose vertices are every `factor`-th of these; for extrapolation. Both sides need a multiple of
   /// `factor` edges, at least twice as many.
   [[nodiscard]] MaterialMesh coarsened(int factor) const;
 
+  /// Edges between the mounts, vertices (one more), and the vertex that carries the contact.
   [[nodiscard]] int edges() const noexcept { return static_cast<int>(rest_share_.size()); }
   [[nodiscard]] int vertices() const noexcept { return edges() + 1; }
   [[nodiscard]] int contact_vertex() const noexcept { return left_edges_; }

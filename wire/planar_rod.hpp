@@ -79,8 +79,11 @@ class PlanarRod {
 
   PlanarRod(MaterialMesh mesh, const PlanarRodProperties& properties);
 
+  /// The mesh that the state's controls carry.
   [[nodiscard]] const MaterialMesh& mesh() const noexcept { return mesh_; }
+  /// The constants that it was made with.
   [[nodiscard]] const PlanarRodProperties& properties() const noexcept { return properties_; }
+  /// Number of unknowns q, held ones with them.
   [[nodiscard]] int unknowns() const noexcept { return block * mesh_.vertices(); }
 
   /// Energy [J] alone.
@@ -94,7 +97,7 @@ class PlanarRod {
   /// of the identity.
   void hold_mounts(RodAssembly& assembly) const;
 
-  /// Makes the entries of held unknowns zero.
+  /// Makes the entries of held unknowns zero; band: of any unit.
   void clear_held(Eigen::VectorXd& band) const;
 
   /// Turning moment M_i at the vertices [N m], positive for turning left; the end values belong to the mounts.
@@ -107,6 +110,7 @@ class PlanarRod {
   ///                                                                                         theory.md (W.14)
   [[nodiscard]] double rate_form(const PlanarState& state, const PlanarState& rate) const;
 
+  /// Whether it has sliders, so that forces depend on the path.
   [[nodiscard]] bool has_memory() const noexcept {
     return !properties_.bending_sliders.empty() || !properties_.axial_sliders.empty();
   }
@@ -118,7 +122,7 @@ class PlanarRod {
   PlanarRodProperties properties_;
 };
 
-/// Adds a step to the unknowns. (The spatial rod transports its frames here as well.)
+/// Adds a step [m] to the unknowns. (The spatial rod transports its frames here as well.)
 inline void advance(PlanarState& state, const Eigen::VectorXd& step) {
   state.q += step;
 }

@@ -27,7 +27,7 @@ void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant
 /// tau_b EI_j/l of a cell, j = 1, 2 [N m s].
 [[nodiscard]] std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell);
 
-/// The Jacobian of vertex i's viscous moments tau_b EI_j/l kappa_j'.
+/// The Jacobian of vertex i's viscous moments tau_b EI_j/l kappa_j'. c: of DaePart::jacobian [1/s].
 void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell, int i, double c,
                                   const RodSlots& slots, std::vector<double>& values);
 

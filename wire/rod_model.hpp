@@ -29,9 +29,13 @@ class RodModel {
 
   explicit RodModel(const RodInMotion& constants);
 
+  /// What it was made from.
   [[nodiscard]] const RodInMotion& constants() const { return constants_; }
+  /// Its Kelvin-Voigt damping and drag; times of zero: none.
   [[nodiscard]] const RodDamping& damping() const { return constants_.damping; }
+  /// Friction of its strands; it may be none.
   [[nodiscard]] const RodStrands& strands() const { return constants_.strands; }
+  /// Whether curvatures are unknowns too: the rod of higher order.
   [[nodiscard]] bool is_curved() const { return constants_.formulation == Formulation::higher_order; }
   /// With curvatures as unknowns its twist and its weight alone.
   [[nodiscard]] const SpatialRod& rod() const { return rod_; }
@@ -48,10 +52,12 @@ class RodModel {
     if (i == edges()) return End::right;
     return std::nullopt;
   }
+  /// Unstretched length of an edge [m]; lumped mass of a vertex [kg].
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
   /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt, and what friction
   /// lets go still passes from one place to the next.                                         theory.md (M.18)
+  /// 1, or 1e-3 where it is quasi-static [-]; the mass that resists acceleration then [kg].
   [[nodiscard]] double inertial_share() const { return constants_.quasi_static ? 1e-3 : 1.0; }
   [[nodiscard]] double inertia_of(int vertex) const { return inertial_share() * mass_of(vertex); }
   /// Whether bending dissipates.
@@ -68,6 +74,7 @@ class RodModel {
   /// The vertex at an end is no longer held.
   void release(End end);
 
+  /// Appends the rod's blocks, named behind `name`, to a DAE's unknowns; from here on the places below are known.
   void declare(numerics::DaeLayout& layout, const std::string& name, const RodTolerances& tolerances);
   [[nodiscard]] int position_of(int vertex) const { return x_ + 3 * vertex; }  ///< first of three
   [[nodiscard]] int velocity_of(int vertex) const { return v_ + 3 * vertex; }
@@ -77,6 +84,7 @@ class RodModel {
   /// First of the two curvatures of a vertex [1/m]; only of higher order.
   [[nodiscard]] int curvature_of(int vertex) const { return curvature_ + 2 * vertex; }
 
+  /// Whether a band index is that of an angle theta, not of a position.
   [[nodiscard]] static bool is_angle(int band) { return band % block == angle; }
   /// Unknown x or theta of the DAE.
   [[nodiscard]] int unknown_of(int band) const {

@@ -45,25 +45,27 @@ class RodPart final : public numerics::DaePart {
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
-  /// Puts a start into the unknowns (twist angles zero) and lets the reference frames begin there.
+  /// Puts a start, (3, vertices) [m] and [m/s], into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
 
-  /// Before `declare`: the mount of one end moves. The vertex there is no longer held by this part: a
+  /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is no longer held by this part: a
   /// constraint has to.
   void carry(End end, std::function<MountMotion(const numerics::VectorView& y)> motion);
   [[nodiscard]] bool is_carried(End end) const { return static_cast<bool>(carried_[index_of(end)]); }
   /// The half cell at a mount that moves.
   [[nodiscard]] MountCell mount_cell(const numerics::DaePoint& at, End end);
-  /// Its moment alone, as of the last `residual` at that point.
+  /// Its moment alone [N m], as of the last `residual` at that point.
   [[nodiscard]] Eigen::Vector3d mount_moment(const numerics::DaePoint& at, End end);
 
   /// Shape and frames at a point; stays valid until the next evaluation.
   [[nodiscard]] const SpatialState& state_at(const numerics::DaePoint& at);
 
+  /// The rod's constants, masses and places among the unknowns; what it was made from; its elastic forces.
   [[nodiscard]] const RodModel& model() const { return model_; }
   [[nodiscard]] const RodInMotion& constants() const { return model_.constants(); }
   [[nodiscard]] const SpatialRod& rod() const { return model_.rod(); }
   [[nodiscard]] int vertices() const { return model_.vertices(); }
+  /// Vertices there are, and first unknown of a vertex's place, of its velocity, and unknown of an edge's angle: see RodModel.
   [[nodiscard]] int position_of(int vertex) const { return model_.position_of(vertex); }
   [[nodiscard]] int velocity_of(int vertex) const { return model_.velocity_of(vertex); }
   [[nodiscard]] int angle_of(int edge) const { return model_.angle_of(edge); }
@@ -71,8 +73,10 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] int end_angle(End end) const { return model_.angle_of(model_.edge_at(end)); }
   /// First of the two of z of a vertex; only with strands.
   [[nodiscard]] int strand_of(int vertex) const { return model_.strand_of(vertex); }
+  /// Lumped mass of a vertex [kg].
   [[nodiscard]] double mass_of(int vertex) const { return model_.mass_of(vertex); }
   [[nodiscard]] bool is_held(int vertex, int k) const { return model_.is_held(vertex, k); }
+  /// Material coordinate of a vertex, from the left mount [m].
   [[nodiscard]] double coordinate(int vertex) const { return rod().mesh().coordinate(vertex, model_.controls()); }
   /// Largest distance of rigidly held components from their mounts [m].
   [[nodiscard]] double mount_error(const numerics::VectorView& y) const;
@@ -100,6 +104,7 @@ class RodPart final : public numerics::DaePart {
     double kinetic = 0.0;                                ///< [J]
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  ///< [kg m/s]
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] LeftOut left_out(const numerics::VectorView& y) const;
 
  private:

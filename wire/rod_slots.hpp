@@ -15,7 +15,7 @@ void append_sparsity(const RodModel& model, std::vector<std::pair<int, int>>& en
 
 /// Where the entries of a rod's Jacobian are among the values of a sparse matrix. Rows and columns are band
 /// indices (see RodModel): the row is that of the balance, the column that of a place (x, theta) or of a rate
-/// (v).
+/// (v). Values are of the units of their rows over those of their columns, in SI.
 class RodSlots {
  public:
   /// `model` and `pattern` stay the caller's.

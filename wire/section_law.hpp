@@ -27,10 +27,11 @@ struct SectionResponse {
 /// One slider describes the friction of strands on each other (Papailiou 1997: stiff while they stick, soft
 /// when they slip); many describe a section that yields from its outer fibres inwards. elastic: k0 > 0.
 /// slipped: p_j of every element, or null for a virgin section (all zero).
+/// Of bending: elastic [N m^2], strain and slipped [1/m]; of stretching [N], [-].
 [[nodiscard]] SectionResponse respond(double elastic, const std::vector<SliderElement>& elements, double strain,
                                       const double* slipped);
 
-/// Moves the sliders to where the strain leaves them.
+/// Moves the sliders, p_j [1/m] or [-], to where the strain leaves them.
 void slide(const std::vector<SliderElement>& elements, double strain, double* slipped);
 
 /// Bending of a round section of an elastic, linearly hardening metal as a sum of sliders, one a pair of
@@ -50,7 +51,7 @@ struct SectionMemory {
 };
 
 /// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other controls put
-/// them, by linear interpolation in the material coordinate; material that comes in at a mount is virgin (zero).
+/// them, by linear interpolation in the material coordinate; material that comes in at a mount is virgin (zero). In their units.
 [[nodiscard]] std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<double>& values,
                                                int components, bool of_edges, const Controls& from, const Controls& to);
 

@@ -58,6 +58,7 @@ struct CellTerms {
   bool directed;           ///< not round, or naturally curved
 };
 
+/// Edge e at a state, between its vertices; and a mount in the place of an edge, with its direction and directors if it orients.
 [[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms);
 [[nodiscard]] SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame, const CellTerms& terms);
 

@@ -35,8 +35,11 @@ class SpatialRod {
 
   SpatialRod(MaterialMesh mesh, const SpatialRodProperties& properties, Strains strains = Strains::all);
 
+  /// The mesh that the state's controls carry.
   [[nodiscard]] const MaterialMesh& mesh() const noexcept { return mesh_; }
+  /// The constants that it was made with.
   [[nodiscard]] const SpatialRodProperties& properties() const noexcept { return properties_; }
+  /// Number of unknowns q, held ones with them.
   [[nodiscard]] int unknowns() const noexcept { return block * mesh_.vertices(); }
   /// First unknown of the vertex at an end.
   [[nodiscard]] int row_of(End end) const noexcept { return end == End::left ? 0 : block * mesh_.edges(); }
@@ -46,7 +49,7 @@ class SpatialRod {
 
   /// A state with these unknowns. Its reference frames run from the left mount (or from any normal) to the
   /// right without turning about the wire, so that theta is counted from there; at the right mount the
-  /// reference twist is in (-pi, pi].
+  /// reference twist is in (-pi, pi]. q [m, rad].
   [[nodiscard]] SpatialState make_state(const Eigen::VectorXd& q, const Controls& controls) const;
 
   /// The straight, untwisted state between the two mounts' positions, every vertex at its share.

@@ -26,11 +26,11 @@ struct SpatialState {
   std::vector<double> reference_twist;  ///< m of every vertex [rad]
 };
 
-/// Sets the unknowns and carries the reference frames to the new tangents; the reference twist follows
+/// Sets the unknowns [m, rad] and carries the reference frames to the new tangents; the reference twist follows
 /// without jumps while it changes by less than pi a step at every vertex.
 void accept(SpatialState& state, const Eigen::VectorXd& q);
 
-/// Adds a step to the unknowns.
+/// Adds a step [m, rad] to the unknowns.
 inline void advance(SpatialState& state, const Eigen::VectorXd& step) {
   accept(state, state.q + step);
 }

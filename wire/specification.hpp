@@ -50,6 +50,7 @@ struct WireSpecification {
   [[nodiscard]] double mass_per_length() const;
 };
 
+/// How both ends are held.
 enum class MountKind {
   clamped,  ///< position and direction held
   pinned,   ///< position held, free to turn

@@ -23,7 +23,7 @@ struct StrandResponse {
 };
 
 /// The Jacobian of vertex i's rows of z and of its cell's balances by z, places and rates. A vertex that does
-/// not bend has z' = 0.
+/// not bend has z' = 0. c: of DaePart::jacobian [1/s].
 void add_resting_strands_jacobian(const RodModel& model, int i, double c, const RodSlots& slots,
                                   std::vector<double>& values);
 void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at, double c,

@@ -10,7 +10,7 @@ namespace snare::wire {
 /// Adds moment * gradient of tau.
 void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out);
 
-/// Adds moment * hessian of tau + stiffness * (gradient of tau)(gradient of tau)^T:
+/// Adds moment [N m] * hessian of tau + stiffness [N m] * (gradient of tau)(gradient of tau)^T:
 ///   |a|^2 d2m/da2 = -1/4 (kb (t + mean)^T + (t + mean) kb^T),
 ///   |a||b| d2m/da db = 1/2 (2 [t]_x/chi - kb mean^T).
 void add_twist_hessian(const Turn& turn, const InverseLengths& inverse, double moment, double stiffness,

@@ -15,10 +15,10 @@ class VertexTurning {
 
   /// phi_1, phi_2 [rad].
   [[nodiscard]] const Eigen::Vector2d& angles() const { return angles_; }
-  /// Derivative of w_1 phi_1 + w_2 phi_2 by edges and angles of twist, the weights constant.
+  /// Derivative of w_1 phi_1 + w_2 phi_2 by edges and angles of twist, the weights constant and of any unit.
   [[nodiscard]] PairGradient gradient(const Eigen::Vector2d& weights) const;
   [[nodiscard]] PairHessian hessian(const Eigen::Vector2d& weights) const;
-  /// The same by a rigid rotation of all that follows the vertex.
+  /// The same by a rigid rotation of all that follows the vertex [rad], in the unit of the weights.
   [[nodiscard]] Eigen::Vector3d by_rotation(const Eigen::Vector2d& weights) const;
 
  private:

@@ -13,9 +13,10 @@ namespace snare::coupling {
 using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate)>;
 
 /// What damping adds to a spring at penetration d > 0: (D, dD/dd, dD/dd').
+/// Forces in N, derivatives in N/m and N s/m; its arguments are penetration [m] and rate [m/s].
 using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 
-/// F = max(0, S(d) + D(d, d')): a law of law_form.hpp with its numbers, and the damping of a motion; none when empty.
+/// F = max(0, S(d) + D(d, d')): a law of law_form.hpp with its numbers, and the damping of a motion; none when empty. Force [N].
 [[nodiscard]] ContactLaw contact_law(SpringLawPointer spring, Damping damping = {});
 
 /// D = c d'.                                                            c >= 0 [N s/m]
@@ -35,7 +36,7 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 /// q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q);
 
-/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 or n >= 1.
+/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 or n >= 1. Units as above.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q, double n);
 
 /// F = k d^p + c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  theory.md (L.2); Abiko et al., eq. 3
@@ -43,6 +44,7 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 [[nodiscard]] ContactLaw step_damped_law(double k, double p, double c, double depth);
 
 /// F = A d^2 + B d + C.                                                 theory.md (L.3); Abiko et al., Table 4
+/// a: A [N/m^2], b: B [N/m], c: C [N].
 [[nodiscard]] ContactLaw quadratic_law(double a, double b, double c);
 
 /// Stretched wire, pushed at its middle from where it is taut:          theory.md (L.4); Honda et al. 2014, eq. 1
@@ -52,7 +54,7 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 [[nodiscard]] ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span,
                                             Damping damping = {});
 
-/// Its tangent at d = 0: F = 2 K (l^2 - L^2)/l^2 d.                      Honda et al. 2014, eq. 2
+/// Its tangent at d = 0: F = 2 K (l^2 - L^2)/l^2 d [N], arguments as above.    Honda et al. 2014, eq. 2
 [[nodiscard]] ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span,
                                                 Damping damping = {});
 

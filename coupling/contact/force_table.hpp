@@ -58,8 +58,11 @@ class ForceTable {
   /// Least dF/dd on a lattice of `refinement` intervals a cell [N/m].
   [[nodiscard]] double least_stiffness(int refinement) const;
 
+  /// Knots of travel, position and slack over the span [-], ascending.
   [[nodiscard]] const Axes& axes() const noexcept { return axes_; }
+  /// Numbers of the nodes in groups of numbers_a_node, travel fastest, slack slowest: F L^2/EI and its derivatives [-].
   [[nodiscard]] const std::vector<double>& nodes() const noexcept { return nodes_; }
+  /// Distance of the mounts L [m], > 0.
   [[nodiscard]] double span() const noexcept { return span_; }
   [[nodiscard]] double force_scale() const noexcept { return force_scale_; }  ///< EI/L^2 [N]
   [[nodiscard]] bool mirrored() const noexcept { return mirrored_; }

@@ -16,15 +16,17 @@ enum class ContactFriction {
 /// force. The default is the order of two steel cylinders of 1.5 mm and 6 mm (Mindlin 1949: k = 8 a G*, 0.4 um at
 /// 10 N): small beside every travel of interest, large beside the tolerances.
 struct MotionFriction {
-  double static_coefficient = 0.0;   ///< >= 0: up to static_speed
-  double dynamic_coefficient = 0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip
+  double static_coefficient = 0.0;   ///< >= 0: up to static_speed [-]
+  double dynamic_coefficient = 0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip [-]
   double static_speed = 1e-3;        ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
   double dynamic_speed = 1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
   ContactFriction law = ContactFriction::stick_slip;
   double bristle_displacement = 1e-6;  ///< of the bristle when it slides [m], > 0
   double bristle_time = 1e-5;          ///< dashpot over spring of the bristle [s], > 0
 
+  /// Whether there is friction at all.
   [[nodiscard]] bool acts() const { return static_coefficient > 0.0 || dynamic_coefficient > 0.0; }
+  /// Whether it acts through a bristle: two more unknowns a place.
   [[nodiscard]] bool has_bristle() const { return acts() && law == ContactFriction::stick_slip; }
 };
 

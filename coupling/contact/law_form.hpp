@@ -16,6 +16,7 @@ struct LawPlace {
   double bending_stiffness = 0.0;  ///< EI [N m^2]
 };
 
+/// One of the numbers of a law form, as law.json names it.
 struct LawParameter {
   std::string name;
   std::string unit;  ///< SI; empty for a pure number
@@ -51,21 +52,22 @@ class LawForm {
   [[nodiscard]] virtual std::string formula() const = 0;  ///< for people
   [[nodiscard]] virtual std::vector<LawParameter> parameters() const = 0;
   /// Body of a function `double force(double d)` with the numbers written in, in the language that C, C++ and Python
-  /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python).
+  /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python); all in SI units.
   [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
 
-  /// The law with these numbers; all that depends on them alone is done here, for many evaluations.
+  /// The law with these numbers, in the units of `parameters`; all that depends on them alone is done here, for many evaluations.
   [[nodiscard]] virtual SpringLawPointer with(const Eigen::VectorXd& p) const = 0;
+  /// The law's force [N], stiffness [N/m] and energy [J] at a travel d >= 0 [m], with the numbers p. For one evaluation; for many: `with`.
   [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const { return with(p)->force(d); }
   [[nodiscard]] double stiffness(const Eigen::VectorXd& p, double d) const { return with(p)->stiffness(d); }
   [[nodiscard]] double energy(const Eigen::VectorXd& p, double d) const { return with(p)->energy(d); }
-  /// dF/dp.
+  /// dF/dp at d >= 0 [m], (numbers): N over the unit of each number.
   [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;
 
-  /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale and travel_scale:
+  /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale [N] and travel_scale [m]:
   /// largest force and travel of the points.
   [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale, double travel_scale) const = 0;
-  /// Whether numbers make sense (a positive power); a search does not leave them.
+  /// Whether numbers, in their units, make sense (a positive power); a search does not leave them.
   [[nodiscard]] virtual bool admissible(const Eigen::VectorXd& /*p*/) const { return true; }
 
  protected:

@@ -30,7 +30,7 @@ class MeshShape final : public ContactShape {
   /// The sharp edges; where there are few, as of a smooth surface, some of all.
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
-  /// Whether a point is inside, by counting the crossings of a ray instead of the nearest feature.
+  /// Whether a point p [m] of the shape's frame is inside, by counting the crossings of a ray instead of the nearest feature.
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;
   [[nodiscard]] double volume() const;  ///< [m^3], > 0
 

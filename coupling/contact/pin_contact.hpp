@@ -16,7 +16,7 @@ struct VertexTangent {
   Eigen::Vector2d normal;  ///< t turned left by a right angle
   double size = 1.0;       ///< |u|, about the stretch
 
-  /// Change of the direction angle of t for a change of u.
+  /// Change of the direction angle of t for a change of u, (2) [rad]: the angle is n.du/|u|, u being without unit.
   [[nodiscard]] Eigen::RowVector2d angle_by_u() const { return normal.transpose() / size; }
 };
 [[nodiscard]] VertexTangent vertex_tangent(const VertexSlope<2>& slope);
@@ -45,7 +45,7 @@ struct SlidingContact {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< at parameter 0 [m]
   Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< d centre / d parameter; unit or zero
   ContactStatus status = ContactStatus::slip;
-  /// Of the increase of material coordinate + side R angle, when it slips
+  /// Of the increase of material coordinate + side R angle, when it slips: +1, -1 [-]
   double slip_sign = 0.0;
   /// The material point never changes (the gauge of a wire on supports)
   bool holds_material = false;
@@ -62,6 +62,7 @@ struct SlidingContact {
 /// A material vertex that lies on the pusher when the wire wraps it.                 theory.md (C.7)
 struct WrappedContact {
   int node = 0;
+  /// Coulomb coefficient [-], >= 0.
   double friction = 0.0;
   ContactStatus status = ContactStatus::slip;              ///< stick or slip
   double slip_sign = 0.0;                                  ///< of the increase of its angle about the pin's centre

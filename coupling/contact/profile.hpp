@@ -35,6 +35,7 @@ class Profile {
   /// itself or has the outside on its left.
   Profile(const Eigen::Vector2d& start, const std::vector<ProfileEdge>& edges);
 
+  /// All its edges: once round a loop, else from end to end on the axis.
   [[nodiscard]] Chain whole() const { return {0, static_cast<int>(edges_.size())}; }
   /// What is left between its concave corners when arcs that are hollow with a radius of `wire_radius` [m] or less, in which no such
   /// wire fits, are left out. Between them these chains are nearest to whatever is farther out than that.    theory.md (G.11)

@@ -31,9 +31,10 @@ class ContactShape {
   /// The distance alone [m].
   [[nodiscard]] virtual double distance(const Eigen::Vector3d& p) const { return at(p).distance; }
   /// Smallest radius of curvature where the surface is convex [m], infinite where it is nowhere: the Hessian's largest eigenvalue at a
-  /// distance d outside is at most 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line would have no direction of contact.
+  /// distance d outside is at most 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line
+  /// would have no direction of contact.
   [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
-  /// Where phi has a kink outside that a wire of this radius can reach, as in a concave corner: shapes without, none of which has
+  /// Where phi has a kink outside that a wire of this radius [m] can reach, as in a concave corner: shapes without, none of which has
   /// pieces, that have the least distance in common wherever it is more than the radius. Empty for any other shape.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(double /*wire_radius*/) const {
     return {};

@@ -18,6 +18,7 @@ class BezierWire {
   /// The rod stays the caller's; where its unknowns are is asked when they are wanted.
   explicit BezierWire(const wire::RodPart& rod);
 
+  /// How many elements the curve has.
   [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
   /// Control points of an element, from positions [m] or any derivative of them by time, in the layout of the unknowns.
   [[nodiscard]] Control control(int element, const numerics::VectorView& y) const;
@@ -25,7 +26,7 @@ class BezierWire {
   [[nodiscard]] double length(int element) const { return piece(element).length; }  ///< [m]
   [[nodiscard]] double longest() const { return longest_; }                         ///< element [m]
   [[nodiscard]] double shortest() const { return shortest_; }                       ///< element [m]
-  /// Largest sum of the moduli of a control point's weights: bounds control points by vertices.
+  /// Largest sum of the moduli of a control point's weights: bounds control points by vertices. [-], >= 1.
   [[nodiscard]] double largest_weight_sum() const { return largest_weight_sum_; }
   /// The element that holds a material coordinate [m]; the last one beyond the end.
   [[nodiscard]] int element_at(double coordinate) const;
@@ -38,9 +39,9 @@ class BezierWire {
 
  private:
   struct Piece {
-    double begin = 0.0, length = 0.0;
-    int first = 0;            // of four vertices
-    Eigen::Matrix4d weights;  // of vertices (rows) in control points (columns)
+    double begin = 0.0, length = 0.0;  // [m]
+    int first = 0;                     // of four vertices
+    Eigen::Matrix4d weights;           // of vertices (rows) in control points (columns)
   };
   [[nodiscard]] const Piece& piece(int element) const { return pieces_[static_cast<std::size_t>(element)]; }
 
@@ -50,7 +51,7 @@ class BezierWire {
   double largest_weight_sum_ = 1.0;
 };
 
-/// Bernstein's cubics at u, their first and their second derivatives by u.
+/// Bernstein's cubics at u, their first and their second derivatives by u. u in [0, 1]; results (4) [-].
 [[nodiscard]] Eigen::Vector4d bernstein(double u);
 [[nodiscard]] Eigen::Vector4d bernstein_slope(double u);
 [[nodiscard]] Eigen::Vector4d bernstein_bend(double u);

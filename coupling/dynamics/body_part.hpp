@@ -14,6 +14,7 @@ namespace snare::coupling {
 /// which vanishes but for the integrator's error, keeps the quaternion's length.
 class BodyPart final : public numerics::DaePart {
  public:
+  /// The body stays as given; gravity in the world [m/s^2].
   BodyPart(const MotionBody& body, const Eigen::Vector3d& gravity, const MotionOptions& options);
 
   void declare(numerics::DaeLayout& layout) override;
@@ -23,6 +24,7 @@ class BodyPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
+  /// Writes the body's start into its places among the unknowns y (SI units).
   void place(Eigen::VectorXd& y) const;
   /// Of a driven body at a time [s].
   [[nodiscard]] Eigen::Vector3d course_velocity(double time) const;      ///< [m/s]

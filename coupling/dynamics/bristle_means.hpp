@@ -28,7 +28,7 @@ struct BristleMeans {
   void finish() { rates.array().rowwise() /= loads.array().transpose(); }
   /// -d(dz_i/dt)/dz_i of what forgets [1/s].
   [[nodiscard]] double forgetting(int vertex) const { return idle_load / idle_time / loads[vertex]; }
-  /// -d(dz_i/dt) by what changes at a place with the weight H_i: -(d(p r) - mean dp)/load, r the rate there.
+  /// -d(dz_i/dt) [m/s] by what changes at a place with the weight H_i [-]: -(d(p r) - mean dp)/load, r the rate there. load_change: dp [N].
   [[nodiscard]] Eigen::Vector2d change(int vertex, double weight, double load_change, const Eigen::Vector2d& rate,
                                        const Eigen::Vector2d& load_times_rate_change) const {
     return weight / loads[vertex] * (load_change * (rates.col(vertex) - rate) - load_times_rate_change);

@@ -26,6 +26,7 @@ class BushingPart final : public FrameForces {
     double energy = 0.0;                                                              ///< [J]
     double lost_power = 0.0;                                                          ///< [W], >= 0
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] State state(const numerics::VectorView& y) const;
   [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
   [[nodiscard]] Work work(const numerics::VectorView& y) const override;

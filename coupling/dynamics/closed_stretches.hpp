@@ -15,7 +15,7 @@ struct GapPlace {
 
 /// A stretch of an element on which the gap is negative, and its deepest place.
 struct ClosedStretch {
-  double from = 0.0, to = 0.0;  ///< u
+  double from = 0.0, to = 0.0;  ///< u, from 0 to 1 [-]
   GapPlace deepest;
 };
 

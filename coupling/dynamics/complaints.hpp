@@ -12,7 +12,7 @@ namespace snare::coupling {
 /// Collects what is wrong with a motion.
 class Complaints {
  public:
-  /// Whether it is fine.
+  /// Whether it is fine; if not, remembers key, value (in the unit of the key) and requirement.
   bool require(bool fine, const std::string& key, double value, const std::string& requirement) {
     if (!fine) problems_.push_back({"", 0, key, fmt::format("{}", value), requirement});
     return fine;

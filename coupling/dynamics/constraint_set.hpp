@@ -19,6 +19,7 @@
 namespace snare::coupling {
 
 /// Arms, welds, moving mounts and bushings of one run.                         theory.md (M.15)-(M.17), (M.22)
+/// Unknowns y, their changes dv, their rates and all multipliers are those of the whole run, in SI units; times in s.
 class ConstraintSet {
  public:
   /// What is wrong with them.
@@ -44,6 +45,7 @@ class ConstraintSet {
   void project(const Eigen::VectorXd& y, Eigen::VectorXd& dv) const;
   /// Adds to free rates the accelerations of the constraints' forces; returns the multipliers.
   Eigen::VectorXd hold_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  /// Puts multipliers, one constraint behind another as `hold_rates` returns them, into y.
   void set_multipliers(const Eigen::VectorXd& multipliers, Eigen::VectorXd& y) const;
 
   /// Time up to which nothing of the arms jumps but by an event [s].
@@ -60,6 +62,7 @@ class ConstraintSet {
   [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
                                      const multibody::Pose& X_WF) const;
   /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: see ArmStepper.
+  /// All that these parts remember, in SI units.
   void save_state(std::vector<double>& memory) const;
   void restore_state(double time, std::span<const double>& memory);
   /// Why it cannot go on, if so.
@@ -85,6 +88,7 @@ class ConstraintSet {
                                                            const numerics::VectorView& y) const;
   /// Forces of moving mounts into a sample, and the arms' coordinates.
   void fill(double time, const numerics::VectorView& y, MotionSample& sample) const;
+  /// How far the constraint that misses most is from being kept, see Constraint::gap [m].
   [[nodiscard]] double largest_gap(const numerics::VectorView& y) const;
 
  private:

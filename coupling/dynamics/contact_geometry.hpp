@@ -42,6 +42,7 @@ struct ContactGeometry : CurvePoint {
   TangentForce friction;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
 
+  /// A vector given in the tangent plane's axes a and b, in the axes of the world; same unit.
   [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
     return tangent.x() * along + tangent.y() * across;
   }
@@ -67,14 +68,15 @@ struct ContactDirection {
 
 /// What changes along a direction.
 struct ContactChange {
-  double gap = 0.0, tangency = 0.0, gap_rate = 0.0;  ///< of g, n.X' and dg/dt
-  double load = 0.0;                                 ///< of lambda
+  double gap = 0.0, tangency = 0.0, gap_rate = 0.0;  ///< of g, n.X' and dg/dt [m, -, m/s]
+  double load = 0.0;                                 ///< of lambda [N/m], by a law [N]
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero(), friction = Eigen::Vector2d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< on the body about its centre of mass, in the body
 };
 
+/// How gap, load, friction, force and torque change along `d` at the place `g`: the first derivative of contact_geometry, linear in d.
 [[nodiscard]] ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g,
                                            const ContactDirection& d);
 

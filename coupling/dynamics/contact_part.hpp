@@ -39,11 +39,14 @@ class ContactPart final : public numerics::DaePart {
   void restore_state(const numerics::VectorView& y, std::span<const double>& /*memory*/) override {
     static_cast<void>(look_around(y));
   }
-  /// The same at a start. True: the pattern has changed.
+  /// The same at a start, unknowns y in SI units. True: the pattern has changed.
   bool look_around(const numerics::VectorView& y);
 
+  /// Which elements are near, and where the wire's curve is.
   [[nodiscard]] const ContactSearch& search() const { return search_; }
+  /// Whether a law of fast simulators acts, at every local minimum, in place of the foundation.
   [[nodiscard]] bool has_law() const { return static_cast<bool>(contact_.law); }
+  /// Whether friction has bristles, two unknowns a vertex: see bristle_of.
   [[nodiscard]] bool has_bristle() const { return contact_.friction.has_bristle(); }
   /// First of the two of a vertex; only with bristles.
   [[nodiscard]] int bristle_of(int vertex) const { return bristle_ + 2 * vertex; }
@@ -59,12 +62,13 @@ class ContactPart final : public numerics::DaePart {
     /// What of it falls on rigidly held components of the first and the last vertex [N].
     std::array<Eigen::Vector3d, 2> on_mounts{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] Sums sums(const numerics::VectorView& y) const;
   /// Gap [m] and its rate [m/s] at a material coordinate [m].
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
-  /// dz/dt of the bristles into `rate`.
+  /// dz/dt [m/s] of the bristles into their places of `rate`, at unknowns y in SI units.
   void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
-  /// One sample for every stretch along the wire that is closed, in their order.
+  /// One sample for every stretch along the wire that is closed, in their order. y in SI units.
   [[nodiscard]] std::vector<ContactSample> samples(const numerics::VectorView& y) const;
 
  private:

@@ -25,13 +25,16 @@ class ContactSearch {
   ContactSearch(const MotionContact& contact, std::shared_ptr<const ContactShape> shape, const wire::RodPart& rod,
                 const BodyPart& body);
 
+  /// The wire's curve, element by element.
   [[nodiscard]] const BezierWire& curve() const { return curve_; }
+  /// What it is searched against.
   [[nodiscard]] const ContactShape& shape() const { return *shape_; }
   /// On a shorter way along the wire the gap has one minimum at most [m].
   [[nodiscard]] double resolution() const { return resolution_; }
+  /// The place of the wire with the least gap, over all elements [m].
   [[nodiscard]] NearestPoint nearest(const numerics::VectorView& y) const;
 
-  /// Told an accepted state.
+  /// Told the unknowns y (SI units) of an accepted state.
   void update(const numerics::VectorView& y);
   /// Elements that may be touched before the next accepted state, in their order.
   [[nodiscard]] const std::vector<int>& candidates() const { return candidates_; }
@@ -39,9 +42,9 @@ class ContactSearch {
   /// rest.
   [[nodiscard]] double longest_step() const { return longest_step_; }
 
-  /// Of the shape's frame.
+  /// Of the shape's frame in the world at unknowns y (SI units).
   [[nodiscard]] multibody::Pose X_WS(const numerics::VectorView& y) const;
-  /// Control points of an element in the shape's frame.
+  /// Control points of an element in the shape's frame [m], y in SI units.
   [[nodiscard]] BezierWire::Control control(const multibody::Pose& X_WS, int element,
                                             const numerics::VectorView& y) const;
 

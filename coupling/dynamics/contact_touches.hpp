@@ -35,13 +35,13 @@ class ContactTouches {
                                                  const GapAt& gap_at);
   /// How many of the states told last have touched without a break.
   [[nodiscard]] int held_states() const { return held_states_; }
-  /// What is known of the last state: see DaePart.
+  /// What is known of the last state: see DaePart. Material coordinates [m] and what sticks.
   void save_state(std::vector<double>& memory) const;
   void restore_state(std::span<const double>& memory);
 
  private:
   struct Touching {
-    double arc = 0.0;
+    double arc = 0.0;  // [m]
     int point = 0;
     bool sticking = false;
   };

@@ -25,7 +25,9 @@ struct FrameMotion {
   Eigen::Matrix<S, 3, 3> R;
   Vector3<S> p, angular, linear;
 
+  /// Place in the world of a point fixed in the frame [m].
   [[nodiscard]] Vector3<S> point(const Eigen::Vector3d& p_FP) const { return p + R * p_FP.cast<S>(); }
+  /// Velocity there of the frame's material [m/s].
   [[nodiscard]] Vector3<S> velocity_at(const Vector3<S>& p_WP) const { return linear + angular.cross(p_WP - p); }
 };
 
@@ -34,13 +36,14 @@ template <class S>
 struct FrameWrench {
   Vector3<S> moment = Vector3<S>::Zero(), force = Vector3<S>::Zero();
 
+  /// Adds a force f [N] that acts on the frame at a point of the world [m].
   void add(const FrameMotion<S>& frame, const Vector3<S>& p_WP, const Vector3<S>& f) {
     force += f;
     moment += Vector3<S>(p_WP - frame.p).cross(f);
   }
 };
 
-/// The frames now.
+/// The frames at unknowns y of the run (SI units).
 template <std::size_t K>
 [[nodiscard]] std::array<FrameMotion<double>, K> motions(const std::vector<MovingFrame>& frames,
                                                          const numerics::VectorView& y) {
@@ -52,7 +55,7 @@ template <std::size_t K>
   return now;
 }
 
-/// With their turn, shift, angular velocity and velocity as variables, 12 a frame.
+/// With their turn, shift, angular velocity and velocity as variables, 12 a frame [rad, m, rad/s, m/s].
 template <std::size_t K>
 [[nodiscard]] auto with_derivatives(const std::array<FrameMotion<double>, K>& now) {
   constexpr int n = 12 * static_cast<int>(K);
@@ -76,6 +79,7 @@ template <std::size_t K>
   return dual;
 }
 
+/// Wrenches [N m, N] as a list, one a frame.
 template <std::size_t K>
 [[nodiscard]] std::vector<multibody::Wrench> plain(const std::array<FrameWrench<double>, K>& wrenches) {
   std::vector<multibody::Wrench> list;
@@ -83,7 +87,7 @@ template <std::size_t K>
   return list;
 }
 
-/// Their derivatives: D of FrameForces.
+/// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
 template <class S, std::size_t K>
 [[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
   Eigen::MatrixXd D(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
@@ -106,7 +110,7 @@ template <std::size_t K>
   return sum;
 }
 
-/// The number without its derivatives.
+/// The number without its derivatives. In whatever unit it has.
 [[nodiscard]] inline double value_of(double x) {
   return x;
 }
@@ -115,7 +119,7 @@ template <int N>
   return x.a;
 }
 
-/// f(x, y) by its value and slopes there.
+/// f(x, y) by its value and slopes there. In their units; by_x, by_y: df/dx, df/dy.
 [[nodiscard]] inline double lifted(double value, double /*by_x*/, double /*x*/, double /*by_y*/, double /*y*/) {
   return value;
 }

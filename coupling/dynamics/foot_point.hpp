@@ -16,7 +16,9 @@ class CubicPieces {
   /// Of one element, by its control points.
   void set(int element, const BezierWire::Control& control);
 
+  /// How many cubics there are, one an element.
   [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
+  /// X(u) [m], u in [0, 1].
   [[nodiscard]] Eigen::Vector3d value(int element, double u) const;
   [[nodiscard]] Eigen::Vector3d slope(int element, double u) const;  ///< dX/du [m]
   [[nodiscard]] Eigen::Vector3d bend(int element, double u) const;   ///< d2X/du2 [m]
@@ -31,10 +33,10 @@ class CubicPieces {
 /// The point of a wire that is nearest to a given one.
 struct FootPoint {
   int element = 0;
-  double u = 0.0;
+  double u = 0.0;       ///< along the element, from 0 to 1 [-]
   bool stands = false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
 };
-/// The local minimum of the distance that is downhill of the nearest of the vertices of elements first ... last.   theory.md (G.12)
+/// The local minimum of the distance to p [m] that is downhill of the nearest of the vertices of elements first ... last.   theory.md (G.12)
 [[nodiscard]] FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Eigen::Vector3d& p);
 
 }  // namespace snare::coupling

@@ -12,12 +12,12 @@ class ForceRecord {
  public:
   /// At a state later than the last one [s], [N].
   void add(double time, Eigen::VectorXd forces);
-  /// Entry `index` at a time within the last step, through the last two states or three.
+  /// Entry `index` [N] at a time [s] within the last step, through the last two states or three.
   [[nodiscard]] double at(double time, Eigen::Index index, bool of_three) const;
 
  private:
   struct Record {
-    double time = 0.0;
+    double time = 0.0;  // [s]
     Eigen::VectorXd forces;
   };
   std::deque<Record> records_;  // the latest last

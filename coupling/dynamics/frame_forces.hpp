@@ -20,20 +20,22 @@ class FrameForces : public numerics::DaePart {
   explicit FrameForces(std::vector<MovingFrame> frames) : frames_(std::move(frames)) {}
 
   void declare(numerics::DaeLayout& /*layout*/) override {}
+  /// DaePart: entries are those of the carriers' rows of force by the places and velocities of all frames.
   void sparsity(std::vector<std::pair<int, int>>& entries) const final;
   void attach_pattern(const numerics::SparseMatrix& pattern) final;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) final;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) final;
 
+  /// Frames on which it acts, in the order of `wrenches`.
   [[nodiscard]] const std::vector<MovingFrame>& frames() const { return frames_; }
-  /// On every frame, about its origin, in the axes of the world; empty while the law does nothing.
+  /// On every frame, about its origin, in the axes of the world [N m, N]; empty while the law does nothing. y in SI units.
   [[nodiscard]] virtual std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const = 0;
-  /// What it stores [J], and loses [W].
+  /// What it stores [J], and loses [W], at unknowns y in SI units.
   struct Power {
     double energy = 0.0;
     double lost = 0.0;
   };
-  /// Both at once.
+  /// Both at once, y in SI units.
   struct Work {
     std::vector<multibody::Wrench> wrenches;
     Power power;

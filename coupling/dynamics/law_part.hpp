@@ -23,6 +23,7 @@ class LawPart final : public numerics::DaePart {
   [[nodiscard]] int event_count() const override { return 1; }
   void events(const numerics::DaePoint& at, std::span<double> values) override;
 
+  /// What it does at a state: gap -d [m], force F n [N] on what stands for the wire, and its point on the body [m].
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
   /// Power that the law takes from body and plane [W]; negative when it gives back.
   [[nodiscard]] double taken_power(const numerics::DaePoint& at) const;

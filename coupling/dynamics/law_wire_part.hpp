@@ -33,9 +33,10 @@ class LawWirePart final : public PressPart {
     std::array<Eigen::Vector3d, 2> mount_forces;  ///< on the wire's ends [N]
     double tension = 0.0;                         ///< [N], >= 0
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] Shape shape(const numerics::VectorView& y) const;
 
-  /// Looks whether the shaft is within reach, and before the wire; to be told the start.
+  /// Looks whether the shaft is within reach, and before the wire; to be told the start, y in SI units.
   void look_around(const numerics::VectorView& y);
   bool accept(const numerics::DaePoint& at) override;
   void save_state(std::vector<double>& memory) const override;

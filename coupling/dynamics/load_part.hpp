@@ -23,9 +23,9 @@ class LoadPart final : public numerics::DaePart {
   /// About the frame's origin, in the axes of the world.
   [[nodiscard]] multibody::Wrench wrench(const numerics::DaePoint& at) const;
   [[nodiscard]] const MovingFrame& frame() const { return frame_; }
-  /// The first of its times behind a time, at which the integration must stop; infinite: none.
+  /// The first of its times behind a time, at which the integration must stop [s]; infinite: none.
   [[nodiscard]] double next_break(double time) const;
-  /// The integration has come to a time; true: it must begin anew there, behind one of the load's times.
+  /// The integration has come to a time [s]; true: it must begin anew there, behind one of the load's times.
   [[nodiscard]] bool enter(double time);
 
  private:

@@ -26,8 +26,10 @@ class MountPart final : public Constraint {
 
   [[nodiscard]] int constraints() const override { return 3; }
   [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
+  /// Constraint: -(dJ_M/dt) v of the carrier, what v - v_M changes by while the velocities stay [m/s^2].
   [[nodiscard]] Eigen::VectorXd acceleration_bias(const numerics::VectorView& y,
                                                   const Eigen::VectorXd& rate) const override;
+  /// Constraint: f/m of the end vertex, m its inertia, and what -f does to a carrier that moves freely.
   void apply_impulse(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
                      Eigen::VectorXd& dv) const override;
   /// Force on the wire's end; no moment: see `moment`.

@@ -27,15 +27,16 @@ class MovingFrame {
     int velocity = 0;  ///< its index, and that of its column (s, v) in J
     int depth = 0;     ///< of its joint in the chain: 0 at the body, less towards the root
   };
-  /// Pose in the world, angular velocity, and velocity of the origin, in the axes of the world.
+  /// Pose in the world, angular velocity [rad/s], and velocity of the origin [m/s], in the axes of the world.
   struct State {
     multibody::Pose X_WF;
     Eigen::Vector3d angular = Eigen::Vector3d::Zero();
     Eigen::Vector3d linear = Eigen::Vector3d::Zero();
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] State state(const numerics::VectorView& y) const;
 
-  /// Derivatives at one y, angular over linear, in the axes of the world.
+  /// Derivatives at one y (SI units), angular over linear, in the axes of the world.
   class Derivatives {
    public:
     multibody::Matrix6X jacobian;  ///< motion by velocities: J
@@ -57,19 +58,21 @@ class MovingFrame {
     Eigen::Matrix<double, 3, 4> turn_{};  // of a body: its turn by the quaternion
     int first_turning_ = 0, spin_ = 0;    // of a body: the quaternion among coordinates, the spin among velocities
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] Derivatives differentiate(const numerics::VectorView& y) const;
-  /// J alone.
+  /// J alone, (6, velocities); y in SI units.
   [[nodiscard]] multibody::Matrix6X jacobian(const numerics::VectorView& y) const;
 
+  /// Indices of the unknowns on which the frame's place depends, and of those on which its motion depends besides.
   [[nodiscard]] std::vector<int> coordinates() const;
   [[nodiscard]] std::vector<int> velocities() const;
   /// Whether forces on it move it.
   [[nodiscard]] bool moves_freely() const;
-  /// Adds -J^T F to the rows of whoever carries it; the first without a Jacobian.
+  /// Adds -J^T F [N m, N] to the rows of whoever carries it; the first without a Jacobian.
   void push(const numerics::VectorView& y, const multibody::Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const;
   void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
             Eigen::Ref<Eigen::VectorXd> rows) const;
-  /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier.
+  /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier, in SI units.
   void apply_impulse(const numerics::VectorView& y, const multibody::Matrix6X& jacobian,
                      const multibody::Wrench& wrench, Eigen::VectorXd& dv) const;
   [[nodiscard]] const BodyPart* body() const { return body_; }

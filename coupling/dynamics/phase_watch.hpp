@@ -15,6 +15,7 @@ namespace snare::coupling {
 /// unknowns between two steps err by more than a stiff contact forgives.                              theory.md (M.23)
 class PhaseWatch {
  public:
+  /// A signal's present value, in the SI unit of its kind.
   using Signals = std::function<double(const MotionSignal&)>;
 
   /// The phases stay the caller's and outlive it.
@@ -24,14 +25,14 @@ class PhaseWatch {
   [[nodiscard]] const MotionPhase* pending() const { return next_ < phases_.size() ? &phases_[next_] : nullptr; }
   /// Time up to which the next phase cannot begin but by what its signals do [s].
   [[nodiscard]] double limit(double time) const;
-  /// Tells it the signals at the time at which it starts, and behind every begun phase.
+  /// Tells it the signals at the time [s] at which it starts, and behind every begun phase.
   void start(double time, const Signals& signals);
-  /// The time within the step from the last one at which the next phase begins, if it does.
+  /// The time within the step from the last one at which the next phase begins, if it does [s].
   [[nodiscard]] std::optional<double> look(double time, const Signals& signals);
-  /// The pending phase begins.
+  /// The pending phase begins, at this time [s].
   void begin(double time, const Signals& signals);
 
-  /// See DaePart.
+  /// See DaePart; times [s].
   void save_state(std::vector<double>& memory) const;
   void restore_state(std::span<const double>& memory);
 

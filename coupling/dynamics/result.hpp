@@ -45,7 +45,7 @@ struct EnergyBalance {
 
 /// One line of the history.
 struct MotionSample {
-  double time = 0.0;
+  double time = 0.0;  ///< [s]
   std::vector<multibody::RigidBodyState> bodies;
   /// As Motion::contact_names counts them; of springs, pairs and contacts of bodies on the first of each.
   std::vector<ContactSample> contacts;
@@ -80,10 +80,10 @@ struct MotionSample {
 /// What happened at a contact.
 struct MotionEvent {
   enum class Kind { touch, lift_off, stick, slip };
-  double time = 0.0;
-  int contact = 0;   ///< index as Motion::contact_names counts them
-  int point = 0;     ///< of the contact
-  double arc = 0.0;  ///< material coordinate [m]
+  double time = 0.0;  ///< [s]
+  int contact = 0;    ///< index as Motion::contact_names counts them
+  int point = 0;      ///< of the contact
+  double arc = 0.0;   ///< material coordinate [m]
   Kind kind = Kind::touch;
   double approach_speed = 0.0;  ///< before a touch; of the sliding at `stick` and `slip` [m/s]
 };
@@ -113,12 +113,12 @@ struct MotionSums {
   Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
   long samples = 0;                                                  ///< given to the observer
   numerics::IdaStatistics statistics;
-  double wall_seconds = 0.0;
+  double wall_seconds = 0.0;  ///< [s]
 };
 
 /// All that a motion needs to go on from a time.
 struct MotionState {
-  double time = 0.0;
+  double time = 0.0;  ///< [s]
   Eigen::VectorXd unknowns;
   Eigen::VectorXd rates;
   Eigen::VectorXd integrals;   ///< powers, reactions and contact forces over time
@@ -126,6 +126,7 @@ struct MotionState {
   MotionSums sums;
 };
 
+/// What became of a motion: how it ended, what happened, its balances, and the state from which it can go on.
 struct MotionResult {
   numerics::IdaReport report;  ///< `message` names time, step and the worst unknowns on failure
   std::vector<MotionEvent> events;

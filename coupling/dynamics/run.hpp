@@ -54,7 +54,9 @@ constexpr Eigen::Index contacts = 8;
 class MotionRun {
  public:
   MotionRun(const Motion& motion, const MotionOptions& options, const MotionObserver& observer);
+  /// Finds what touches at the start, books energy and momentum there, makes the rates consistent; once, in place of `resume`.
   void begin();
+  /// Goes on from a state that a leg of the same motion has left. Throws base::InputError when the sizes are not of this motion.
   void resume(const MotionState& from);
   /// Goes on to `limit` [s].
   MotionResult go(double limit);

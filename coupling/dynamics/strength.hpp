@@ -27,12 +27,13 @@ struct WireStrength {
 
 /// The largest load on a wire at a time.
 struct StrengthUse {
-  double share = 0.0;    ///< of the strength that tension and bending take together; 0: has none
+  double share = 0.0;    ///< of the strength that tension and bending take together; 0: has none [-]
   double tension = 0.0;  ///< there [N]
   double bending = 0.0;  ///< as tension [N]
   double arc = 0.0;      ///< where, material coordinate [m]
   double time = 0.0;     ///< [s]
 };
+/// At a state: the vertex where (T + b |M|/EI)/T_break is largest, T of the edge beside it, M bending, b bending_force.   theory.md (W.34)
 [[nodiscard]] StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const numerics::DaePoint& at);
 
 /// " reaches its strength of ...": of a use that does.

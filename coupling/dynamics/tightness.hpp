@@ -20,7 +20,7 @@ struct WireUse {
   double tight_at = never;     ///< when it was tight for the first time for as long as asked: the beginning of that [s]
   double last_tension = 0.0, last_time = 0.0;
 
-  /// At an accepted step: straight between two steps.
+  /// At an accepted step, time [s] and tension [N]: straight between two steps.
   void add(const WireTightness& asked, double time, double tension) {
     if (tension > peak_tension) {
       peak_tension = tension;

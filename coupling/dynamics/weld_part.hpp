@@ -22,8 +22,10 @@ class WeldPart final : public Constraint {
 
   [[nodiscard]] int constraints() const override { return 6; }
   [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
+  /// Constraint: what w_H - w_A and v_H - v_A change by while the velocities stay [rad/s^2, m/s^2].
   [[nodiscard]] Eigen::VectorXd acceleration_bias(const numerics::VectorView& y,
                                                   const Eigen::VectorXd& rate) const override;
+  /// Constraint: what the wrench does to the held body, and the opposite one to a carrier that moves freely.
   void apply_impulse(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
                      Eigen::VectorXd& dv) const override;
   [[nodiscard]] multibody::Wrench wrench(const numerics::VectorView& y) const override;

@@ -21,6 +21,7 @@ class WindowRecord {
   /// window [s], >= 0.
   explicit WindowRecord(double window) : window_(window) {}
 
+  /// Length of the window [s].
   [[nodiscard]] double window() const { return window_; }
   /// From the earliest to the latest.
   [[nodiscard]] const std::deque<Record>& records() const { return records_; }
@@ -29,7 +30,7 @@ class WindowRecord {
     records_.push_back({time, values});
     while (records_.size() > 2 && records_[1].time <= time - window_) records_.pop_front();
   }
-  /// See DaePart.
+  /// See DaePart; times [s], values in their units.
   void save_state(std::vector<double>& memory) const {
     memory.push_back(static_cast<double>(records_.size()));
     memory.push_back(records_.empty() ? 0.0 : static_cast<double>(records_.front().values.size()));

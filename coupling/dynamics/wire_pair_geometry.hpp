@@ -56,6 +56,7 @@ struct PairGeometry {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< f [N/m]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< M [N]
 
+  /// A vector given in the tangent plane's axes a and b, in the axes of the world; same unit.
   [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
     return tangent.x() * along + tangent.y() * across;
   }
@@ -81,18 +82,19 @@ struct PairDirection {
 
 /// What changes along a direction.
 struct PairChange {
-  double zeta = 0.0;  ///< of B's point
-  double load = 0.0;  ///< of p
+  double zeta = 0.0;  ///< of B's point [m]
+  double load = 0.0;  ///< of p [N/m]
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< of f
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of M
 };
+/// How load, force and moment change along `d` at the place `g`, B's point following: the first derivative of pair_geometry, linear in d.
 [[nodiscard]] PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, const PairDirection& d);
 
-/// What a moment m on an edge e is as forces on its vertices, but for its part about the edge: (m x e)/|e|^2 on the second,
+/// What a moment m [N m] on an edge e [m] is as forces [N] on its vertices, but for its part about the edge: (m x e)/|e|^2 on the second,
 /// the opposite on the first.
 [[nodiscard]] Eigen::Vector3d couple_on(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment);
-/// Its change with that of the edge and of the moment.
+/// Its change with that of the edge and of the moment [N].
 [[nodiscard]] Eigen::Vector3d couple_change(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment,
                                             const Eigen::Vector3d& edge_change, const Eigen::Vector3d& moment_change);
 

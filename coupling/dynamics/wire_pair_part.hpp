@@ -35,10 +35,12 @@ class WirePairPart final : public numerics::DaePart {
   bool accept(const numerics::DaePoint& at) override { return look_around(at.y); }
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
-  /// The same at a start. True: the pattern has changed.
+  /// The same at a start, unknowns y in SI units. True: the pattern has changed.
   bool look_around(const numerics::VectorView& y);
 
+  /// Which elements of the two are near each other.
   [[nodiscard]] const WirePairSearch& search() const { return search_; }
+  /// Whether friction has bristles, two unknowns a vertex of either wire: see bristle_of.
   [[nodiscard]] bool has_bristle() const { return pair_.friction.has_bristle(); }
 
   /// First of the two of a vertex of the first or the second wire; only with bristles.
@@ -55,14 +57,15 @@ class WirePairPart final : public numerics::DaePart {
     /// What of it falls on rigidly held components of the first and the last vertex, of both wires [N].
     std::array<std::array<Eigen::Vector3d, 2>, 2> on_mounts;
   };
+  /// At unknowns y of the run (SI units).
   [[nodiscard]] Sums sums(const numerics::VectorView& y);
-  /// dz/dt of the bristles into `rate`.
+  /// dz/dt [m/s] of the bristles into their places of `rate`, at unknowns y in SI units.
   void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate);
 
   /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most, or of the nearest
-  /// points. Its points: the closed stretches along the first wire.
+  /// points. Its points: the closed stretches along the first wire. y in SI units.
   [[nodiscard]] ContactSample sample(const numerics::VectorView& y);
-  /// The same of closed stretches alone: without a search.
+  /// The same of closed stretches alone: without a search. y in SI units.
   [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y);
   [[nodiscard]] const ContactTouches& touches() const { return touches_; }
   /// What has happened since the last state told: see ContactTouches.

@@ -31,12 +31,14 @@ class WirePairSearch {
  public:
   WirePairSearch(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b);
 
+  /// The curve of the first (0) or the second wire (1), element by element.
   [[nodiscard]] const BezierWire& curve(std::size_t wire) const { return curves_[wire]; }
   /// On a shorter way along a wire the gap has one minimum at most [m].
   [[nodiscard]] double resolution(std::size_t wire) const { return resolutions_[wire]; }
+  /// The pair of places with the least gap, over all elements [m].
   [[nodiscard]] NearestPoints nearest(const numerics::VectorView& y) const;
 
-  /// Told an accepted state.
+  /// Told the unknowns y (SI units) of an accepted state.
   void update(const numerics::VectorView& y);
   /// Elements that may touch before the next accepted state, (of the first wire, of the second), in their order.
   [[nodiscard]] const std::vector<std::pair<int, int>>& candidates() const { return candidates_; }

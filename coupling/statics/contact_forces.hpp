@@ -9,7 +9,7 @@ struct PinForce {
   double normal = 0.0;      ///< along the wire's normal, away from the pin [N]; >= 0 presses
   double tangential = 0.0;  ///< along the wire's tangent [N]
 };
-/// tangent: of the wire, unit; side: of SlidingContact.
+/// A force on the wire [N] by its components. tangent: of the wire, unit vector; side: of SlidingContact.
 [[nodiscard]] PinForce resolve(const Eigen::Vector2d& force, const Eigen::Vector2d& tangent, double side);
 
 /// Slip of the material over the pin since the last accepted state: dS + side R d angle [m].  theory.md (C.5)
@@ -29,6 +29,7 @@ struct PusherForces {
 [[nodiscard]] PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
                                          const numerics::PathPoint& at);
 
+/// What holds the wire from outside beside the pusher; left and right as along the chord.
 struct MountForces {
   Eigen::Vector2d total = Eigen::Vector2d::Zero();  ///< of mounts, supports and weight on the wire [N]
   double tension_left = 0.0;                        ///< [N]
@@ -38,6 +39,7 @@ struct MountForces {
 [[nodiscard]] MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state,
                                        const numerics::PathPoint& at);
 
+/// How much of the wire touches the pusher; a point contact has length 0.
 struct ContactExtent {
   double coordinate = 0.0;  ///< material coordinate of the middle of the contact [m]
   double length = 0.0;      ///< of wire between the outermost points of contact [m]

@@ -11,10 +11,12 @@ namespace snare::coupling {
 /// What the contact did within one step: whether its states changed, and how far into the step the first change came.
 class ContactMemory {
  public:
+  /// Forgets the step before; to be called at the start of every step.
   void begin() {
     fraction_.reset();
     changed_ = false;
   }
+  /// Notes that the contact's states have changed within the step.
   void change() { changed_ = true; }
   /// A change at this fraction of the step, in (0, 1).
   void at_fraction(double fraction) {

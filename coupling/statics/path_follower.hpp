@@ -17,7 +17,7 @@ struct StepOutcome {
   };
   Kind kind = Kind::taken;
   numerics::SolveReport report{};
-  double fraction = 1.0;  ///< of an event: how far into the step it happens, in (0, 1)
+  double fraction = 1.0;  ///< of an event: how far into the step it happens, in (0, 1) [-]
 };
 
 /// A path of equilibria as its follower sees it: a parameter, and a solution at the next value of it.
@@ -25,11 +25,11 @@ struct StepOutcome {
 class FollowedPath {
  public:
   virtual ~FollowedPath() = default;
-  /// Of the last accepted point.
+  /// Of the last accepted point, in the parameter's own unit (a push: its travel [m]).
   [[nodiscard]] virtual double parameter() const = 0;
-  /// Solves at a value of the parameter and accepts the solution, or puts everything back.
+  /// Solves at a value of the parameter, in its unit, and accepts the solution, or puts everything back.
   [[nodiscard]] virtual StepOutcome step_to(double parameter) = 0;
-  /// The steps towards `target` have become too small, `last` is why the last one failed: reaches the target
+  /// The steps towards `target`, in the parameter's unit, have become too small, `last` is why the last one failed: reaches the target
   /// in another way, or says why the path ends.
   [[nodiscard]] virtual numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) = 0;
 };
@@ -41,6 +41,7 @@ enum class StepMeasure {
   planned     ///< the step before a remainder was added
 };
 
+/// How a path is followed: by which measure steps grow, how small they may become, and who may end it.
 struct StepControl {
   double smallest_step = 1e-9;  ///< of the parameter, in its unit: a failed step is not halved below it
   StepMeasure measure = StepMeasure::attempted;
@@ -48,7 +49,7 @@ struct StepControl {
 };
 
 /// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled, one with
-/// an event inside ends there. Returns the report of the last step, usable when the target is reached.
+/// an event inside ends there. target: in the parameter's unit. Returns the report of the last step, usable when the target is reached.
 [[nodiscard]] numerics::SolveReport follow(FollowedPath& path, double target, const StepControl& control);
 
 }  // namespace snare::coupling

@@ -65,6 +65,7 @@ struct PushShape {
   std::vector<double> x, y, arc, tension, moment;
 };
 
+/// What a push has given, point by point in the order visited; on failure as far as it came.
 struct PushCurve {
   std::vector<PushPoint> points;
   std::vector<PushEvent> events;

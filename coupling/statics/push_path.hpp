@@ -13,7 +13,7 @@ namespace snare::coupling {
 /// A push, its travel the parameter of a path of equilibria: what a push in the plane and one in space share.
 class PushPath : public FollowedPath {
  public:
-  /// From first touch through the asked travels.
+  /// From first touch through the asked travels [m], in their order.
   [[nodiscard]] PushCurve run(const std::vector<double>& travel);
 
   [[nodiscard]] double parameter() const override { return point_.parameter; }

@@ -7,6 +7,7 @@
 
 namespace snare::coupling {
 
+/// On which side of the wire the pusher comes.
 enum class PushDirection {
   outward,  ///< with the bulge
   inward    ///< against it

@@ -34,7 +34,7 @@ class PushSensitivity {
   /// factorisation in the workspace.
   void advance(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace);
 
-  /// d force / d p at the point of the last advance(), one a variation.
+  /// d force / d p at the point of the last advance(), one a variation: [N] over the SI unit of its number.
   [[nodiscard]] const std::vector<double>& force_by() const { return force_by_; }
 
  private:

@@ -15,7 +15,7 @@ namespace snare::coupling {
 struct SlippingMount {
   double limit = 0.0;  ///< force at which the wire slips [N], > 0
   bool slips = false;
-  double slip_sign = 0.0;        ///< of the driving force dE/dS_0 while it slips
+  double slip_sign = 0.0;        ///< of the driving force dE/dS_0 while it slips, +1 or -1 [-]
   double last_coordinate = 0.0;  ///< S_0 at the last accepted state [m]
 };
 
@@ -63,10 +63,14 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
 
   double compliance = 0.0;  ///< of the pusher along its motion [m/N], >= 0
 
+  /// What contacts and mount remember: to be put aside and given to `restore` where a step is taken back.
   [[nodiscard]] const ContactStates& contact_states() const { return *this; }
+  /// Puts back what `contact_states` gave.
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
 
+  /// Columns of the border: unknowns of all contacts, and S_0 of a mount that slips.
   [[nodiscard]] int border_unknowns() const;
+  /// Places in the border of the contact's unknowns and equations, counted as in `sliding`; of the pusher; of one in `wrapped`.
   [[nodiscard]] SlidingRows sliding_rows(std::size_t contact) const {
     return SlidingRows(SlidingRows::count * static_cast<int>(contact));
   }
@@ -75,8 +79,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// Of S_0, and of the mount's equation.
   [[nodiscard]] int mount_row() const { return wrapped_rows(wrapped.size()).force; }
 
+  /// The rod that is pushed.
   [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
-  /// Place of the pusher's axis: centre + (parameter - compliance F) motion, F its force along the motion.
+  /// Place of the pusher's axis [m]: centre + (parameter - compliance F) motion, F its force along the motion [N].
   [[nodiscard]] Eigen::Vector2d pusher_centre(const numerics::PathPoint& at) const;
   /// Force of the pusher on the wire [N].
   [[nodiscard]] Eigen::Vector2d pusher_force(const numerics::PathPoint& at) const;
@@ -84,6 +89,7 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] wire::PlanarState state(const numerics::PathPoint& at) const;
   [[nodiscard]] VertexTangent tangent_at(const SlidingContact& contact, const wire::PlanarState& state) const;
 
+  /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and WrappedRows.   theory.md (C.2)-(C.8)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
   [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;

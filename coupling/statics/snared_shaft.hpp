@@ -33,6 +33,7 @@ struct ShaftPoint {
   int touching = 0;         ///< wires that press on it
 };
 
+/// The way that was asked with the force there; ends early where an equilibrium was not found.
 struct ShaftPath {
   std::vector<ShaftPoint> points;  ///< one a displacement asked for, to where it came
   numerics::SolveReport report;

@@ -26,6 +26,7 @@ class SpatialContact {
   SpatialContact(const SpatialContact&) = delete;
   SpatialContact& operator=(const SpatialContact&) = delete;
 
+  /// The wire, the equations at one equilibrium, and the pin as it stands; moving the pin is what makes the next equilibrium another.
   [[nodiscard]] const wire::SpatialRod& rod() const { return rod_; }
   [[nodiscard]] const SpatialPushSystem& system() const { return system_; }
   [[nodiscard]] SpatialPin& pin() { return system_.pin; }
@@ -57,6 +58,7 @@ class SpatialContact {
   void forget_dissipation() { dissipated_ = 0.0; }
   /// Negative pivots of the last factorisation: unstable modes.
   [[nodiscard]] int negative_pivots() const { return workspace_.solver.negative_pivots(); }
+  /// Elastic energy of the wire and potential of its weight at a point [J].
   [[nodiscard]] double energy(const numerics::PathPoint& at) const { return rod_.energy(system_.state(at)); }
 
  private:

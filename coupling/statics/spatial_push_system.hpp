@@ -48,6 +48,7 @@ class SpatialPushSystem final : public numerics::PathProblem {
 
   SpatialPin pin;
 
+  /// The rod's state at a point of the path, frames carried from the accepted one.
   [[nodiscard]] wire::SpatialState state(const numerics::PathPoint& at) const;
   /// Carries the frames to an accepted point, from which the next ones are transported.
   void accept(const numerics::PathPoint& at) { accepted_ = state(at); }
@@ -59,11 +60,13 @@ class SpatialPushSystem final : public numerics::PathProblem {
   /// Slope of the curve of contact at the contact vertex.
   [[nodiscard]] VertexSlope<3> slope(const wire::SpatialState& state) const;
 
+  /// PathProblem: equilibrium of the rod under f, and the equations in Rows.                    theory.md (C.10), (C.11)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
   [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
   [[nodiscard]] double length_scale() const override { return length_; }
 
+  /// Reactions of the mounts on the wire at the last assembly: left, right [N].
   [[nodiscard]] const std::array<Eigen::Vector3d, 2>& mount_reactions() const { return reactions_; }
 
   /// Geometry of the contact at a point.

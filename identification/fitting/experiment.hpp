@@ -26,6 +26,7 @@ struct QuadraticLaw {
   double r_squared = 1.0;  ///< coefficient of determination that was printed with it, in (0, 1]
   double to = 0.0;         ///< the range is 0 to this travel [m], > 0
 
+  /// The law's force [N] at a displacement [m].
   [[nodiscard]] double force(double displacement) const noexcept {
     return (a * displacement + b) * displacement + c;
   }  ///< [N] at a displacement [m]
@@ -45,12 +46,14 @@ struct Series {
   bool modulus_declared = true;       ///< else the modulus is the one that gives the declared stiffness
 };
 
+/// How a push of an experiment is discretised and followed: its table [solver].
 struct SolverSettings {
   int elements = 256;  ///< edges of the finest mesh, a multiple of 4, 16 to 100000
   coupling::Instability instability = coupling::Instability::follow_path;  ///< at a bifurcation
   bool extrapolate = true;  ///< Richardson extrapolation from this mesh, the half and the quarter one
 };
 
+/// What an experiment file says, read and checked; all numbers in SI units.
 struct Experiment {
   std::filesystem::path file;
   std::string title;

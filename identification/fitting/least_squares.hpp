@@ -21,12 +21,13 @@ struct Data {
     return noise.rows(of_series, measured[of_series].size());
   }
   [[nodiscard]] Eigen::Index rows() const;
-  /// (measured - computed), whitened, the data's series one below the other.
+  /// (measured - computed), whitened [-], the data's series one below the other.
   [[nodiscard]] Eigen::VectorXd residual(const Evaluation& evaluation) const;
-  /// Whitened derivatives, likewise.
+  /// Whitened derivatives [1 over the unit of the coordinate], likewise.
   [[nodiscard]] Eigen::MatrixXd jacobian(const Evaluation& evaluation) const;
 };
 
+/// What a fit has found; usable or not says its report.
 struct Fit {
   std::vector<Setting> settings;  ///< fitted ones first, then the fixed ones
   std::size_t free = 0;           ///< how many are fitted
@@ -36,14 +37,16 @@ struct Fit {
   Eigen::MatrixXd covariance;     ///< of the coordinates, (J^T J)^-1 in the directions that the data see
   double chi2 = 0.0;
   numerics::SolveReport report;
+  /// Degrees of freedom: whitened numbers less fitted ones, may be negative.
   [[nodiscard]] double dof() const { return static_cast<double>(residual.size()) - static_cast<double>(free); }
-  /// Bayesian information criterion chi2 + k ln n.
+  /// Bayesian information criterion chi2 + k ln n [-].
   [[nodiscard]] double bic() const;
   [[nodiscard]] std::vector<Setting> fitted() const;
   [[nodiscard]] std::vector<Setting> fixed() const;
   [[nodiscard]] std::vector<const Parameter*> parameters() const;  ///< of the fitted ones
 };
 
+/// When a fit ends, and who watches it.
 struct FitOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;                                   ///< relative fall of chi2 below which the fit ends
@@ -56,18 +59,18 @@ struct FitOptions {
 [[nodiscard]] Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
                       const std::vector<Setting>& fixed = {}, const FitOptions& options = {});
 
-/// Ends of the interval of one coordinate in which the profile of chi2 (all others refitted) stays within `rise` of its
+/// Ends of the interval of one coordinate (in its unit) in which the profile of chi2 [-] (all others refitted) stays within `rise` of its
 /// minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is absent.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
 };
-/// progress: as in FitOptions; after false both ends may be absent.
+/// which: of the fitted settings, from 0. rise of chi2 [-], > 0. progress: as in FitOptions; after false both ends may be absent.
 [[nodiscard]] ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum,
                                                std::size_t which, double rise,
                                                const std::function<bool(int iteration, double chi2)>& progress = {});
 
-/// (J^T J)^-1 by singular values, directions below 1e-10 of the largest (columns scaled to one) left out.
+/// (J^T J)^-1 by singular values, in the units of the columns' coordinates; directions below 1e-10 of the largest (columns scaled to one) left out.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian);
 
 }  // namespace snare::identification

@@ -38,7 +38,7 @@ class Model {
   [[nodiscard]] double declared(const Parameter& parameter) const;
   /// As files show it, in its unit.
   [[nodiscard]] double shown(const Setting& setting) const;
-  /// Bounds of the coordinate.
+  /// Bounds of the coordinate: [-] of a ratio, else in SI units.
   [[nodiscard]] double lower(const Parameter& parameter) const;
   [[nodiscard]] double upper(const Parameter& parameter) const;
 

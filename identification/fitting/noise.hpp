@@ -41,7 +41,7 @@ struct Noise {
     return summarised(series) ? summary[series].rows() : readings;
   }
 
-  /// L^-1 values, L L^T the covariance. By columns; as many operations as values.
+  /// L^-1 values [-], L L^T the covariance [N^2]. By columns of values [N]; as many operations as values.
   [[nodiscard]] Eigen::MatrixXd whiten(std::size_t series, const Eigen::MatrixXd& values) const;
   /// Mean standard deviation over all readings [N].
   [[nodiscard]] double mean_sigma(const std::vector<Series>& series) const;

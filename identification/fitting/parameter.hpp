@@ -39,9 +39,11 @@ template <class Member>
           [](PushProblem& p, ReadingModel& r, double v) { Member{}(p, r) = v; }};
 }
 
+/// Between which values a number is admissible, ends included, in its SI unit.
 struct Limits {
   double lower = 0.0, upper = 0.0;
 };
+/// These limits, in the number's SI unit.
 [[nodiscard]] inline Limits between(double lower, double upper) {
   return {lower, upper};
 }

@@ -32,6 +32,7 @@ class SharedPredictions {
   SharedPredictions(std::vector<Prediction> predictions)
       : predictions_(std::make_shared<const std::vector<Prediction>>(std::move(predictions))) {}
   operator const std::vector<Prediction>&() const { return get(); }
+  /// All of them, one a series; empty: nothing was predicted.
   [[nodiscard]] const std::vector<Prediction>& get() const {
     static const std::vector<Prediction> none;
     return predictions_ ? *predictions_ : none;
@@ -46,6 +47,7 @@ class SharedPredictions {
   std::shared_ptr<const std::vector<Prediction>> predictions_;
 };
 
+/// What a prediction computes besides the force, how densely, and who watches it.
 struct PredictionOptions {
   std::vector<double> shapes_at;                    ///< travels of which to keep the wire's shape [m]
   bool examine_out_of_plane = false;                ///< see coupling::PushOptions
@@ -68,7 +70,7 @@ struct Leg {
   bool up = true;                  ///< the displacement grows
 };
 
-/// The legs of a record, one after the other. It turns where it goes back by more than 2 % of its range.
+/// The legs of a record of displacements [m], one after the other. It turns where it goes back by more than 2 % of its range.
 [[nodiscard]] std::vector<Leg> legs_of(const std::vector<double>& displacement);
 
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
@@ -88,12 +90,13 @@ struct Leg {
 /// Recorded displacements of a series [m].
 [[nodiscard]] const std::vector<double>& measured_displacement(const Series& series);
 
-/// Misfit of predicted and measured force over the points that were reached.
+/// Misfit of predicted and measured force [N] over the points that were reached.
 struct Misfit {
   double rmse = 0.0;     ///< [N]
   double nrmse = 0.0;    ///< rmse over the range of the measured force [-]
   double largest = 0.0;  ///< largest |difference| [N]
 };
+/// Both [N], in the order of the readings; compared as far as the shorter one goes.
 [[nodiscard]] Misfit misfit(const std::vector<double>& measured, const std::vector<double>& predicted);
 
 }  // namespace snare::identification

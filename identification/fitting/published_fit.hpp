@@ -22,13 +22,14 @@ struct FitComparison {
   std::array<double, 3> deviation{};  ///< standard deviations of the published ones
   double chi2 = 0.0;                  ///< of the three
   double published_r2 = 0.0;
-  double computed_r2 = 0.0;  ///< expected of the computed curve with the common scatter
+  double computed_r2 = 0.0;  ///< expected of the computed curve with the common scatter [-]
   double scatter = 0.0;      ///< of one lost reading, from R^2, less what the curve has beside a parabola, but a
                              ///< quarter of its squares at least [N]
 };
 
+/// Published fits of all series against the computed curves.                                        theory.md (I.11)
 struct SummaryStatistics {
-  double chi2 = 0.0;          ///< of three coefficients a series, each by its own scatter, and of the scatters
+  double chi2 = 0.0;          ///< of three coefficients a series, each by its own scatter, and of the scatters [-]
                               ///< about a common one
   double coefficients = 0.0;  ///< the coefficients' part
   double dof = 0.0;

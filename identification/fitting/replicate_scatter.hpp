@@ -15,7 +15,7 @@ struct Roughness {
   double dof = 0.0;       ///< of it: 18 n / 35 for n readings, since its relative variance is 35 / (9 n)
 };
 
-/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 over all series; zero where none has three readings.
+/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 of residuals [N] over all series; zero where none has three readings.
 [[nodiscard]] Roughness roughness_of(const std::vector<Eigen::VectorXd>& residuals);
 
 /// How replicates scatter about each other.                                              theory.md (I.3)

@@ -34,7 +34,7 @@ struct JointPlace {
 /// Joints of arms, which have files; those of snares are not among them.
 [[nodiscard]] std::vector<JointPlace> joint_places(const MotionModel& model);
 
-/// A number that stands at `null` and is tried in steps of `scale`.
+/// A number that stands at `null` and is tried in steps of `scale`, both in the unit of its key.
 [[nodiscard]] MotionNumber number_at(const std::string& key, double null, double scale);
 
 /// The effect of a declared number > 0 being another, for every element of a list of the scenario that declares it: `LIST[NAME].KEY`, plausible
@@ -44,13 +44,15 @@ struct JointPlace {
 /// The same of a number of every joint's file.
 [[nodiscard]] std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
                                                            const MotionEffect& what);
-/// The effect of a declared vector of three being another, tried in steps of `scale`, for every body that declares it: `bodies[NAME].KEY`.
+/// The effect of a declared vector of three being another, tried in steps of `scale` (in the key's unit), for every body that declares it:
+/// `bodies[NAME].KEY`.
 [[nodiscard]] std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std::string& key,
                                                           const MotionEffect& what, double scale);
 
 /// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less their mean.
 struct ChannelPlace {
   std::string column;
+  /// rms in the unit of the column; between two readings, of the record [s]
   double rms = 0.0, interval = 0.0, duration = 0.0;
 };
 [[nodiscard]] std::vector<ChannelPlace> channel_places(const MotionModel& model);

@@ -23,6 +23,7 @@ struct RoundInput {
   std::function<bool(int iteration, double chi2)> progress = {};
 };
 
+/// What one pass has found: all candidates, and the model with the effect that was added.
 struct RoundResult {
   MotionRound round;
   std::optional<std::size_t> added;  ///< index of the effect

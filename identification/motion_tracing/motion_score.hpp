@@ -30,7 +30,8 @@ struct MotionScores {
   ColouredNoise noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
 };
 
-/// Tests of all effects. The size of the trial follows from what it changes: between a fiftieth of the residual and as much as it.
+/// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows from what it changes:
+/// between a fiftieth of the residual and as much as it.
 [[nodiscard]] MotionScores score_motion(const MotionModel& model, const MotionData& data, const MotionFit& fit,
                                         const std::vector<MotionSetting>& fixed,
                                         const std::vector<MotionEffect>& effects, double significance);

@@ -47,7 +47,7 @@ struct MotionStage {
 struct MotionCandidate {
   MotionScore score;
   bool refitted = false;
-  double rmse = 0.0;                  ///< after the refit
+  double rmse = 0.0;                  ///< after the refit, as MotionStage::rmse, in the unit of the channel or [-]
   double delta_bic = 0.0;             ///< of the refit, of prewhitened residuals
   std::vector<TracedNumber> numbers;  ///< of the effect after the refit
   bool plausible = true;
@@ -56,12 +56,14 @@ struct MotionCandidate {
   std::size_t class_index = 0;
 };
 
+/// One round: candidates, their classes, and which was added and why, or why none.
 struct MotionRound {
   std::vector<MotionCandidate> candidates;        ///< ranked, best first
   std::vector<std::vector<std::string>> classes;  ///< of labels
   std::string added, reason;
 };
 
+/// All that the tracing of a scenario has found, as trace.json tells it.
 struct MotionTrace {
   std::vector<MotionEffect> effects;
   MotionStage declared, base, final;
@@ -73,7 +75,7 @@ struct MotionTrace {
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
   VerdictKind kind = VerdictKind::nothing_missing;
-  double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares
+  double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
   std::string channel;      ///< of the first effect selected
   std::vector<Leftover> leftovers;
   std::string next_measurement;

@@ -7,6 +7,7 @@
 
 namespace snare::identification {
 
+/// How far the tracing of records goes, and who watches it.
 struct MotionTraceOptions {
   bool effects = true;  ///< false: the base fit only
   double significance = 0.01;

@@ -17,6 +17,7 @@ struct BoundedProblem {
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops
 };
 
+/// Why the iteration ended.
 enum class BoundedEnd {
   converged,        ///< the last step lowered the sum by less than its share `tolerance`, or no step lowers it
   iteration_limit,  ///< it may fall further
@@ -24,6 +25,7 @@ enum class BoundedEnd {
   no_start          ///< no residual at the start
 };
 
+/// Where it came to.
 struct BoundedResult {
   Eigen::VectorXd x;
   double chi2 = 0.0;  ///< sum of squares, a number without unit
@@ -31,7 +33,7 @@ struct BoundedResult {
   BoundedEnd end = BoundedEnd::converged;
 };
 
-/// From a start, which is moved into the bounds. tolerance > 0, max_iterations >= 1.
+/// From a start (x in its units), which is moved into the bounds. tolerance: relative fall of the sum, > 0; max_iterations >= 1.
 [[nodiscard]] BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::VectorXd& start,
                                                   int max_iterations, double tolerance);
 

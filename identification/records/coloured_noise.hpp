@@ -13,23 +13,25 @@ namespace snare::identification {
 ///   e_t = sum_k a_k e_(t-k) + w_t,   w white of variance s^2.
 struct Autoregression {
   Eigen::VectorXd coefficients;
-  double innovation = 0.0;  ///< s
+  double innovation = 0.0;  ///< s, over the channel's scale [-]
 };
+/// One autoregression a piece.
 struct ColouredNoise {
   std::vector<Autoregression> pieces;  ///< of every piece of the data
 };
+/// The noise of a residual [-]: one autoregression a channel, by its pieces together, told piece by piece.
 [[nodiscard]] ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual);
 
-/// White residuals e_t - sum a_k e_(t-k), over their s; the first ones of a piece, with fewer before them, too.
+/// White residuals [-], e_t - sum a_k e_(t-k), over their s; the first ones of a piece, with fewer before them, too.
 [[nodiscard]] Eigen::VectorXd whitened(const MotionData& data, const ColouredNoise& noise,
                                        const Eigen::VectorXd& residual);
 
-/// Sigma^(1/2)' g: |that|^2 is the variance of g'e. Columns filtered by s / (1 - sum a_k q^k) from their ends to their beginnings.
+/// Sigma^(1/2)' g [-]: |that|^2 is the variance of g'e. Columns filtered by s / (1 - sum a_k q^k) from their ends to their beginnings.
 [[nodiscard]] Eigen::MatrixXd coloured(const MotionData& data, const ColouredNoise& noise,
                                        const Eigen::MatrixXd& columns);
 
-/// Covariance of least squares under that noise: (J'J)^+ J' Sigma J (J'J)^+, directions below 1e-9 of the largest left out (columns scaled
-/// to one).
+/// Covariance of least squares under that noise, in the units of the jacobian's columns: (J'J)^+ J' Sigma J (J'J)^+, directions below 1e-9 of
+/// the largest left out (columns scaled to one).
 [[nodiscard]] Eigen::MatrixXd sandwich(const MotionData& data, const ColouredNoise& noise,
                                        const Eigen::MatrixXd& jacobian);
 

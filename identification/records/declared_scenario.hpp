@@ -15,7 +15,7 @@ struct DeclaredScenario {
   base::TomlNode scenario;
   std::map<std::string, base::TomlNode> arms;  ///< files of the arms, by their names
 
-  /// The number under a key such as `bodies[visitor].mass_kg`, `arms[a].angles_deg[2]` or `arms[a].joint.J1.coulomb_Nm` (of the
+  /// The number, in its key's unit, under a key such as `bodies[visitor].mass_kg`, `arms[a].angles_deg[2]` or `arms[a].joint.J1.coulomb_Nm` (of the
   /// joint's own table, else of `every_joint`); nothing where there is none.
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
   /// Likewise of a text.

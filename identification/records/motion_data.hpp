@@ -19,7 +19,7 @@ using ChannelScales = std::map<std::string, double>;
 struct ResidualPiece {
   std::size_t record = 0, channel = 0;  ///< indices in the set
   Eigen::Index begin = 0, size = 0;
-  double scale = 1.0;
+  double scale = 1.0;  ///< of its channel, in the unit of that
 };
 
 /// The readings that are compared.
@@ -29,9 +29,9 @@ struct MotionData {
   std::vector<ResidualPiece> pieces;
   Eigen::Index rows = 0;
 
-  /// (measured - predicted) / scale, piece by piece; empty where a prediction failed.
+  /// (measured - predicted) / scale [-], piece by piece; empty where a prediction failed.
   [[nodiscard]] Eigen::VectorXd residual(const std::vector<RecordPrediction>& predictions) const;
-  /// Predicted / scale, likewise.
+  /// Predicted / scale [-], likewise.
   [[nodiscard]] Eigen::VectorXd signal(const std::vector<RecordPrediction>& predictions) const;
 };
 [[nodiscard]] MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records,
@@ -40,6 +40,7 @@ struct MotionData {
 /// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones stay.
 [[nodiscard]] ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records);
 
+/// What a fit of records has found; usable or not says its report.
 struct MotionFit {
   std::vector<MotionSetting> settings;
   std::vector<RecordPrediction> predictions;
@@ -52,6 +53,7 @@ struct MotionFit {
   numerics::SolveReport report;
 };
 
+/// How records are fitted, when that ends, and who watches it.
 struct MotionFitOptions {
   FitMethod method = FitMethod::gauss_newton;
   int max_iterations = 30;

@@ -17,7 +17,7 @@ enum class Differences {
   forward   ///< one: for the way to a minimum, which they do not move
 };
 
-/// Derivatives of the stacked signal by some numbers, each times the number's scale: differences of a tenth of the scale, one-sided
+/// Derivatives of the stacked signal [-] by some numbers, each times the number's scale: differences of a tenth of the scale, one-sided
 /// at a bound. A column whose simulations fail is zero. `base`: predictions at `settings`.
 [[nodiscard]] Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
                                                  const std::vector<MotionSetting>& settings,

@@ -31,7 +31,7 @@ struct RecordPrediction {
 /// Numbers with their values.
 struct MotionSetting {
   MotionNumber number;
-  double value = 0.0;
+  double value = 0.0;  ///< in the unit of its key
 };
 
 /// How lively the declared motion is, for the sizes at which effects are tried: root mean squares along the first record.

@@ -37,10 +37,10 @@ struct MotionNumber {
   std::function<void(SignalChanges&, double value)> signal;
 };
 
-/// A number as text that reads back to the same double.
+/// A number, of any unit, as text that reads back to the same double.
 [[nodiscard]] std::string exact_text(double value);
 
-/// The number under a key of the scenario or of an arm's file.
+/// The number under a key of the scenario or of an arm's file; `declared` in the unit of the key.
 [[nodiscard]] MotionNumber keyed_number(const std::string& key, double declared);
 
 /// "mm", "N m/rad", ... of a key that ends in its unit; empty: a pure number.

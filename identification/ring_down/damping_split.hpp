@@ -16,12 +16,12 @@ struct DecayOfMode {
 
 /// Material and mass-proportional damping from decay rates.
 struct DampingSplit {
-  bool separated = false;  ///< two frequencies far enough apart
-  Estimate bending_time;   ///< [s]; not separated: the value if all were material
-  Estimate mass_rate;      ///< [1/s]; not separated: the value if all were mass-proportional
-  double correlation = 0.0;
-  double misfit_p = 1.0;  ///< P(chi2 beyond what is left) where there are more modes than numbers
-  std::string statement;  ///< in words: what is known and what is not
+  bool separated = false;    ///< two frequencies far enough apart
+  Estimate bending_time;     ///< [s]; not separated: the value if all were material
+  Estimate mass_rate;        ///< [1/s]; not separated: the value if all were mass-proportional
+  double correlation = 0.0;  ///< of the two estimates [-]
+  double misfit_p = 1.0;     ///< P(chi2 beyond what is left) where there are more modes than numbers [-]
+  std::string statement;     ///< in words: what is known and what is not
 };
 [[nodiscard]] DampingSplit split_damping(const std::vector<DecayOfMode>& decays);
 

@@ -34,6 +34,7 @@ struct RingDownMode {
   [[nodiscard]] bool significant() const { return amplitude.value > 5.0 * amplitude.error; }
 };
 
+/// What is found in one record; usable or not says its report.
 struct RingDownFit {
   std::vector<RingDownMode> modes;   ///< by frequency
   std::size_t largest = 0;           ///< index of the mode of the largest amplitude

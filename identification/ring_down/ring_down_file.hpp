@@ -14,7 +14,7 @@ namespace snare::identification {
 /// One recorded ring-down with what is known of its modes.
 struct RingDownSeries {
   RingDown data;
-  std::vector<double> bending_share;  ///< of its modes by frequency; empty: computed from the wire, or 1
+  std::vector<double> bending_share;  ///< of its modes by frequency; empty: computed from the wire, or 1 [-]
 };
 
 /// Free vibrations of one wire.                                                    docs/ringdown_file.md

@@ -25,7 +25,7 @@ struct ChannelColumns {
 /// theory.md (I.6)
 [[nodiscard]] std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data, const Fit& current);
 
-/// P that the noise alone leaves as much in the direction of some smooth function of the channel: the score test of its
+/// P that the noise alone leaves as much in the direction of some smooth function of the channel [-]: the score test of its
 /// variance,                                                                         theory.md (I.8)
 ///   Q = r^T C K C^T r,  C the columns with the fitted ones projected out,  K_ij = exp(-(i - j)^2 / (2 l^2)),
 ///   l = 2.5.

@@ -27,6 +27,7 @@ class Progress {
     seconds_.emplace_back(what, std::chrono::duration<double>(now - last_).count());
     last_ = now;
   }
+  /// What was booked, by stage in its order [s].
   [[nodiscard]] const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
 
  private:

@@ -24,6 +24,7 @@ struct ResidualTests {
   [[nodiscard]] bool acceptable(double tolerance) const { return like_noise() || rmse <= noise || within(tolerance); }
 };
 
+/// All tests of what this fit leaves in the fitted series.
 [[nodiscard]] ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fit);
 
 }  // namespace snare::identification

@@ -14,6 +14,7 @@
 
 namespace snare::identification {
 
+/// All that a tracing has found, as trace.json tells it; usable or not says its report.
 struct Trace {
   std::vector<Series> series;  ///< as used: a published law at its travels in the place of readings
   std::vector<bool> heldout;   ///< one a series
@@ -57,6 +58,7 @@ struct Trace {
   numerics::SolveReport report;  ///< of the base fit: without it there is no trace
 };
 
+/// How far a tracing goes, at which levels, and who watches it.
 struct TraceOptions {
   std::vector<std::string> free;  ///< keys of the base model; empty: the experiment's own, else the two stiffnesses
   int most_effects = 3;

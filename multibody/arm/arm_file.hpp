@@ -30,7 +30,7 @@ struct ArmDescription {
   int tip = 0;            ///< frame
   double arm_mass = 0.0;  ///< of the arm's own URDF [kg]
 
-  /// Coordinates with the elastic joints at the given angles; a free base at the origin.
+  /// Coordinates (tree.coordinates()) [rad, m, -] with the elastic joints at the given angles [rad]; a free base at the origin.
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& angles) const;
 };
 

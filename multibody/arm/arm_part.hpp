@@ -72,6 +72,7 @@ struct ArmTolerances {
 /// tau: torque of a joint's spring with its damper on the motor. Other parts attach to a frame of the arm: `velocities`
 /// is also the first row of the equations of motion, to which -J^T F is added for a wrench F with the frame's Jacobian of
 /// kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
+/// Unknowns y of the whole run and their rates in SI units, times in s.
 class ElasticArmPart : public numerics::DaePart {
  public:
   /// The arm stays the caller's and outlives the part.
@@ -115,15 +116,16 @@ class ElasticArmPart : public numerics::DaePart {
   /// Torque of a drive [N m].
   [[nodiscard]] double drive_torque(double time, numerics::VectorView y, int joint) const;
 
-  /// The last event is the torque of this joint reaching this size; a negative joint: never.
+  /// The last event is the torque of this joint reaching this size; a negative joint: never. Torque [N m], > 0.
   void watch_torque(int joint, double torque);
   [[nodiscard]] int torque_event() const { return events_per_joint * arm_.motors(); }
 
-  /// The integration stays within this time until told again: what jumps at its ends has its inner value there.
+  /// The integration stays within this time until told again: what jumps at its ends has its inner value there. Times [s].
   void enter_interval(double begin, double end);
   /// The first time behind a time that the integration must stop at, an end of a course or of a load; infinity where there is none.
   [[nodiscard]] double next_break(double time) const;
 
+  /// The arm whose equations these are.
   [[nodiscard]] const ElasticArm& arm() const { return arm_; }
   /// Poses and velocities of the tree at y. Kept until another y is asked for: many frames of an arm are asked for at one.
   [[nodiscard]] const Kinematics& kinematics(numerics::VectorView y) const;

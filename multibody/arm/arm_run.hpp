@@ -25,6 +25,7 @@ struct ArmScenario {
   std::function<bool(double)> progress;
 };
 
+/// One line of the history.
 struct ArmSample {
   double time = 0.0;  ///< [s]
   ArmState state;
@@ -36,6 +37,7 @@ struct ArmSample {
   Wrench momentum;  ///< of the tree, about the world's origin
 };
 
+/// Something that the integration stopped for.
 struct ArmEvent {
   double time = 0.0;  ///< [s]
   int joint = -1;     ///< -1: all

@@ -26,12 +26,12 @@ class ArmStepper {
   [[nodiscard]] std::vector<int> ended_modes(const numerics::DaePoint& at, std::span<const int> found);
   /// Whether the step has ended at the torque of a switch.
   [[nodiscard]] bool torque_reached() const { return torque_reached_; }
-  /// Told the modes that are over at a time: why the integration cannot go on, where a joint's events crowd.
+  /// Told the modes that are over at a time [s]: why the integration cannot go on, where a joint's events crowd.
   [[nodiscard]] std::optional<std::string> crowding(const std::vector<int>& ended_modes, double time);
-  /// The next switch, once its time has come or its torque is reached. True: the drives are new.
+  /// The next switch, once its time [s] has come or its torque is reached; y in SI units. True: the drives are new.
   [[nodiscard]] bool change_drives(double time, Eigen::Ref<Eigen::VectorXd> y);
 
-  /// Appends to a memory what the part does not remember itself, and takes it back: switches and crowding of events.
+  /// Appends to a memory what the part does not remember itself, and takes it back: switches and crowding of events. Times [s].
   void save_state(std::vector<double>& memory) const;
   void restore_state(std::span<const double>& memory);
 

@@ -39,8 +39,10 @@ class DeflectionLaw {
   /// Throws std::invalid_argument.
   explicit DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading = StiffnessReading::continuous,
                          DampingRate damping_rate = DampingRate::deflection, double jump_width = 0.0);
+  /// One piece: stiffness [N m/rad], >= 0; damping [N m s/rad], >= 0.
   [[nodiscard]] static DeflectionLaw linear(double stiffness, double damping);
 
+  /// The branch, -n ... n, that holds a deflection [rad]; at a jump the outer one.
   [[nodiscard]] int branch_of(double deflection) const;
   [[nodiscard]] double lower_end(int branch) const;  ///< [rad]; -infinity for the outermost
   [[nodiscard]] double upper_end(int branch) const;

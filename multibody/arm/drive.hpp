@@ -18,6 +18,7 @@ enum class DriveMode {
   course   ///< the motor runs its course whatever it takes: qm' = r'
 };
 
+/// One motor's drive: a mode and the numbers of that mode.
 struct Drive {
   DriveMode mode = DriveMode::limp;
   double proportional = 0.0;                               ///< kp [N m/rad], >= 0
@@ -33,10 +34,15 @@ struct Drive {
   std::shared_ptr<const Torque> given;
   double begin = 0.0;  ///< time at which a given torque begins [s]; none before
 
+  /// The brake holds the motor where it is.
   [[nodiscard]] static Drive locked();
+  /// No torque at all.
   [[nodiscard]] static Drive limp();
+  /// A torque over time: values [N m] at times [s] from `begin` on, see Torque; strictly ascending.
   [[nodiscard]] static Drive with_torque(double begin, std::vector<double> times, std::vector<double> values);
+  /// The motor runs this course [rad, s].
   [[nodiscard]] static Drive on_course(const Course& course);
+  /// A servo that holds an angle [rad], with its gains kp [N m/rad] and kd [N m s/rad] and its limit [N m].
   [[nodiscard]] static Drive holding(double angle, double proportional, double derivative,
                                      double limit = std::numeric_limits<double>::infinity());
 
@@ -44,7 +50,7 @@ struct Drive {
   [[nodiscard]] bool rules() const { return mode == DriveMode::locked || mode == DriveMode::course; }
   /// Torque of the servo before its limit, or the given one [N m].
   [[nodiscard]] double demand(double time, double angle, double rate) const;
-  /// The first time behind a time at which the integration must stop; infinity where there is none.
+  /// The first time behind a time at which the integration must stop [s]; infinity where there is none.
   [[nodiscard]] double next_break(double time) const;
 };
 

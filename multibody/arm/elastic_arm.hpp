@@ -33,6 +33,7 @@ struct ElasticArm {
   Tree tree;
   std::vector<ElasticJoint> joints;
 
+  /// Motors there are, one an elastic joint.
   [[nodiscard]] int motors() const { return static_cast<int>(joints.size()); }
 };
 
@@ -42,7 +43,7 @@ struct ArmState {
   Eigen::VectorXd motor, motor_rate;  ///< qm [rad], qm' [rad/s]
 };
 
-/// At rest in the pose q, springs relaxed.
+/// At rest in the pose q, (tree.coordinates()) [rad, m, -], springs relaxed.
 [[nodiscard]] ArmState resting(const ElasticArm& arm, const Eigen::VectorXd& q);
 
 /// q - qm of a joint [rad], its rate [rad/s].
@@ -59,7 +60,7 @@ struct ArmMode {
 
 /// Modes with the springs' stiffness at the given deflections (0: the law's first piece), without damping, friction and
 /// velocities:  (K - (2 pi f)^2 M) x = 0, M = diag(H, B), of the free and servo-held motors.         theory.md (A.13)
-/// Modes of no stiffness come out with frequency 0. Ascending. Motors that are locked do not take part.
+/// Modes of no stiffness come out with frequency 0. Ascending. Motors that are locked do not take part. q [rad, m, -], deflections [rad].
 [[nodiscard]] std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd& q,
                                                  const std::vector<Drive>& drives,
                                                  const Eigen::VectorXd& deflections = {});

@@ -26,7 +26,7 @@ class EventCrowding {
     return time - before < window;
   }
 
-  /// Appends what it knows to a memory, and takes it back: see numerics::DaePart.
+  /// Appends what it knows to a memory, and takes it back: see numerics::DaePart. Times [s].
   void save_state(std::vector<double>& memory) const {
     for (const std::vector<double>& times : times_) {
       memory.push_back(static_cast<double>(times.size()));

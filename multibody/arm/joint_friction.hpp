@@ -17,14 +17,15 @@ struct JointFriction {
   double offset = 0.0;              ///< T_0 [N m]
   double viscous_asymmetry = 0.0;   ///< d_0 [N m s/rad], |d_0| <= d
 
+  /// Whether the motor can stick: then it is at rest exactly.
   [[nodiscard]] bool sticks() const { return breakaway > 0.0; }
-  /// Where a motor at rest goes that this torque turns: 0 it stays, else +1 or -1.
+  /// Where a motor at rest goes that this torque [N m] turns: 0 it stays, else +1 or -1.
   [[nodiscard]] int leaves(double applied) const;
   /// Torque against the turning, direction +1 or -1 (also at w = 0) [N m].
   [[nodiscard]] double torque(int direction, double velocity) const;
   /// d torque / d velocity [N m s/rad].
   [[nodiscard]] double slope(int direction, double velocity) const;
-  /// The same with a torque that the load needs to drive the gear backwards on top of the dry friction.
+  /// The same with a torque [N m], >= 0, that the load needs to drive the gear backwards on top of the dry friction.
   [[nodiscard]] JointFriction with_back_drive(double torque) const;
 };
 

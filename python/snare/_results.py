@@ -96,9 +96,11 @@ def _arrays(value: Any) -> Any:
 def load(path: Union[str, os.PathLike]) -> Result:
     """What the command has written, as the verbs return it.
 
-    path: a folder of results (``--out``), a JSON document or a CSV table of one. Of a folder: its document with
-    ``curves``, ``history``, ``telemetry`` and ``table`` (of a sweep) where it has them, and ``laws`` for a law.json. FileNotFoundError where there is
-    nothing of the kind, ValueError where a file is none of these.
+    path: a folder of results (``--out``), a JSON document or a CSV table of one.
+    Returns of a folder its document with ``curves``, ``history``, ``telemetry`` and ``table`` (of a sweep) where it has them, and ``laws``
+    for a law.json; of a JSON document a dictionary, lists of numbers as arrays; of a table its columns of one length. Tables are in SI
+    units, documents in the units that their names end in. Raises FileNotFoundError where there is nothing of the kind, ValueError where a
+    file is none of these.
     """
     path = pathlib.Path(path)
     if path.is_dir():

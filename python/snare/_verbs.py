@@ -167,7 +167,8 @@ def compare(case: File, *, set: Optional[Mapping[str, Any]] = None, threads: int
     """Run the same case with every model of the wire: accuracy and cost side by side.
 
     case: experiment, wire or scenario file; the other arguments as of ``push``.
-    Returns compare.json (docs/law_json.md). Raises InputError; what a model could not do stands in the result.
+    Returns compare.json (docs/law_json.md), with a list: ``cases`` of pushes, ``models`` of a scenario; numbers are in the units that
+    their names end in. Raises InputError; what a model could not do stands in the result.
     """
     return _core.compare(case, _pairs(set), threads, _watcher(progress))
 

@@ -26,7 +26,9 @@ def _axes(axes: Optional[Any]) -> Any:
 
 def curves(result: Result, axes: Optional[Any] = None) -> Any:
     """Force [N] against travel [mm] of every series of ``push``, ``fit`` or ``trace``: the last model as a line, the declared or
-    base model dashed where there is one, readings as points."""
+    base model dashed where there is one, readings as points.
+
+    result: of such a verb; its ``curves`` are, by series, columns of one length in SI units."""
     axes = _axes(axes)
     for k, (name, columns) in enumerate(result["curves"].items()):
         travel, colour = 1e3 * columns["displacement_m"], f"C{k}"
@@ -43,7 +45,7 @@ def curves(result: Result, axes: Optional[Any] = None) -> Any:
 
 
 def residuals(result: Result, axes: Optional[Any] = None) -> Any:
-    """Measured less computed force [N] against travel [mm] of every series with readings."""
+    """Measured less computed force [N] against travel [mm] of every series with readings. Arguments as of ``curves``."""
     axes = _axes(axes)
     for name, columns in result["curves"].items():
         if "measured_N" in columns:
@@ -58,7 +60,9 @@ def residuals(result: Result, axes: Optional[Any] = None) -> Any:
 
 def law(one: Law, positions: Optional[Sequence[float]] = None, axes: Optional[Any] = None) -> Any:
     """The table's force [N] against travel [mm] at some positions [m], at the nominal slack: with the band of its stated error, and
-    the simple laws dashed. positions: those of the simple laws, where None."""
+    the simple laws dashed.
+
+    one: a Law. positions: a list of numbers [m], in the law's range; those of the simple laws, where None."""
     axes = _axes(axes)
     if positions is None:
         positions = sorted({simple.position for simple in one.simple})
@@ -79,7 +83,10 @@ def law(one: Law, positions: Optional[Sequence[float]] = None, axes: Optional[An
 
 def history(result: Result, *columns: str, axes: Optional[Any] = None) -> Any:
     """Columns of a history [SI units] against time [s]; all forces of contact where none are named. Of several models each is a
-    line."""
+    line.
+
+    result: of ``simulate``; its ``history`` has columns of one length. columns: their names, as ``"wire_tension_N"``; each is drawn
+    over the others, so that they had better have one unit."""
     axes = _axes(axes)
     runs = result["history"]
     if "time_s" in runs:
@@ -88,5 +95,28 @@ def history(result: Result, *columns: str, axes: Optional[Any] = None) -> Any:
         for column in columns or [name for name in run if name == "force_N" or name.endswith("normal_N")]:
             axes.plot(run["time_s"], run[column], label=f"{model} {column}".strip())
     axes.set_xlabel("time [s]")
+    axes.legend()
+    return axes
+
+
+def indices(result: Result, field: Optional[str] = None, axes: Optional[Any] = None) -> Any:
+    """Shares [-] of a field's variance that are due to each variable of a ``sweep`` with ``design = "sensitivity"``: of each by itself and
+    with the others, as bars with their 95 % intervals.
+
+    result: of ``sweep``; its ``fields`` have such shares, lists of two for an interval. field: name of a collected one; the first that has
+    shares, where None. Raises ValueError where there is none."""
+    fields = {name: one["sobol"]["variables"] for name, one in result["fields"].items() if one.get("sobol", {}).get("variables")}
+    if not fields or field not in (None, *fields):
+        raise ValueError(f"field = {field!r}, must be one with Sobol indices: {', '.join(fields) or 'this sweep has none'}")
+    name = field if field is not None else next(iter(fields))
+    axes = _axes(axes)
+    places = np.arange(len(fields[name]))
+    for k, (index, label) in enumerate((("first", "by itself"), ("total", "with others"))):
+        share = np.array([one[index] for one in fields[name].values()], dtype=float)
+        ends = np.array([one[f"{index}_interval95"] for one in fields[name].values()], dtype=float)
+        axes.bar(places + 0.4 * k - 0.2, share, 0.36, label=label, color=f"C{k}")
+        axes.errorbar(places + 0.4 * k - 0.2, share, np.abs(ends.T - share), fmt="none", ecolor="0.2", capsize=3)
+    axes.set_xticks(places, list(fields[name]))
+    axes.set_ylabel(f"share of the variance of {name} [-]")
     axes.legend()
     return axes

@@ -217,6 +217,24 @@ TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   EXPECT_LT(s["energy_error"].get<double>(), 1e-3);
 }
 
+// Joint 3 stands at 80 deg of the pose plus the step of 0.5 deg: the table shows what the files say, not 80.49999999999999.
+TEST_F(SimulateCommand, AnglesOfTheFilesHaveNoTailInTheHistory) {
+  ASSERT_EQ(run("jemrms_step.toml", "--set duration_s=1"), 0) << contents("log.txt");
+  std::istringstream history(contents("out/history.csv"));
+  const auto cells_of = [&history] {
+    std::string line, cell;
+    std::getline(history, line);
+    std::vector<std::string> cells;
+    for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
+    return cells;
+  };
+  const std::vector<std::string> names = cells_of();
+  const auto column =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), "joint_3_motor_deg") - names.begin());
+  ASSERT_LT(column, names.size());
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(cells_of().at(column), "80.5");
+}
+
 TEST_F(SimulateCommand, LimpArmIsPushed) {
   ASSERT_EQ(run("ssrms_push.toml", "--set duration_s=5"), 0) << contents("log.txt");
   EXPECT_LT(summary()["energy_error"].get<double>(), 1e-3);

@@ -49,6 +49,21 @@ class Pictures(unittest.TestCase):
             axes.figure.savefig(file.name)
             self.assertGreater(len(file.read()), 1000)
 
+    def test_indices_are_bars_with_their_intervals(self):
+        result = snare.sweep(setting.SOURCE / "examples/sweep.toml")
+        axes = snare.plot.indices(result)
+        shares = result["fields"]["force"]["sobol"]["variables"]
+        self.assertEqual([text.get_text() for text in axes.get_xticklabels()], list(shares))
+        bars = [bar.get_height() for bar in axes.patches]  # first of every variable, then total of every variable
+        np.testing.assert_allclose(bars, [one[index] for index in ("first", "total") for one in shares.values()])
+        (ends,) = axes.containers[-1].lines[2]  # of the last error bars
+        np.testing.assert_allclose([segment[:, 1] for segment in ends.get_segments()], [one["total_interval95"] for one in shares.values()])
+        self.assertIn("force", axes.get_ylabel())
+        with self.assertRaisesRegex(ValueError, "must be one with Sobol indices: force"):
+            snare.plot.indices(result, "tension")
+        with self.assertRaisesRegex(ValueError, "this sweep has none"):
+            snare.plot.indices({"fields": {"force": {"mean": 1.0}}})
+
 
 if __name__ == "__main__":
     setting.main()

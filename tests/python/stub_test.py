@@ -3,12 +3,16 @@
 import ast
 import inspect
 import re
+import sys
 import unittest
 
 import setting
 import snare
 import snare.plot
 from snare import _core
+
+sys.path.insert(0, str(setting.SOURCE / "tests/docs"))
+from python_docstrings import says_shapes, says_units  # noqa: E402
 
 STUB = ast.parse((setting.SOURCE / "python/snare/_core.pyi").read_text())
 
@@ -67,25 +71,37 @@ class Docstrings(unittest.TestCase):
                 self.assertTrue(inspect.getdoc(one), name)
 
     def test_verbs_name_their_arguments_results_and_errors(self):
-        for verb in (snare.push, snare.fit, snare.trace, snare.distil, snare.simulate, snare.compare):
+        for verb in (snare.push, snare.fit, snare.trace, snare.distil, snare.simulate, snare.compare, snare.sweep):
             text = inspect.getdoc(verb)
             first = list(inspect.signature(verb).parameters)[0]
             self.assertIn("Returns", text, verb.__name__)
             self.assertIn("Raises InputError", text, verb.__name__)
             self.assertTrue(f"{first}:" in text or "Arguments as of" in text, verb.__name__)
 
-    def test_numbers_have_units(self):
+    def test_numbers_have_units_and_shapes(self):
+        without_numbers = ("name", "formula", "title", "dissipates")
         for actual in (_core.Law, _core.SimpleLaw):
+            whole = actual.__doc__
             for name, one in vars(actual).items():
                 if name.startswith("_"):
                     continue
                 text = one.__doc__ if isinstance(one, property) else one.__doc__.split("\n", 1)[1]
                 self.assertTrue(text and text.strip(), name)
-                if name not in ("name", "formula", "parameters", "title", "dissipates", "simple", "in_range"):
-                    self.assertRegex(text, r"\[(m|N|N/m)\]|in J", name)
+                if name in without_numbers:
+                    continue
+                over = re.search(r"as of `(\w+)`", text)
+                texts = [text] + ([getattr(actual, over.group(1)).__doc__] if over else [])
+                self.assertTrue(any(says_units(t) for t in texts) or name == "simple", name)
+                if not isinstance(one, property):
+                    self.assertTrue(any(says_shapes(t) for t in texts + [whole]), name)
         for name, one in vars(snare.plot).items():
             if inspect.isfunction(one) and not name.startswith("_"):
-                self.assertRegex(inspect.getdoc(one), r"\[.*(N|m|s|SI).*\]", name)
+                self.assertTrue(says_units(inspect.getdoc(one)), name)
+
+    def test_functions_of_the_compiled_part_say_what_they_give(self):
+        for name, one in vars(_core).items():
+            if inspect.isbuiltin(one):
+                self.assertTrue(one.__doc__.split("\n", 1)[1].strip(), name)
 
 
 if __name__ == "__main__":
