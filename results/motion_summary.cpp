@@ -2,12 +2,14 @@
 #include "results/in_mm.hpp"
 
 #include "base/index.hpp"
+#include "coupling/dynamics/modes.hpp"
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace snare::results {
 
@@ -264,6 +266,23 @@ json peak_torques(const FinishedMotion& run) {
   return all;
 }
 
+/// Small oscillations about the end, and by what moves the frequency of that in which it has the largest share.
+json modes_json(const FinishedMotion& run) {
+  json list = json::array(), frequencies = json::object();
+  std::map<std::string, double> largest;
+  for (const coupling::MotionMode& mode : coupling::modes_at(run.asked.motion, run.asked.options, run.result.last)) {
+    json shares = json::object();
+    for (const auto& [name, share] : mode.shares) {
+      shares[name] = share;
+      if (share <= largest[name]) continue;
+      largest[name] = share;
+      frequencies[name] = mode.frequency;
+    }
+    list.push_back({{"frequency_Hz", mode.frequency}, {"damping_ratio", mode.damping}, {"shares", shares}});
+  }
+  return {{"modes", list}, {"frequencies_Hz", frequencies}};
+}
+
 json head(const scenario::Scenario& asked) {
   return {{"schema", "snare-summary/1"},
           {"kind", asked.kind},
@@ -314,6 +333,7 @@ json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions
     summary.update(lists_json(finished.front()));
     if (motions.composed) summary["outcome"] = outcome_json(motions, finished.front());
     if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished.front());
+    if (motions.output.modes && finished.front().result.report.usable()) summary.update(modes_json(finished.front()));
     return summary;
   }
   summary["models"] = json::array();

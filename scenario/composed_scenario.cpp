@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "base/units.hpp"
+#include "coupling/dynamics/modes.hpp"
 #include "scenario/arm_items.hpp"
 #include "scenario/body_contact_reader.hpp"
 #include "scenario/capture_reader.hpp"
@@ -264,7 +265,9 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   if (c.motion.arms.empty() && c.motion.bodies.empty() && c.wires.empty())
     root.fail("", "must list something that moves: [[arms]], [[bodies]], [[snares]] or [[wires]]");
   WireMotions motions;
-  motions.output = read_motion_output(root.table("output"), run.options);
+  const TomlTable output = root.table("output");
+  motions.output = read_motion_output(output, run.options);
+  motions.output.modes = output.boolean_or("modes", false);
   motions.composed = true;
   motions.sensors = read_sensors(c, run.options.output_interval);
   motions.capture = read_capture(c);
@@ -276,6 +279,14 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.model_keys = std::move(c.model_keys);
   motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
+  if (motions.output.modes) {
+    const int unknowns = coupling::unknowns_of(run.motion, run.options);
+    if (unknowns > coupling::most_unknowns_of_modes) {
+      output.fail("modes", fmt::format("needs at most {} unknowns, there are {}: take fewer elements or laws for wires",
+                                       coupling::most_unknowns_of_modes, unknowns));
+      document.finish();
+    }
+  }
   motions.runs.push_back(std::move(run));
   return motions;
 }

@@ -44,6 +44,7 @@ void check_output_interval(const base::TomlTable& root, double duration, double 
 /// What `[output]` says beside the interval.
 struct MotionOutput {
   bool paraview = false;               ///< shapes of the wires are written
+  bool modes = false;                  ///< small oscillations about the end; of a scenario that lists what there is
   double checkpoint_wall_time = 10.0;  ///< least wall time between two checkpoints that are written [s], >= 0
 };
 /// Also sets the options' interval of checkpoints; their duration must be known.

@@ -9,6 +9,7 @@
 #include "coupling/dynamics/law_wire_part.hpp"
 #include "coupling/dynamics/load_part.hpp"
 #include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/modes.hpp"
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/peak_force.hpp"
 #include "coupling/dynamics/phase_watch.hpp"
@@ -60,6 +61,9 @@ class MotionRun {
   void resume(const MotionState& from);
   /// Goes on to `limit` [s].
   MotionResult go(double limit);
+  /// See modes_at, about the present state (run_modes.cpp). Frequencies in Hz.
+  [[nodiscard]] std::vector<MotionMode> modes();
+  [[nodiscard]] int unknowns() const { return system_->size(); }
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
@@ -85,6 +89,9 @@ class MotionRun {
   /// The pending phase begins now, and those that begin with it. Whether the run is over.
   [[nodiscard]] bool begin_phases();
   void restore_phases(std::span<const double>& memory);
+
+  /// Of the kinetic energy, of a vector of all unknowns.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> shares_of(const Eigen::VectorXcd& x);
 
   // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);

@@ -82,6 +82,22 @@ TEST_F(SimulateCommand, TellsWhatSensorsReadAndJointsBore) {
   EXPECT_GT(s["outcome"]["peak_torque_Nm"]["rms::shoulder_pitch"].get<double>(), 0.0);
 }
 
+// The arm with its carriage locked at first: what swings are its joints.
+TEST_F(SimulateCommand, TellsWhatItSwingsByAtTheEnd) {
+  ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.2 --set output.modes=true"), 0) << contents("log.txt");
+  const json s = summary();
+  ASSERT_GT(s["modes"].size(), 5U);
+  double before = 0.0;
+  for (const json& mode : s["modes"]) {
+    EXPECT_GE(mode["frequency_Hz"].get<double>(), before);
+    before = mode["frequency_Hz"].get<double>();
+    for (const auto& [name, share] : mode["shares"].items()) {
+      EXPECT_LE(share.get<double>(), 1.0 + 1e-9);
+      EXPECT_TRUE(s["frequencies_Hz"].contains(name)) << name;
+    }
+  }
+}
+
 TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
     ASSERT_EQ(run(name, "--set duration_s=0.04 --set contact.solver.elements=24 --set contact.body.distance_mm=0.02"),

@@ -30,7 +30,8 @@ TEST(PointTree, BallsHoldAllThatFollowsInThem) {
     if (ball.point) {
       ++seen[*ball.point];
       for (const PointTree::Ball& outer : around) {
-        if (outer.next > index) EXPECT_LE((points[*ball.point] - outer.centre).norm(), outer.radius * (1.0 + 1e-12));
+        if (outer.next <= index) continue;
+        EXPECT_LE((points[*ball.point] - outer.centre).norm(), outer.radius * (1.0 + 1e-12));
       }
     }
     around.push_back(ball);

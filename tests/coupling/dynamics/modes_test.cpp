@@ -1,0 +1,128 @@
+#include "coupling/dynamics/modes.hpp"
+
+#include "coupling/dynamics/simulate.hpp"
+#include "tests/support/crossed_wires.hpp"
+#include "tests/support/motion_bodies.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace snare::coupling {
+namespace {
+
+using Eigen::Vector3d;
+using test::block;
+using test::body_of;
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+/// About the state a moment after the start.
+std::vector<MotionMode> modes_of(const Motion& motion) {
+  MotionOptions options = test::fine(1e-6, 1e-6);
+  const MotionResult result = simulate(motion, options);
+  EXPECT_TRUE(result.report.usable()) << result.report.message;
+  return modes_at(motion, options, result.last);
+}
+
+// (K/I)^1/2 and c/(2 (K I)^1/2) on a clamped fixture: three shifts and three turns, each by itself.
+TEST(Modes, OfABodyOnABushingAreThoseOfTheClosedForm) {
+  Motion motion;
+  motion.bodies = {block("visitor", 3.0, {0.3, 0.4, 0.5})};
+  MotionBushing bushing;
+  bushing.first = {};
+  bushing.second = body_of(0);
+  bushing.translational_stiffness = {2000.0, 3000.0, 5000.0};
+  bushing.rotational_stiffness = {40.0, 50.0, 70.0};
+  bushing.rotational_damping = {0.2, 0.0, 0.0};
+  motion.bushings = {bushing};
+  const std::vector<MotionMode> modes = modes_of(motion);
+  ASSERT_EQ(modes.size(), 6U);
+  const std::array<std::pair<const char*, double>, 6> expected{{{"visitor turn y", 50.0 / 0.4},
+                                                                {"visitor turn x", 40.0 / 0.3},
+                                                                {"visitor turn z", 70.0 / 0.5},
+                                                                {"visitor shift x", 2000.0 / 3.0},
+                                                                {"visitor shift y", 1000.0},
+                                                                {"visitor shift z", 5000.0 / 3.0}}};
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    EXPECT_NEAR(modes[k].frequency * two_pi, std::sqrt(expected[k].second), 1e-8 * std::sqrt(expected[k].second));
+    ASSERT_FALSE(modes[k].shares.empty());
+    EXPECT_EQ(modes[k].shares[0].first, expected[k].first);
+    EXPECT_NEAR(modes[k].shares[0].second, 1.0, 1e-9);
+    EXPECT_NEAR(modes[k].damping, k == 1 ? 0.2 / (2.0 * std::sqrt(40.0 * 0.3)) : 0.0, 1e-8);
+  }
+}
+
+TEST(Modes, OfTwoFreeBodiesLeaveOutWhatNothingHolds) {
+  Motion motion;
+  motion.bodies = {block("one", 3.0, {0.3, 0.4, 0.5}), block("other", 5.0, {0.4, 0.4, 0.5})};
+  MotionBushing bushing;
+  bushing.first = body_of(0);
+  bushing.second = body_of(1);
+  bushing.translational_stiffness = {2000.0, 3000.0, 5000.0};
+  bushing.rotational_stiffness = {40.0, 50.0, 70.0};
+  motion.bushings = {bushing};
+  const std::vector<MotionMode> modes = modes_of(motion);
+  ASSERT_EQ(modes.size(), 6U);
+  const double reduced = 1.0 / 3.0 + 1.0 / 5.0;
+  EXPECT_NEAR(modes[3].frequency * two_pi, std::sqrt(2000.0 * reduced), 1e-6);
+  EXPECT_NEAR(modes[4].frequency * two_pi, std::sqrt(3000.0 * reduced), 1e-6);
+  EXPECT_NEAR(modes[5].frequency * two_pi, std::sqrt(5000.0 * reduced), 1e-6);
+  // The lighter one has the larger share: m v is the same of both.
+  EXPECT_EQ(modes[3].shares[0].first, "one shift x");
+  EXPECT_NEAR(modes[3].shares[0].second, 5.0 / 8.0, 1e-6);
+}
+
+// Beside the symmetric eigenvalue problem of the arm alone.
+TEST(Modes, OfAnArmAreItsNaturalModes) {
+  Motion motion;
+  MotionArm arm;
+  arm.arm = test::one_joint("link", Vector3d(1.0, 2.0, 0.5));
+  arm.arm.joints[0].spring = multibody::DeflectionLaw::linear(900.0, 0.0);
+  arm.start = multibody::resting(arm.arm, Eigen::VectorXd::Zero(arm.arm.tree.coordinates()));
+  arm.drives = {multibody::Drive::holding(0.0, 70.0, 0.0)};
+  motion.arms = {arm};
+  const std::vector<MotionMode> modes = modes_of(motion);
+  const auto expected = multibody::natural_modes(arm.arm, arm.start.q, arm.drives);
+  ASSERT_EQ(modes.size(), expected.size());
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    EXPECT_NEAR(modes[k].frequency, expected[k].frequency, 1e-6 * expected[k].frequency);
+}
+
+// A taut string: n/(2 l) (T/rho)^1/2, both ways across. What bends and is lumped errs by h^2.
+TEST(Modes, OfAStretchedWireAreThoseOfAString) {
+  constexpr double length = 0.2, strain = 0.05;
+  Motion motion;
+  motion.wires.push_back(
+      test::wire_between("string", Vector3d::Zero(), {length, 0.0, 0.0}, 40, strain, wire::SpatialEnd::Kind::pin));
+  wire::RodInMotion& rod = motion.wires[0].rod;
+  rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-7;
+  rod.damping.bending_time = rod.damping.axial_time = 0.0;
+  const std::vector<MotionMode> modes = modes_of(motion);
+  ASSERT_GT(modes.size(), 6U);
+  const double tension = strain * rod.properties.axial_stiffness;
+  const double stretched = rod.mass_per_length / (1.0 + strain);  // mass by present length
+  for (int n = 1; n <= 3; ++n) {
+    const double expected = n / (2.0 * length) * std::sqrt(tension / stretched);
+    for (const int k : {2 * n - 2, 2 * n - 1})
+      EXPECT_NEAR(modes[static_cast<std::size_t>(k)].frequency, expected, 3e-3 * n * expected) << n;
+    EXPECT_EQ(modes[static_cast<std::size_t>(2 * n - 1)].shares[0].first, "string");
+  }
+}
+
+TEST(Modes, OfTooManyUnknownsAreRefused) {
+  Motion motion;
+  motion.wires.push_back(test::wire_between("string", Vector3d::Zero(), {0.2, 0.0, 0.0}, 400, 0.01));
+  const MotionOptions options = test::fine(1e-6, 1e-6);
+  EXPECT_GT(unknowns_of(motion, options), most_unknowns_of_modes);
+  const MotionResult result = simulate(motion, options);
+  EXPECT_ANY_THROW(static_cast<void>(modes_at(motion, options, result.last)));
+}
+
+}  // namespace
+}  // namespace snare::coupling
