@@ -347,7 +347,7 @@ TEST(TomlReader, ACanonicalTextWithoutAKey) {
 // Names stand in pages, tables, addresses of keys and names of files.
 TEST(TomlReader, PlainNames) {
   const auto problems = [](const std::string& name) {
-    TomlDocument document("a.toml", "name =  + name + \n");
+    TomlDocument document("a.toml", "name = '''" + name + "'''\n");
     require_plain_name(document.root(), "name", document.root().text("name"));
     try {
       document.finish();

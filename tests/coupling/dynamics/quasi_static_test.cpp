@@ -78,13 +78,13 @@ TEST(QuasiStaticWire, ItsTenthModeIsCriticallyDampedAtLeast) {
   EXPECT_EQ(wire::RodModel(rod).damping().bending_time, declared.bending_time);
 }
 
-// Without any damping declared it follows no waves either: some more steps, not a hundred times as many.
+// Without any damping declared it follows no waves either: some more steps, not a hundred times as many. The slow body gets its speed back.
 TEST(QuasiStaticWire, FollowsNoWavesWithoutDamping) {
   Motion bare = head_on(true, 8.9, 0.1);
   bare.wires[0].rod.damping = {};
   const MotionResult damped = run(head_on(true, 8.9, 0.1), 0.04), r = run(bare, 0.04);
   EXPECT_LT(r.statistics.steps, 4 * damped.statistics.steps);
-  EXPECT_NEAR(r.impulse[0].y(), damped.impulse[0].y(), 3e-4 * damped.impulse[0].y());
+  EXPECT_NEAR(r.impulse[0].y(), 2.0 * 8.9 * 0.1, 3e-4 * 2.0 * 8.9 * 0.1);
 }
 
 TEST(QuasiStaticWire, ClosesItsBalances) {
