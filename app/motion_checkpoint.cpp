@@ -37,6 +37,10 @@ void fields(auto& a, IdaStatistics& s) {
       s.error_test_failures)(s.restarts)(s.smallest_step)(s.largest_step)(s.integrands)(s.residual_seconds)(
       s.jacobian_seconds)(s.factor_seconds)(s.solve_seconds)(s.integrand_seconds);
 }
+void fields(auto& a, Effort& e) {
+  static_assert(sizeof(Effort) == 2 * sizeof(double));
+  a(e.evaluations)(e.since);
+}
 void fields(auto& a, IdaReport& r) {
   a(r.termination)(r.iterations)(r.residual_norm)(r.message)(r.time)(r.step)(r.worst_unknowns);
 }
@@ -83,7 +87,7 @@ void fields(auto& a, LeftOutInertia& i) {
 }
 void fields(auto& a, MotionSums& s) {
   a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.wires)(s.phases)(s.largest_penetration)(s.largest_drift)(
-      s.start_energy)(s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds);
+      s.start_energy)(s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds)(s.effort);
 }
 void fields(auto& a, MotionState& s) {
   a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
@@ -112,7 +116,7 @@ void fields(auto& a, MotionProgress& p) {
 
 namespace {
 
-constexpr std::string_view mark = "snare motion checkpoint 4\n";
+constexpr std::string_view mark = "snare motion checkpoint 5\n";
 
 /// Of the input and of the program that is to go on with it.
 std::uint64_t key_of(const std::string& input) {

@@ -36,7 +36,7 @@ class Runs {
   [[nodiscard]] std::vector<MotionRecord> all() {
     bool stopped = false;
     while (!stopped && progress_.finished.size() < motions_.size()) stopped = !run_next();
-    if (!stopped) {
+    if (!stopped && !kept_) {
       std::error_code ignored;
       std::filesystem::remove(policy_.file, ignored);
     }
@@ -88,17 +88,23 @@ class Runs {
         });
     console_.end_progress();
     const bool stopped = result.report.termination == numerics::Termination::interrupted;
+    const bool stalled = result.report.termination == numerics::Termination::stalled;
+    const std::scoped_lock lock(mutex_);
+    kept_ = stalled && progress_.state && progress_.finished.size() + 1 == motions_.size();
     if (!result.report.usable()) {
       console_.complain(fmt::format("{}: {} (what was reached is kept{})", asked.name, result.report.message,
-                                    stopped ? "; the same command goes on from the last checkpoint" : ""));
+                                    stopped ? "; the same command goes on from the last checkpoint"
+                                    : kept_
+                                        ? "; with a smaller solver.least_advance_s the same command goes on from there"
+                                    : stalled ? "; a smaller solver.least_advance_s gives it more"
+                                              : ""));
     }
-    const std::scoped_lock lock(mutex_);
-    if (stopped) write();  // before the motion counts as finished: it goes on from its last checkpoint
+    if (stopped || kept_) write();  // before the motion counts as finished: it goes on from its last checkpoint
     progress_.finished.push_back({std::move(samples), std::move(result)});
     if (stopped) return false;
     progress_.samples.clear();
     progress_.state.reset();
-    if (seconds_since(written_) >= policy_.wall_time) write();
+    if (!kept_ && seconds_since(written_) >= policy_.wall_time) write();
     return true;
   }
 
@@ -121,6 +127,7 @@ class Runs {
   std::mutex mutex_;           // of progress_, which an interruption looks at from another thread
   Clock::time_point written_;  // when a checkpoint was
   bool failed_ = false;        // the last checkpoint could not be written
+  bool kept_ = false;          // the last of the motions has stalled; its checkpoint stays
 };
 
 }  // namespace

@@ -117,6 +117,20 @@ void TomlDocument::report_unknown_keys() {
   }
 }
 
+std::string TomlDocument::canonical(std::string_view without) const {
+  const std::size_t dot = without.find('.');
+  if (dot == std::string_view::npos) return canonical_text(root_);
+  TomlNode root = root_;
+  for (TomlEntry& entry : root.entries) {
+    if (entry.key == without.substr(0, dot))
+      std::erase_if(entry.node.entries, [&](const TomlEntry& e) { return e.key == without.substr(dot + 1); });
+  }
+  std::erase_if(root.entries, [&](const TomlEntry& e) {
+    return e.key == without.substr(0, dot) && e.node.kind == TomlNode::Kind::table && e.node.entries.empty();
+  });
+  return canonical_text(root);
+}
+
 void TomlDocument::finish() {
   report_unknown_keys();
   if (problems_.empty()) return;

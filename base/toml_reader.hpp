@@ -48,8 +48,9 @@ class TomlDocument {
   /// Adds a problem found by other means, in a file that this one names for instance. The same problem is kept once.
   void add(InputProblem problem);
 
-  /// Of what the file says after its overrides; comments and the order of keys make no difference.
-  [[nodiscard]] std::string canonical() const { return canonical_text(root_); }
+  /// Of what the file says after its overrides; comments and the order of keys make no difference, nor does the value of `without`, a key
+  /// of a table of the root: "solver.least_advance_s".
+  [[nodiscard]] std::string canonical(std::string_view without = {}) const;
 
   /// Throws InputError if anything was wrong. Problems of the file come first, by line, then those of
   /// overrides and those that were added.

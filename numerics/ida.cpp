@@ -61,9 +61,10 @@ struct Ida::Memory {
   double time = 0.0;
   std::vector<int> events;
   IdaReport report;
-  IdaStatistics counted;      // of earlier starts: IDA counts from each start
-  bool starting = false;      // no step since the start
-  double longest_step = 0.0;  // since the last start after which there was one; 0: none yet
+  IdaStatistics counted;                       // of earlier starts: IDA counts from each start
+  bool starting = false;                       // no step since the start
+  double longest_step = 0.0;                   // since the last start after which there was one; 0: none yet
+  StepLimit limited_by = StepLimit::accuracy;  // the last step
 
   Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& wanted);
   void update_counts();
@@ -257,6 +258,8 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   check(IDASetStopTime(m.ida.get(), stop), "IDASetStopTime");
   if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(stop)), "IDASetInitStep");
   double reached = m.time;
+  const IdaStatistics before = m.callbacks.statistics;
+  m.callbacks.stubborn = -1;
   const int code = IDASolve(m.ida.get(), stop, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
   m.update_counts();
   if (code < 0) {
@@ -269,6 +272,14 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   m.report.time = reached;
   check(IDAGetLastStep(m.ida.get(), &m.report.step), "IDAGetLastStep");
   m.longest_step = m.starting ? m.report.step : std::max(m.longest_step, m.report.step);
+  if (s.newton_failures > before.newton_failures)
+    m.limited_by = StepLimit::newton;
+  else if (s.error_test_failures > before.error_test_failures)
+    m.limited_by = StepLimit::error_test;
+  else if (m.report.step > 0.4 * max_step)  // IDA halves what would not quite reach a limit
+    m.limited_by = StepLimit::longest;
+  else
+    m.limited_by = m.starting ? StepLimit::start : StepLimit::accuracy;
   m.starting = false;
   ++s.steps;
   s.smallest_step = std::min(s.smallest_step, m.report.step);
@@ -305,6 +316,37 @@ void Ida::set_integrals(const Eigen::VectorXd& values) {
 const std::vector<int>& Ida::events_found() const {
   return memory_->events;
 }
+LimitOfStep Ida::what_limited() const {
+  const Memory& m = *memory_;
+  const auto& blocks = m.callbacks.system.layout().blocks();
+  const auto block_of = [&](int unknown) {
+    const auto behind = std::ranges::find_if(blocks, [unknown](const DaeBlock& b) { return b.first > unknown; });
+    return unknown < 0 ? -1 : static_cast<int>(behind - blocks.begin()) - 1;
+  };
+  if (m.limited_by == StepLimit::newton) return {m.limited_by, block_of(m.callbacks.stubborn)};
+  if (m.limited_by == StepLimit::start || m.limited_by == StepLimit::longest) return {m.limited_by, -1};
+  // The local errors, over their tolerances, of what is tested.
+  Eigen::VectorXd errors(m.y.size());
+  const SunVector out = view(errors, m.context);
+  check(IDAGetEstLocalErrors(m.ida.get(), out.get()), "IDAGetEstLocalErrors");
+  errors.array() /=
+      m.callbacks.scale.array() * (m.callbacks.relative.array() * m.y.array().abs() + m.tolerance.array());
+  if (!m.options.test_algebraic) errors.array() *= m.identity.array();
+  LimitOfStep worst{m.limited_by, -1};
+  double largest = 0.0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const double size = errors.segment(blocks[b].first, blocks[b].count).norm();
+    if (!(size > largest)) continue;
+    largest = size;
+    worst.block = static_cast<int>(b);
+  }
+  return worst;
+}
+
+const std::string& Ida::name_of_block(int block) const {
+  return memory_->callbacks.system.layout().blocks().at(static_cast<std::size_t>(block)).name;
+}
+
 double Ida::last_step() const {
   return memory_->report.step;
 }

@@ -63,6 +63,22 @@ enum class IdaAdvance {
   failed          ///< see `report`; the state is that of the last accepted step
 };
 
+/// What the length of a step came from.
+enum class StepLimit {
+  newton,      ///< Newton's method did not converge on a longer one
+  error_test,  ///< the error of a longer one was too large
+  accuracy,    ///< chosen beforehand so that the error passes
+  start,       ///< the first one after a start
+  longest      ///< no longer one was allowed
+};
+constexpr int step_limits = 5;  ///< how many there are
+
+/// That, and the block of unknowns in which it was worst; -1: none.
+struct LimitOfStep {
+  StepLimit kind = StepLimit::accuracy;
+  int block = -1;
+};
+
 /// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse
 /// Jacobian; the pattern is analysed when it changes only.                                theory.md (M.1), (M.2)
 /// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up. Times in s, y in SI units.
@@ -101,6 +117,9 @@ class Ida {
   [[nodiscard]] Eigen::VectorXd interpolate_integrals(double time, int derivative = 0) const;
   /// For every event function: 0, or the direction (-1, +1) in which it passed zero.
   [[nodiscard]] const std::vector<int>& events_found() const;
+  /// Of the last step.
+  [[nodiscard]] LimitOfStep what_limited() const;
+  [[nodiscard]] const std::string& name_of_block(int block) const;
   [[nodiscard]] double last_step() const;
   [[nodiscard]] int last_order() const;
   [[nodiscard]] const IdaReport& report() const;

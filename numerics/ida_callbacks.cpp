@@ -96,6 +96,10 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
   constexpr double converged_at_once = 1e-4;  // of the share
   constexpr double of_round_off = 1e-4;       // of the tolerance
   const double size = step.cwiseProduct(weight).lpNorm<Eigen::Infinity>();
+  const auto give_up = [&] {
+    step.cwiseProduct(weight).cwiseAbs().maxCoeff(&stubborn);
+    return SUN_NLS_CONV_RECVR;
+  };
   if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;
   if (iteration == 0) {
     if (size <= converged_at_once * at.share) return SUN_NLS_SUCCESS;
@@ -103,13 +107,13 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
     const double rate = size / last_correction;
     // What no longer shrinks is round-off, when it is far below the tolerance.
     if (size <= of_round_off && rate > worst_rate) return SUN_NLS_SUCCESS;
-    if (rate > worst_rate) return SUN_NLS_CONV_RECVR;
+    if (rate > worst_rate) return give_up();
     remainder = rate / (1.0 - rate);
     const int left = at.most - 1 - iteration;
-    if (!at.current && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share)
-      return SUN_NLS_CONV_RECVR;
+    if (!at.current && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share) return give_up();
   }
   last_correction = size;
+  if (iteration + 1 >= at.most) static_cast<void>(give_up());  // should it not be enough
   return std::max(remainder, best_rate) * size <= at.share ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
 }
 

@@ -38,6 +38,7 @@ struct IdaCallbacks {
   // Of the Newton iteration: the last correction of this step, and what the last rate of convergence leaves after one.
   double last_correction = 0.0;
   double remainder = unknown_remainder;  ///< factor on the last correction [-]
+  int stubborn = -1;                     // the unknown with the largest correction where it did not converge
 
   static constexpr double unknown_remainder = 20.0;
 

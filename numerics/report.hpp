@@ -12,7 +12,8 @@ enum class Termination {
   step_too_small,   ///< the path could not be followed with the smallest allowed step
   singular_matrix,  ///< the tangent matrix could not be factorised
   not_finite,       ///< a NaN or infinity appeared in the residual
-  interrupted       ///< the caller asked to stop
+  interrupted,      ///< the caller asked to stop
+  stalled           ///< it went on, but so slowly that it was given up
 };
 
 /// What a solver returns beside its result. A failure to converge is data, not an exception.

@@ -162,7 +162,7 @@ WireMotions read_arm_contact(TomlDocument& document, const std::filesystem::path
   if (!arm || !contact) finish_without(document, arm ? "contact" : "arm");
   document.finish();
   WireMotions motions = motions_of(*contact);
-  motions.input = document.canonical() + asked.arm.input + contact->input;
+  motions.input = document.canonical(least_advance_key) + asked.arm.input + contact->input;
   for (NamedMotion& run : motions.runs) add_arm(asked, run.motion);
   return motions;
 }

@@ -271,7 +271,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.composed = true;
   motions.sensors = read_sensors(c, run.options.output_interval);
   motions.capture = read_capture(c);
-  motions.input = c.input + document.canonical();
+  motions.input = c.input + document.canonical(least_advance_key);
   motions.duration = run.options.duration;
   document.finish();
   for (DeclaredWire& w : c.wires)

@@ -1,5 +1,6 @@
 #include "scenario/contact_scenario.hpp"
 
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "coupling/dynamics/start.hpp"
@@ -43,6 +44,7 @@ WireModel read_model(const TomlTable& table) {
                                             {"stretched_wire_linear", {false, LawModel::stretched_wire_linear}}};
   WireModel model;
   model.name = table.text("name");
+  base::require_plain_name(table, "name", model.name);
   model.kind = table.text("model");
   const std::optional<Asked> asked = table.choice("model", kinds);
   if (!asked) return model;
@@ -54,6 +56,7 @@ WireModel read_model(const TomlTable& table) {
 void read_body(const TomlTable& table, ContactScenario& scenario) {
   coupling::MotionBody& body = scenario.body;
   body.name = table.text_or("name", "body");
+  base::require_plain_name(table, "name", body.name);
   body.properties = read_body_properties(table);
   scenario.probe = read_vector_or_zero(table, "probe_mm", Range::from(-farthest_mm, farthest_mm), mm);
   body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
@@ -114,7 +117,7 @@ ContactScenario read_contact(TomlDocument& document) {
   scenario.elements = root.table("solver").integer_or("elements", 60, 8, 20000);
   scenario.formulation = read_formulation(root.table("solver"));
   scenario.output = read_motion_output(root.table("output"), o);
-  scenario.input = document.canonical();
+  scenario.input = document.canonical(least_advance_key);
   document.finish();
   return scenario;
 }

@@ -1,6 +1,7 @@
 #include "scenario/include.hpp"
 
 #include "base/files.hpp"
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "scenario/composed_scenario.hpp"
 
@@ -175,6 +176,8 @@ std::vector<Include> read_includes(const std::filesystem::path& file, const Toml
     for (const char* key : {"frame", "position_mm", "rotation_deg", "rpy_deg"}) static_cast<void>(table.has(key));
     if (one.name.find("::") != std::string::npos || one.name == "world")
       table.fail("name", "must be a name of its own, without \"::\" and not \"world\"");
+    else
+      base::require_plain_name(table, "name", one.name);
     if (std::any_of(all.begin(), all.end(), [&one](const Include& other) { return other.name == one.name; }))
       table.fail("name", "is taken by another part");
     one.frame = list->items.at(index++);

@@ -65,6 +65,15 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping);
   w.wire.rod.quasi_static = stand_in.quasi_static;
   w.law = stand_in.law;
+  // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
+  // without a force: it has no equilibrium that could be followed.
+  constexpr double least_share = 1e-3;
+  if (w.wire.rod.quasi_static &&
+      w.specification.torsional_stiffness() < least_share * w.specification.bending_stiffness())
+    table.fail(
+        table.has("torsional_stiffness_Nm2") ? "torsional_stiffness_Nm2" : "bending_stiffness_Nm2",
+        fmt::format("must leave a quasi-static wire a torsional stiffness of at least {:g} of its bending stiffness",
+                    least_share));
   w.wire.rod.damping = damping;
   w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind;
   w.wire.strength = read_strength(table, w.specification);

@@ -82,6 +82,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   if (solver.has("max_order")) o.max_order = solver.integer("max_order", 1, 5);
   o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
+  o.least_advance = solver.number_or("least_advance_s", least_advance, Range::from(0.0, 1e6));
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
 }
 
@@ -100,10 +101,17 @@ MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions&
   return output;
 }
 
+namespace {
+
+/// Of stretch [s]. A wire that takes longer to give way along itself is rigid for what a motion lasts; metals take 1e-7 to 1e-4 s.
+constexpr double longest_axial_time = 0.1;
+
+}  // namespace
+
 wire::RodDamping read_damping(const TomlTable& table) {
   wire::RodDamping damping;
   damping.bending_time = table.number_or("bending_time_s", 1e-5, Range::from(0.0, 10.0));
-  damping.axial_time = table.number_or("axial_time_s", 1e-5, Range::from(0.0, 10.0));
+  damping.axial_time = table.number_or("axial_time_s", 1e-5, Range::from(0.0, longest_axial_time));
   damping.mass_rate = table.number_or("mass_rate_1_s", 0.0, Range::from(0.0, 1e6));
   return damping;
 }

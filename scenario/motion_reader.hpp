@@ -18,7 +18,11 @@ inline constexpr std::string_view scenario_schema = "snare-scenario/1";
 
 inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts [s]
 inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
-inline constexpr double farthest_mm = 1e5;                ///< of anything from anything [mm]
+/// What a window of work must bring a motion on by [s]: see docs/decisions/0038.
+inline constexpr double least_advance = 0.005;
+/// Its key: when to give up makes no difference to what a run that goes on computes.
+inline constexpr std::string_view least_advance_key = "solver.least_advance_s";
+inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
 
 /// Three numbers under a key; nothing when they are wrong. Range in the file's unit, of which one is `unit` SI units; result in SI.
 [[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const base::TomlTable& table, std::string_view key,

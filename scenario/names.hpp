@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -23,6 +24,8 @@ class Names {
     const std::size_t own = scope.empty() || name.empty() ? 0 : scope.size() + 2;
     if (name.find("::", own) != std::string::npos)
       table.fail("name", "must not have \"::\", which parts names of what belongs together");
+    else
+      base::require_plain_name(table, "name", name);
     if (!add(name)) table.fail("name", fmt::format("is taken by another {}", what_));
     return name;
   }

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace snare::wire {
 
@@ -16,6 +18,14 @@ MaterialMesh checked_mesh(const RodInMotion& rod) {
   return rod.mesh();
 }
 
+/// Kelvin-Voigt time of bending of a quasi-static wire, at least [s]: 2/omega of the tenth mode, between pins, of the inertia that it keeps.
+/// Its waves stand for nothing; where nothing damps them the integrator follows them.                        theory.md (M.18)
+double damping_of_waves(const RodInMotion& rod, double share) {
+  constexpr double mode = 10.0;
+  const double number = mode * std::numbers::pi / rod.length;  // of the wave [1/m]
+  return 2.0 / (number * number) * std::sqrt(share * rod.mass_per_length / rod.properties.bending_stiffness);
+}
+
 }  // namespace
 
 RodModel::RodModel(const RodInMotion& constants)
@@ -23,6 +33,9 @@ RodModel::RodModel(const RodInMotion& constants)
       rod_(checked_mesh(constants), constants.properties,
            constants.formulation == Formulation::higher_order ? Strains::twist : Strains::all),
       controls_(constants.controls()) {
+  if (constants.quasi_static)
+    constants_.damping.bending_time =
+        std::max(constants.damping.bending_time, damping_of_waves(constants, inertial_share()));
   // m_i = rho A (h_{i-1} + h_i)/2 (M.3).
   mass_.assign(base::at(vertices()), 0.0);
   for (int e = 0; e < edges(); ++e) {

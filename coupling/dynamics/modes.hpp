@@ -10,7 +10,7 @@
 
 namespace snare::coupling {
 
-/// A small oscillation of everything together about a state.                                          theory.md (M.30)
+/// A small oscillation of everything together about a state.                                          theory.md (M.31)
 struct MotionMode {
   double frequency = 0.0;  ///< |lambda|/(2 pi): of the undamped oscillation [Hz]
   double damping = 0.0;    ///< ratio -Re lambda/|lambda| [-]; negative: it grows
@@ -25,7 +25,7 @@ inline constexpr int most_unknowns_of_modes = 1200;
 
 /// Oscillations of a motion about a state of it [SI units], by the eigenvalues of its linearised equations: contacts, drives and stuck joints stay
 /// as they are, and what the state itself moves by is held. Slower than 1e-3 rad/s and overdamped ones are left out; ascending.
-/// Throws base::InputError above `most_unknowns_of_modes`.                                            theory.md (M.30)
+/// Throws base::InputError above `most_unknowns_of_modes`.                                            theory.md (M.31)
 [[nodiscard]] std::vector<MotionMode> modes_at(const Motion& motion, const MotionOptions& options,
                                                const MotionState& state);
 

@@ -29,6 +29,9 @@ struct MotionOptions {
   /// At every multiple of this the integration begins anew at first order from what a MotionState holds, so that
   /// going on from there gives the same bits as having gone through [s], > 0.
   double checkpoint_interval = std::numeric_limits<double>::infinity();
+  /// Simulated time that a window of evaluations must bring [s], >= 0: a run of which it brings less has stalled and is given up, after
+  /// half a minute or so of a core; see numerics::Progress.                                         theory.md (M.30)
+  double least_advance = 0.0;
   std::function<bool()> stop;  ///< asked after every step; true: stop. The observer is asked at output times only
 };
 

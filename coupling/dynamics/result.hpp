@@ -7,6 +7,7 @@
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
 #include "numerics/ida.hpp"
+#include "numerics/progress.hpp"
 
 #include <Eigen/Core>
 
@@ -114,6 +115,7 @@ struct MotionSums {
   long samples = 0;                                                  ///< given to the observer
   numerics::IdaStatistics statistics;
   double wall_seconds = 0.0;  ///< [s]
+  numerics::Effort effort;
 };
 
 /// All that a motion needs to go on from a time.

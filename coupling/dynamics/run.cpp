@@ -26,7 +26,11 @@ constexpr double share_of_bodies = 1e-3;
 }  // namespace
 
 MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const MotionObserver& observer)
-    : motion_(motion), options_(options), observer_(observer), phases_(motion.phases) {
+    : motion_(motion),
+      options_(options),
+      observer_(observer),
+      phases_(motion.phases),
+      progress_(options.least_advance) {
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
@@ -255,6 +259,7 @@ MotionResult MotionRun::go(double limit) {
       pass(stop);
       continue;
     }
+    const long evaluated = ida_->statistics().residuals;
     const numerics::IdaAdvance advance = ida_->advance(stop, longest_step());
     report = ida_->report();
     if (advance == numerics::IdaAdvance::failed) break;
@@ -267,6 +272,12 @@ MotionResult MotionRun::go(double limit) {
     forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(of_contacts));
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
+    const long evaluations = ida_->statistics().residuals - evaluated;
+    if (const auto stalled = progress_.add(*ida_, evaluations, options_.duration, sums_.effort)) {
+      report.termination = numerics::Termination::stalled;
+      report.message = *stalled;
+      break;
+    }
     const std::vector<int> found = ida_->events_found();
     // Events behind the beginning of a phase are events no more.
     const bool behind = time_ < ida_->time();

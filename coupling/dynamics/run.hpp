@@ -16,6 +16,7 @@
 #include "coupling/dynamics/result.hpp"
 #include "coupling/dynamics/wire_pair_part.hpp"
 #include "numerics/ida.hpp"
+#include "numerics/progress.hpp"
 
 #include <Eigen/Core>
 
@@ -138,6 +139,7 @@ class MotionRun {
   std::vector<LeftOutMomentum> left_out_;  // of every wire
   double time_ = 0.0;
   MotionSums sums_;
+  numerics::Progress progress_;
   std::optional<std::string> broken_;  // a wire at its strength, a body that is too fast
   bool not_finite_ = false;            // a sample was not given
   bool over_ = false;                  // a phase has ended the run

@@ -1,6 +1,7 @@
 #include "identification/records/record_file.hpp"
 
 #include "base/files.hpp"
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "identification/records/record_csv.hpp"
 
@@ -61,6 +62,7 @@ double number_by_column(const TomlTable& table, const char* key, const std::stri
 void read_record(const TomlTable& table, const TomlNode* node, const std::filesystem::path& folder, RecordSet& set) {
   MotionRecord record;
   record.name = table.text("name");
+  base::require_plain_name(table, "name", record.name);
   for (const MotionRecord& other : set.records)
     if (other.name == record.name) table.fail("name", "is taken by another record");
   record.set = read_set(table, node);

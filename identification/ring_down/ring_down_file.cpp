@@ -1,6 +1,7 @@
 #include "identification/ring_down/ring_down_file.hpp"
 
 #include "base/csv.hpp"
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "scenario/push_reader.hpp"
@@ -67,6 +68,7 @@ RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const
   RingDownSeries series;
   series.data = read_readings(document, table, folder);
   series.data.name = table.text("name");
+  base::require_plain_name(table, "name", series.data.name);
   series.data.modes = table.integer_or("modes", 1, 1, most_modes);
   series.data.friction = table.boolean_or("friction", true);
   if (table.has("bending_share")) {

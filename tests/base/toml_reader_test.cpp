@@ -2,8 +2,10 @@
 
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "base/plain_name.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -330,6 +332,35 @@ TEST(TomlReader, FilesThatCannotBeReadHaveTheirMessage) {
     EXPECT_EQ(message(folder / "a.toml"), (folder / "a.toml").string() + ": cannot be read (Permission denied)");
   }
   std::filesystem::remove_all(folder);
+}
+
+// What makes no difference to results makes none to a checkpoint's input, nor does the table that it would stand in.
+TEST(TomlReader, ACanonicalTextWithoutAKey) {
+  const auto canonical = [](const char* text) {
+    return TomlDocument("a.toml", text).canonical("solver.least_advance_s");
+  };
+  EXPECT_EQ(canonical("a = 1\n[solver]\nleast_advance_s = 2.0\n"), canonical("a = 1\n"));
+  EXPECT_EQ(canonical("[solver]\nleast_advance_s = 2.0\nb = 1\n"), canonical("[solver]\nb = 1\n"));
+  EXPECT_NE(canonical("[solver]\nb = 2\n"), canonical("[solver]\nb = 1\n"));
+}
+
+// Names stand in pages, tables, addresses of keys and names of files.
+TEST(TomlReader, PlainNames) {
+  const auto problems = [](const std::string& name) {
+    TomlDocument document("a.toml", "name = '''" + name + "'''\n");
+    require_plain_name(document.root(), "name", document.root().text("name"));
+    try {
+      document.finish();
+      return std::string();
+    } catch (const InputError& error) {
+      return error.problems().front().message();
+    }
+  };
+  for (const char* good : {"a", "pin on snare::wire_1", "ball joint", "_x", "8.9 kg (slow)", "L\xc3\xa4ngs"})
+    EXPECT_EQ(problems(good), "") << good;
+  for (const char* bad : {"<b>", "a&b", "../x", "a/b", "a\\b", "a,b", "a[b]", "-a", " a", "a\tb", "a\"b", "a::<i>"})
+    EXPECT_THAT(problems(bad), testing::HasSubstr("must be 1 to 64 letters")) << bad;
+  EXPECT_NE(problems(std::string(65, 'a')), "");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "tests/support/soft_wire.hpp"
 #include "validation/declared_wire.hpp"
 #include "wire/rod_constants.hpp"
+#include "wire/rod_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 namespace snare::coupling {
@@ -61,6 +63,28 @@ TEST(QuasiStaticWire, ReturnsABodyAsTheFullWireDoes) {
   EXPECT_NEAR(still.impulse[0].y(), full.impulse[0].y(), 3e-4 * full.impulse[0].y());
   EXPECT_NEAR(still.peak_force[0], full.peak_force[0], 1e-3 * full.peak_force[0]);
   EXPECT_LT(still.statistics.steps, full.statistics.steps);
+}
+
+// Between pins the tenth mode of the inertia that is kept has omega^2 = (10 pi/L)^4 EI/(1e-3 rho A), and tau omega/2 is its damping ratio.
+TEST(QuasiStaticWire, ItsTenthModeIsCriticallyDampedAtLeast) {
+  Motion motion = head_on(true, 8.9, 0.1);
+  wire::RodInMotion& rod = motion.wires[0].rod;
+  const wire::RodDamping declared = rod.damping;
+  rod.damping.bending_time = 0.0;
+  const double omega = std::pow(10.0 * std::numbers::pi / rod.length, 2) *
+                       std::sqrt(rod.properties.bending_stiffness / (1e-3 * rod.mass_per_length));
+  EXPECT_NEAR(0.5 * omega * wire::RodModel(rod).damping().bending_time, 1.0, 1e-12);
+  rod.damping = declared;
+  EXPECT_EQ(wire::RodModel(rod).damping().bending_time, declared.bending_time);
+}
+
+// Without any damping declared it follows no waves either: some more steps, not a hundred times as many. The slow body gets its speed back.
+TEST(QuasiStaticWire, FollowsNoWavesWithoutDamping) {
+  Motion bare = head_on(true, 8.9, 0.1);
+  bare.wires[0].rod.damping = {};
+  const MotionResult damped = run(head_on(true, 8.9, 0.1), 0.04), r = run(bare, 0.04);
+  EXPECT_LT(r.statistics.steps, 4 * damped.statistics.steps);
+  EXPECT_NEAR(r.impulse[0].y(), 2.0 * 8.9 * 0.1, 3e-4 * 2.0 * 8.9 * 0.1);
 }
 
 TEST(QuasiStaticWire, ClosesItsBalances) {
