@@ -74,6 +74,24 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
   }
 }
 
+/// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do.
+void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, MotionScore& score) {
+  constexpr double absorbed = 1e-3;  // of the change: below it others do the same
+  std::vector<Eigen::VectorXd> kept, directions;
+  for (const Trial* t : seen) {
+    const Eigen::VectorXd own = projection.without(t->column);
+    Eigen::VectorXd left = own;
+    for (const Eigen::VectorXd& d : directions) left -= d.dot(left) * d;
+    if (left.norm() < absorbed * t->column.norm()) continue;
+    directions.push_back(left.normalized());
+    kept.push_back(own);
+    score.numbers.push_back(t->number);
+    score.scale.push_back(t->scale);
+  }
+  score.columns.resize(kept.empty() ? 0 : kept.front().size(), static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t k = 0; k < kept.size(); ++k) score.columns.col(static_cast<Eigen::Index>(k)) = kept[k];
+}
+
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
 void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual,
            const MotionEffect& effect, MotionScore& score) {
@@ -90,6 +108,7 @@ void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::Vect
     return;
   }
   score.fall = u.dot(step);
+  score.chance = by_normal.solve(variance).trace();
   const Eigen::Index k = u.size();
   if (k == 1) {
     const double deviate = u[0] / std::sqrt(variance(0, 0));
@@ -102,7 +121,7 @@ void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::Vect
     score.z = std::sqrt(statistic);
   }
   for (Eigen::Index i = 0; i < k; ++i) {
-    const MotionNumber& n = effect.numbers[static_cast<std::size_t>(i)];
+    const MotionNumber& n = effect.numbers[score.numbers[static_cast<std::size_t>(i)]];
     const double scale = score.scale[static_cast<std::size_t>(i)];
     score.start.push_back(std::clamp(n.declared + step[i] * scale, n.lower, n.upper));
   }
@@ -126,24 +145,20 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   for (std::size_t e = 0; e < effects.size(); ++e) {
     MotionScore score;
     score.effect = e;
-    std::vector<Eigen::VectorXd> columns;
+    std::vector<const Trial*> seen;
     double before = 0.0;
     for (const Trial& t : trials) {
       if (t.effect != e) continue;
       if (t.column.size() == 0) score.unobservable = "the scenario cannot be simulated with it";
       if (t.column.size() == 0) continue;
-      score.scale.push_back(t.scale);
       before = std::max(before, t.column.norm());
-      columns.push_back(t.column);
+      if (t.column.norm() > 0.0) seen.push_back(&t);  // of a vector the records may show one component alone
     }
     if (score.unobservable.empty()) {
-      Eigen::MatrixXd matrix(data.rows, static_cast<Eigen::Index>(columns.size()));
-      for (std::size_t k = 0; k < columns.size(); ++k) matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
-      score.columns = projection.without(matrix);
-      constexpr double absorbed = 1e-3;  // of the change: below it the fitted numbers do the same
+      keep_independent(projection, seen, score);
       if (!(before > 0.0))
         score.unobservable = "it changes nothing in these records";
-      else if (score.columns.colwise().norm().maxCoeff() < absorbed * before)
+      else if (score.numbers.empty())
         score.unobservable = "the fitted numbers change the records in the same way";
     }
     if (score.unobservable.empty())
@@ -155,7 +170,8 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   if (fit.jacobian.cols() > 0) everything.leftCols(fit.jacobian.cols()) = fit.jacobian;
   for (std::size_t k = 0; k < usable.size(); ++k)
     everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
-  result.noise = coloured_noise(data, Projection(everything).without(fit.residual));
+  const Eigen::Index columns = std::min(everything.cols(), data.rows / 2);  // each takes a degree of freedom
+  result.noise = coloured_noise(data, Projection(everything).without(fit.residual), columns);
 
   std::vector<double> p;
   for (MotionScore& score : result.scores) {

@@ -83,6 +83,7 @@ class MotionModel {
 
   const RecordSet& set_;
   DeclaredScenario declared_;
+  std::vector<DeclaredScenario> declared_in_;  ///< as the records declare it, each with its own keys
   std::function<bool()> stop_;
   std::map<std::string, std::string> columns_;  ///< full column of a sensor's short name
   std::map<std::string, JointUse> joints_;
