@@ -94,6 +94,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"title", set.title},
           {"source", set.source},
           {"version", version()},
+          {"warnings", trace.warnings},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
           {"simulations",

@@ -67,10 +67,11 @@ std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::fil
   const MotionTrace t = identification::trace_records(set);
   const double declared = t.declared.heldout_rmse,
                last = t.with_partial ? t.with_partial->heldout_rmse : t.final.heldout_rmse;
-  return {yes(group, "a constant loss is named, or helps without explaining", source, names(t, "joint_coulomb_friction")),
-          yes(group, "a quadratic loss is named, or helps without explaining", source, names(t, "joint_quadratic_drag")),
-          {group, "error of the parts held out over that of the authors' model: below one", "", source, 0.0,
-           last / declared, ErrorKind::absolute, 1.0}};
+  return {
+      yes(group, "a constant loss is named, or helps without explaining", source, names(t, "joint_coulomb_friction")),
+      yes(group, "a quadratic loss is named, or helps without explaining", source, names(t, "joint_quadratic_drag")),
+      {group, "error of the parts held out over that of the authors' model: below one", "", source, 0.0,
+       last / declared, ErrorKind::absolute, 1.0}};
 }
 
 }  // namespace

@@ -126,14 +126,15 @@ std::string record_verdict(const MotionTrace& trace) {
   }
   if (trace.partial.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
   return fmt::format(
-      "Not explained: {} would carry {:.1f} % of what the base model leaves beside the noise, but leave more than noise, so "
+      "Not explained: {} would carry {:.1f} % of what the base model leaves beside the noise, but leave more than "
+      "noise, so "
       "none of them is named: something else is missing.",
       fmt::join(trace.partial, ", "), 100.0 * (1.0 - trace.share_left));
 }
 
 std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
   ReportPage page(set.title, set.source);
-  page.doubts({}, trace.interrupted);
+  page.doubts(trace.warnings, trace.interrupted);
   page.heading("Verdict");
   const bool good = trace.kind == VerdictKind::nothing_missing || trace.kind == VerdictKind::explained;
   page.callout(record_verdict(trace), good ? Tone::good : Tone::plain);

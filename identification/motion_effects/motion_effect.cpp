@@ -91,7 +91,7 @@ std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std:
 bool is_fitted(const MotionModel& model, const std::string& key) {
   const std::vector<FreeNumber>& free = model.records().free;
   return std::any_of(free.begin(), free.end(), [&](const FreeNumber& f) {
-    return key == f.key || key.starts_with(f.key + "[");
+    return key == f.key || (key.starts_with(f.key) && key[f.key.size()] == '[');
   });
 }
 

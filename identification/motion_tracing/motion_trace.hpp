@@ -78,6 +78,7 @@ struct MotionTrace {
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares
   std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise
   std::vector<Leftover> leftovers;
+  std::vector<std::string> warnings;  ///< what of this is doubtful, a sentence each
   std::string next_measurement;
   std::vector<std::string> next_separates;
   long simulations = 0;

@@ -52,6 +52,7 @@ class Tracer {
     trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
     if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
+    warn();
     trace_.simulations = model_.simulations();
     trace_.interrupted = stop_;
     return std::move(trace_);
@@ -66,6 +67,32 @@ class Tracer {
     return [this](int iteration, double chi2) {
       return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
     };
+  }
+  /// Records that are too short, and numbers of the file that they do not show.
+  void warn() {
+    const std::optional<SlowMode>& slow = model_.slowest();
+    for (const std::size_t r : fitted_) {
+      const MotionRecord& record = set_.records[r];
+      const double length = record.times[record.times.size() - 1] - record.times[0];
+      if (slow && length < slow->period)
+        trace_.warnings.push_back(
+            fmt::format("record {} lasts {:.4g} s, less than the slowest period of the declared scenario, {:.4g} s "
+                        "({}): it shows what belongs "
+                        "to that in part only",
+                        record.name, length, slow->period, slow->of));
+    }
+    for (const TracedNumber& n : trace_.final.numbers) {
+      const bool of_file = std::any_of(set_.free.begin(), set_.free.end(), [&](const FreeNumber& f) {
+        return f.key == n.key && !(f.lower && *f.lower < 0.0);
+      });
+      if (!of_file || !(model_.declared().number(n.key).value_or(0.0) > 0.0)) continue;
+      if (!n.lower)
+        trace_.warnings.push_back(fmt::format("{} is not identifiable: these records do not change with it", n.key));
+      else if (1.96 * n.stderr_ >= std::abs(n.value))
+        trace_.warnings.push_back(
+            fmt::format("{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
+                        n.value, n.stderr_, n.unit));
+    }
   }
   void reached() {
     if (!options_.reached) return;
@@ -157,8 +184,7 @@ class Tracer {
       const std::string& sensor = set_.records[p.record].channels[p.channel].sensor;
       for (const ChannelError& e : s.errors) {
         if (!e.fitted || !(e.sigma > 0.0) || e.sensor != sensor) continue;
-        found[sensor].chi2 +=
-            residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale / (e.sigma * e.sigma);
+        found[sensor].chi2 += residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale / (e.sigma * e.sigma);
         found[sensor].readings += static_cast<double>(p.size);
       }
     }
@@ -244,7 +270,7 @@ class Tracer {
   };
   /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
   /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes where it makes the prediction
-  /// worse by more than a standard deviation: what these records hardly show they cannot take back.
+  /// worse by more than half a standard deviation: what these records hardly show they cannot take back.
   void keep_what_carries_over(std::vector<Reached>& kept) {
     if (heldout_data_.rows == 0 || kept.size() < 2 || stop_) return;  // what is only watched does not choose
     std::erase_if(kept, [](const Reached& k) { return k.heldout.size() == 0; });  // no motion with it
@@ -254,8 +280,8 @@ class Tracer {
     });
     const ColouredNoise noise = coloured_noise(heldout_data_, best->heldout);
     for (auto later = kept.end() - 1; later > best; --later) {
-      const double deviation = 2.0 * coloured(heldout_data_, noise, later->heldout - best->heldout).norm();
-      if (later->heldout.squaredNorm() > best->heldout.squaredNorm() + deviation) continue;
+      const double half = coloured(heldout_data_, noise, later->heldout - best->heldout).norm();
+      if (later->heldout.squaredNorm() > best->heldout.squaredNorm() + half) continue;
       best = later;
       break;
     }
@@ -301,6 +327,14 @@ class Tracer {
       for (const ChannelError& e : trace_.base.errors)
         if (e.fitted) input.tolerance[e.sensor] = tolerance(e.sensor);
       input.progress = asked();
+      if (heldout_data_.rows > 0) {
+        input.heldout_data = &heldout_data_;
+        input.heldout_now = heldout_residual_.squaredNorm();
+        input.heldout = [this](const MotionFit& fit) {
+          const std::optional<MotionFit> there = on_heldout(fit, {});
+          return there && there->report.usable() ? there->residual : Eigen::VectorXd();
+        };
+      }
       RoundResult round = motion_round(input);
       if (stop_) return;
       trace_.rounds.push_back(round.round);

@@ -234,6 +234,7 @@ void MotionModel::look_at_joints() {
   const std::size_t first = set_.used(false).front();
   const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first));
   const scenario::NamedMotion& run = run_of(read, set_).runs.front();
+  slowest_ = slowest_mode(run.motion);
   coupling::MotionOptions options = run.options;
   options.stop = stop_;
   struct Sum {
