@@ -83,6 +83,7 @@ MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options
   begin_writing();
   if (trace.report.usable()) {
     write(set, trace, options);
+    for (const std::string& warning : trace.warnings) console.warn(warning);
     if (trace.interrupted) console.complain("interrupted: " + kept_words(trace));
   } else {
     console.complain(trace.report.message);

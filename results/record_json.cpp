@@ -94,6 +94,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"title", set.title},
           {"source", set.source},
           {"version", version()},
+          {"warnings", trace.warnings},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
           {"simulations",
@@ -129,6 +130,11 @@ json record_trace_json(const RecordSet& set, const MotionTrace& trace) {
   for (const std::size_t e : trace.selected_effects) names.push_back(trace.effects[e].name);
   result["selected"] = names;
   result["selected_places"] = trace.selected;
+  result["partial"] = {{"effects", trace.partial}};
+  if (trace.with_partial) {
+    result["partial"]["model"] = stage_json(trace, *trace.with_partial);
+    result["partial"]["heldout"] = errors_json(trace.with_partial->heldout);
+  }
   result["final"] = stage_json(trace, trace.final);
   result["heldout"] = {
       {with_unit("rmse_base", trace), trace.base.heldout.empty() ? json() : finite(trace.base.heldout_rmse)},

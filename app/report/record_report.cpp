@@ -100,6 +100,7 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
       add("declared", trace.declared, CurveStyle::dashes, 1);
       add("base fit", trace.base, CurveStyle::line, 2);
       if (!trace.selected.empty()) add("traced", trace.final, CurveStyle::line, 3);
+      if (trace.with_partial) add("with what helps", *trace.with_partial, CurveStyle::line, 3);
       page.line_plot(plot);
       page.line_plot(remainder);
     }
@@ -123,16 +124,17 @@ std::string record_verdict(const MotionTrace& trace) {
     case VerdictKind::not_explained:
       break;
   }
-  if (trace.selected.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
+  if (trace.partial.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
   return fmt::format(
-      "Not explained: {} are needed, and carry {:.1f} % of what the base model leaves beside the noise, but something "
-      "else is missing.",
-      names, 100.0 * (1.0 - trace.share_left));
+      "Not explained: {} would carry {:.1f} % of what the base model leaves beside the noise, but leave more than "
+      "noise, so "
+      "none of them is named: something else is missing.",
+      fmt::join(trace.partial, ", "), 100.0 * (1.0 - trace.share_left));
 }
 
 std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
   ReportPage page(set.title, set.source);
-  page.doubts({}, trace.interrupted);
+  page.doubts(trace.warnings, trace.interrupted);
   page.heading("Verdict");
   const bool good = trace.kind == VerdictKind::nothing_missing || trace.kind == VerdictKind::explained;
   page.callout(record_verdict(trace), good ? Tone::good : Tone::plain);

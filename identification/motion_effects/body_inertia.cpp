@@ -2,22 +2,26 @@
 
 namespace snare::identification {
 
-/// Moments of inertia of a body, all three by one factor.
+/// Moments of inertia of a body, all that are not fitted by one factor.
 std::vector<MotionEffect> body_inertia_effects(const MotionModel& model) {
   std::vector<MotionEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
     const std::string key = "bodies[" + name + "].inertia_kg_m2";
-    std::vector<double> declared;
-    for (const char* axis : {"[1]", "[2]", "[3]"})
-      declared.push_back(model.declared().number(key + axis).value_or(0.0));
-    if (!(declared[0] > 0.0)) continue;
+    std::vector<std::pair<std::string, double>> moments;  // those that are not fitted by themselves
+    for (const char* axis : {"[1]", "[2]", "[3]"}) {
+      const auto declared = model.declared().number(key + axis);
+      if (declared && *declared > 0.0 && !is_fitted(model, key + axis)) moments.emplace_back(key + axis, *declared);
+    }
+    if (moments.empty()) continue;
     MotionNumber factor = number_at(key + ".factor", 1.0, 0.02);
     factor.lower = 0.01;
     factor.upper = 100.0;
     factor.unit = "";
-    factor.overrides = [key, declared](double f) {
-      return std::vector<base::Override>{{key, "[" + exact_text(f * declared[0]) + ", " + exact_text(f * declared[1]) +
-                                                   ", " + exact_text(f * declared[2]) + "]"}};
+    factor.overrides = [moments](double f, const DeclaredScenario& record) {
+      std::vector<base::Override> overrides;
+      for (const auto& [moment, declared] : moments)
+        overrides.push_back({moment, exact_text(f * record.number(moment).value_or(declared))});
+      return overrides;
     };
     effects.push_back({.name = "body_inertia",
                        .place = name,

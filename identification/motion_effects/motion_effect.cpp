@@ -11,6 +11,10 @@ constexpr double least_share = 0.2, most_share = 5.0;  // of what is declared
 
 void declare_other(MotionEffect& effect, const std::string& key, double declared) {
   MotionNumber number = number_at(key, declared, 0.02 * declared);
+  number.overrides = [key, declared](double value, const DeclaredScenario& record) {
+    const double there = record.number(key).value_or(declared) * (value / declared);
+    return std::vector<base::Override>{{key, exact_text(there)}};
+  };
   number.lower = 0.01 * declared;
   number.upper = 100.0 * declared;
   effect.plausible_lower = least_share * declared;
@@ -33,6 +37,9 @@ std::vector<JointPlace> joint_places(const MotionModel& model) {
 MotionNumber number_at(const std::string& key, double null, double scale) {
   MotionNumber number = keyed_number(key, null);
   number.scale = scale;
+  number.overrides = [key, null](double value, const DeclaredScenario& record) {
+    return std::vector<base::Override>{{key, exact_text(value + (record.number(key).value_or(null) - null))}};
+  };
   return number;
 }
 
@@ -73,12 +80,19 @@ std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std:
     MotionEffect effect = what;
     effect.place = name;
     for (const char* axis : {"[1]", "[2]", "[3]"}) {
-      if (const auto declared = model.declared().number(whole + axis))
+      if (const auto declared = model.declared().number(whole + axis); declared && !is_fitted(model, whole + axis))
         effect.numbers.push_back(number_at(whole + axis, *declared, scale));
     }
     if (!effect.numbers.empty()) effects.push_back(effect);
   }
   return effects;
+}
+
+bool is_fitted(const MotionModel& model, const std::string& key) {
+  const std::vector<FreeNumber>& free = model.records().free;
+  return std::any_of(free.begin(), free.end(), [&](const FreeNumber& f) {
+    return key == f.key || (key.starts_with(f.key) && key[f.key.size()] == '[');
+  });
 }
 
 std::vector<ChannelPlace> channel_places(const MotionModel& model) {

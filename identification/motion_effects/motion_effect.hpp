@@ -34,11 +34,11 @@ struct JointPlace {
 /// Joints of arms, which have files; those of snares are not among them.
 [[nodiscard]] std::vector<JointPlace> joint_places(const MotionModel& model);
 
-/// A number that stands at `null` and is tried in steps of `scale`, both in the unit of its key.
+/// A number that stands at `null` and is tried in steps of `scale`, both in the unit of its key. In a record that declares it otherwise it differs from that by as much.
 [[nodiscard]] MotionNumber number_at(const std::string& key, double null, double scale);
 
 /// The effect of a declared number > 0 being another, for every element of a list of the scenario that declares it: `LIST[NAME].KEY`, plausible
-/// between a fifth and five times what is declared.
+/// between a fifth and five times what is declared. In a record that declares it otherwise it is another by the same factor.
 [[nodiscard]] std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list,
                                                      const std::string& key, const MotionEffect& what);
 /// The same of a number of every joint's file.
@@ -48,6 +48,9 @@ struct JointPlace {
 /// `bodies[NAME].KEY`.
 [[nodiscard]] std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std::string& key,
                                                           const MotionEffect& what, double scale);
+
+/// Whether the file fits this key, or one that holds it.
+[[nodiscard]] bool is_fitted(const MotionModel& model, const std::string& key);
 
 /// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less their mean.
 struct ChannelPlace {

@@ -24,8 +24,8 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
   const MotionEffect& effect = in.effects[score.effect];
   const auto from = [&](const std::function<double(std::size_t)>& value) {
     std::vector<MotionSetting> start = in.current.settings;
-    for (std::size_t k = 0; k < effect.numbers.size(); ++k) {
-      MotionNumber number = effect.numbers[k];
+    for (std::size_t k = 0; k < score.numbers.size(); ++k) {
+      MotionNumber number = effect.numbers[score.numbers[k]];
       number.scale = score.scale[k];
       start.push_back({number, value(k)});
     }
@@ -34,7 +34,7 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
     options.max_iterations = enough_iterations;
     return fit_motion(in.model, in.data, start, options);
   };
-  MotionFit fit = from([&](std::size_t k) { return effect.numbers[k].declared; });
+  MotionFit fit = from([&](std::size_t k) { return effect.numbers[score.numbers[k]].declared; });
   if (fit.chi2 < (1.0 - least_fall) * in.current.chi2 || in.model.stopped()) return fit;
   // Nothing shows next to null: begin where the score points.
   MotionFit again = from([&](std::size_t k) { return score.start[k]; });
@@ -50,12 +50,48 @@ double bic(const MotionData& data, const ColouredNoise& noise, const MotionFit& 
          static_cast<double>(fit.settings.size()) * std::log(static_cast<double>(data.rows));
 }
 
+/// A refit, and what noise alone would have taken of its misfit by as many numbers.
+struct Refit {
+  MotionFit fit;
+  double chance = 0.0;  ///< in the mean
+  double readings = 1.0;
+  Eigen::VectorXd heldout;  ///< residual of the records held out, where they were asked
+
+  /// To choose by: as in the Bayesian criterion a number must take log n times what it takes by chance.
+  [[nodiscard]] double criterion() const { return fit.chi2 + heldout.squaredNorm() + chance * std::log(readings); }
+  /// To compare with: without what chance has taken.
+  [[nodiscard]] double misfit() const { return fit.chi2 + heldout.squaredNorm() + chance; }
+};
+
 /// Whether the records tell two refits apart: e is the difference of their residuals, the misfit of the worse is larger by
 /// |e|^2 + 2 e'r, of standard deviation 2 |Sigma^(1/2)' e|.
-bool told_apart(const MotionData& data, const ColouredNoise& noise, const MotionFit& best, const MotionFit& other) {
-  const Eigen::VectorXd difference = other.residual - best.residual;
+bool told_apart(const MotionData& data, const ColouredNoise& noise, const Refit& best, const Refit& other) {
+  const Eigen::VectorXd difference = other.fit.residual - best.fit.residual;
   const double deviation = 2.0 * coloured(data, noise, difference).norm();
-  return other.chi2 - best.chi2 > apart * deviation;
+  return other.misfit() - best.misfit() > apart * deviation;
+}
+
+/// Among refits that the fitted records do not tell apart (indices, the best first) the records held out choose, too: what both together
+/// do not tell apart, the best of both first. `of` are the effects' places in the catalogue, which decides between those that do the same.
+std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise, std::vector<Refit>& fits,
+                                const std::vector<std::size_t>& of, std::vector<std::size_t> members) {
+  for (const std::size_t k : members) fits[k].heldout = in.heldout(fits[k].fit);
+  std::erase_if(members, [&](std::size_t k) { return fits[k].heldout.size() == 0; });
+  if (members.empty()) return members;
+  std::stable_sort(members.begin(), members.end(),
+                   [&](std::size_t a, std::size_t b) { return fits[a].criterion() < fits[b].criterion(); });
+  for (std::size_t k = 1; k < members.size(); ++k)
+    if (fits[members[k]].criterion() <= (1.0 + the_same) * fits[members[0]].criterion() &&
+        of[members[k]] < of[members[0]])
+      std::swap(members[0], members[k]);
+  const Refit& best = fits[members[0]];
+  const ColouredNoise there = coloured_noise(*in.heldout_data, best.heldout);
+  std::erase_if(members, [&](std::size_t k) {
+    const double here = coloured(in.data, noise, fits[k].fit.residual - best.fit.residual).norm();
+    const double beside = coloured(*in.heldout_data, there, fits[k].heldout - best.heldout).norm();
+    return fits[k].misfit() - best.misfit() > apart * 2.0 * std::hypot(here, beside);
+  });
+  return members;
 }
 
 /// Why an effect that is significant is not named.
@@ -74,7 +110,6 @@ std::string objection(const RoundInput& in, const MotionCandidate& c, const Moti
     large = large || error > in.tolerance.at(sensor);
   }
   if (!large) return "what it changes is too small to be worth a name";
-  if (c.heldout_improves == false) return "the records held out are not predicted better with it";
   return "";
 }
 
@@ -106,25 +141,26 @@ RoundResult motion_round(const RoundInput& in) {
     result.round.reason = "no effect of the catalogue is significant";
     return result;
   }
-  std::vector<MotionFit> fits(candidates.size());
+  std::vector<Refit> fits(candidates.size());
   const double present = bic(in.data, scores.noise, in.current);
   const double promise = candidates.front().score.fall;
   for (std::size_t k = 0; k < std::min(candidates.size(), most_refits); ++k) {
     MotionCandidate& c = candidates[k];
     if (!significant(c) || c.score.fall < promising * promise) break;
     if (in.model.stopped()) return result;
-    fits[k] = refit(in, c.score);
-    if (fits[k].residual.size() == 0 || fits[k].covariance.size() == 0) continue;
+    const MotionFit& fit = fits[k].fit = refit(in, c.score);
+    if (fit.residual.size() == 0 || fit.covariance.size() == 0) continue;
     c.refitted = true;
-    const std::vector<TracedNumber> numbers = traced_numbers(fits[k]);
+    fits[k].chance = c.score.chance;
+    fits[k].readings = static_cast<double>(in.data.rows);
+    const std::vector<TracedNumber> numbers = traced_numbers(fit);
     c.numbers.assign(numbers.begin() + static_cast<std::ptrdiff_t>(in.current.settings.size()), numbers.end());
-    c.rmse = motion_stage(in.model, in.data, fits[k], nullptr, {}).rmse;
-    c.delta_bic = bic(in.data, scores.noise, fits[k]) - present;
+    c.rmse = motion_stage(in.model, in.data, fit, nullptr, {}).rmse;
+    c.delta_bic = bic(in.data, scores.noise, fit) - present;
     const MotionEffect& effect = in.effects[c.score.effect];
     c.plausible =
         c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
-    if (in.heldout_improves) c.heldout_improves = in.heldout_improves(fits[k]);
-    c.why_not = objection(in, c, fits[k]);
+    c.why_not = objection(in, c, fit);
   }
   // Refitted ones by their misfit, those that may be named first.
   std::vector<std::size_t> order(candidates.size());
@@ -134,42 +170,61 @@ RoundResult motion_round(const RoundInput& in) {
     if (x.refitted != y.refitted) return x.refitted;
     if (!x.refitted) return false;
     if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
-    return fits[a].chi2 < fits[b].chi2;
+    return fits[a].criterion() < fits[b].criterion();
   });
   const auto may_be_named = [&](std::size_t k) { return candidates[k].refitted && candidates[k].why_not.empty(); };
   for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
-    if (fits[order[k]].chi2 <= (1.0 + the_same) * fits[order[0]].chi2 &&
+    if (fits[order[k]].criterion() <= (1.0 + the_same) * fits[order[0]].criterion() &&
         candidates[order[k]].score.effect < candidates[order[0]].score.effect)
       std::swap(order[0], order[k]);
 
   std::vector<MotionCandidate> sorted;
-  std::vector<MotionFit> sorted_fits;
+  std::vector<Refit> sorted_fits;
   for (const std::size_t k : order) {
     sorted.push_back(std::move(candidates[k]));
     sorted_fits.push_back(std::move(fits[k]));
   }
   candidates = std::move(sorted);
   fits = std::move(sorted_fits);
-  MotionCandidate& best = candidates.front();
-  if (!best.refitted || !best.why_not.empty()) {
+  if (const MotionCandidate& best = candidates.front(); !best.refitted || !best.why_not.empty()) {
     result.round.reason = best.refitted ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
                                         : "no effect could be fitted";
     return result;
   }
-  std::vector<std::string> alike{in.effects[best.score.effect].label()};
-  for (std::size_t k = 1; k < candidates.size(); ++k) {
+  std::vector<std::size_t> members{0}, of;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const MotionCandidate& c = candidates[k];
+    of.push_back(c.score.effect);
+    if (k > 0 && c.refitted && c.why_not.empty() && !told_apart(in.data, scores.noise, fits.front(), fits[k]))
+      members.push_back(k);
+  }
+  const bool several = members.size() > 1;
+  if (in.heldout && several) {
+    const std::vector<std::size_t> settled = settle(in, scores.noise, fits, of, members);
+    for (const std::size_t k : members)
+      if (fits[k].heldout.size() > 0) candidates[k].heldout_improves = fits[k].heldout.squaredNorm() < in.heldout_now;
+    if (!settled.empty()) members = settled;
+  }
+  const std::size_t chosen = members.front();
+  result.round.classes.emplace_back();
+  for (const std::size_t k : members)
+    result.round.classes.front().push_back(in.effects[candidates[k].score.effect].label());
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
     MotionCandidate& c = candidates[k];
-    const bool same = c.refitted && c.why_not.empty() && !told_apart(in.data, scores.noise, fits.front(), fits[k]);
-    if (same) alike.push_back(in.effects[c.score.effect].label());
-    c.class_index = same ? 0 : result.round.classes.size() + 1;
+    const bool same = std::find(members.begin(), members.end(), k) != members.end();
+    c.class_index = same ? 0 : result.round.classes.size();
     if (!same) result.round.classes.push_back({in.effects[c.score.effect].label()});
   }
-  result.round.classes.insert(result.round.classes.begin(), alike);
-  result.round.added = alike.front();
-  result.round.reason = alike.size() > 1 ? "best of a class that these records cannot tell apart"
-                                         : "explains most, and nothing else does as well";
-  result.added = best.score.effect;
-  result.better = std::move(fits.front());
+  result.round.added = result.round.classes.front().front();
+  result.round.reason = members.size() > 1 ? "best of a class that these records cannot tell apart"
+                        : several          ? "the records held out tell it from others that do as well in those fitted"
+                                           : "explains most, and nothing else does as well";
+  std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(chosen),
+              candidates.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
+  std::rotate(fits.begin(), fits.begin() + static_cast<std::ptrdiff_t>(chosen),
+              fits.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
+  result.added = candidates.front().score.effect;
+  result.better = std::move(fits.front().fit);
   if (!result.better.report.usable() && !in.model.stopped()) {
     MotionFitOptions to_the_end;
     to_the_end.progress = in.progress;

@@ -19,7 +19,11 @@ struct RoundInput {
   const std::vector<std::size_t>& selected;  ///< indices of effects that are part of `current`
   double significance = 0.01;
   std::map<std::string, double> tolerance = {};  ///< by which a channel's error must fall, as the root of squares
-  std::function<std::optional<bool>(const MotionFit& fit)> heldout_improves = {};
+  /// Of the records held out: their readings, and the residual of a fit there (empty: no motion). They choose among what the fitted ones do not
+  /// tell apart, and are not asked otherwise.
+  const MotionData* heldout_data = nullptr;
+  std::function<Eigen::VectorXd(const MotionFit& fit)> heldout = {};
+  double heldout_now = 0.0;  ///< sum of squares there of `current`
   std::function<bool(int iteration, double chi2)> progress = {};
 };
 

@@ -74,8 +74,33 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
   }
 }
 
+/// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do. Of a vector the components that
+/// change the records a hundred times less than another one are left out: at sizes that show them the motion is another.
+void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, MotionScore& score) {
+  constexpr double absorbed = 1e-3;  // of the change: below it others do the same
+  constexpr double hardly = 0.01;
+  std::vector<Eigen::VectorXd> kept, directions;
+  double most = 0.0;
+  for (const Trial* t : seen) most = std::max(most, t->column.norm() / t->scale);
+  for (const Trial* t : seen) {
+    if (t->column.norm() < hardly * most * t->scale) continue;
+    const Eigen::VectorXd own = projection.without(t->column);
+    Eigen::VectorXd left = own;
+    for (const Eigen::VectorXd& d : directions) left -= d.dot(left) * d;
+    if (left.norm() < absorbed * t->column.norm()) continue;
+    directions.push_back(left.normalized());
+    kept.push_back(own);
+    score.numbers.push_back(t->number);
+    score.scale.push_back(t->scale);
+  }
+  score.columns.resize(kept.empty() ? 0 : kept.front().size(), static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t k = 0; k < kept.size(); ++k) score.columns.col(static_cast<Eigen::Index>(k)) = kept[k];
+}
+
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
-void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual,
+/// power: variance of what is left with all columns out. What smooth columns take out is missing there, and an autoregression of the rest takes
+/// the noise for smaller where they are: no score has less than the variance that white noise of that power would give it.
+void judge(const MotionData& data, const ColouredNoise& noise, double power, const Eigen::VectorXd& residual,
            const MotionEffect& effect, MotionScore& score) {
   const Eigen::MatrixXd& g = score.columns;
   const Eigen::VectorXd u = g.transpose() * residual;
@@ -84,15 +109,16 @@ void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::Vect
   const Eigen::MatrixXd normal = g.transpose() * g;
   const Eigen::LDLT<Eigen::MatrixXd> by_variance(variance), by_normal(normal);
   const Eigen::VectorXd step = by_normal.solve(u);
-  const double statistic = u.dot(by_variance.solve(u));
+  const double statistic = std::min(u.dot(by_variance.solve(u)), u.dot(step) / power);
   if (!(statistic >= 0.0) || !step.allFinite()) {
     score.unobservable = "its numbers cannot be told from each other";
     return;
   }
   score.fall = u.dot(step);
+  score.chance = std::max(by_normal.solve(variance).trace(), static_cast<double>(u.size()) * power);
   const Eigen::Index k = u.size();
   if (k == 1) {
-    const double deviate = u[0] / std::sqrt(variance(0, 0));
+    const double deviate = u[0] / std::sqrt(std::max(variance(0, 0), power * normal(0, 0)));
     const double bounded = normal_tail(effect.one_sided ? deviate : std::abs(deviate));
     score.p = effect.one_sided ? bounded : std::min(1.0, 2.0 * bounded);
     score.z = deviate;
@@ -102,7 +128,7 @@ void judge(const MotionData& data, const ColouredNoise& noise, const Eigen::Vect
     score.z = std::sqrt(statistic);
   }
   for (Eigen::Index i = 0; i < k; ++i) {
-    const MotionNumber& n = effect.numbers[static_cast<std::size_t>(i)];
+    const MotionNumber& n = effect.numbers[score.numbers[static_cast<std::size_t>(i)]];
     const double scale = score.scale[static_cast<std::size_t>(i)];
     score.start.push_back(std::clamp(n.declared + step[i] * scale, n.lower, n.upper));
   }
@@ -126,24 +152,22 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   for (std::size_t e = 0; e < effects.size(); ++e) {
     MotionScore score;
     score.effect = e;
-    std::vector<Eigen::VectorXd> columns;
+    std::vector<const Trial*> seen;
     double before = 0.0;
+    bool simulated = false;
     for (const Trial& t : trials) {
-      if (t.effect != e) continue;
-      if (t.column.size() == 0) score.unobservable = "the scenario cannot be simulated with it";
-      if (t.column.size() == 0) continue;
-      score.scale.push_back(t.scale);
+      if (t.effect != e || t.column.size() == 0) continue;
+      simulated = true;
       before = std::max(before, t.column.norm());
-      columns.push_back(t.column);
+      if (t.column.norm() > 0.0) seen.push_back(&t);  // of a vector the records may show one component alone
     }
-    if (score.unobservable.empty()) {
-      Eigen::MatrixXd matrix(data.rows, static_cast<Eigen::Index>(columns.size()));
-      for (std::size_t k = 0; k < columns.size(); ++k) matrix.col(static_cast<Eigen::Index>(k)) = columns[k];
-      score.columns = projection.without(matrix);
-      constexpr double absorbed = 1e-3;  // of the change: below it the fitted numbers do the same
+    if (!simulated) {
+      score.unobservable = "the scenario cannot be simulated with it";
+    } else {
+      keep_independent(projection, seen, score);
       if (!(before > 0.0))
         score.unobservable = "it changes nothing in these records";
-      else if (score.columns.colwise().norm().maxCoeff() < absorbed * before)
+      else if (score.numbers.empty())
         score.unobservable = "the fitted numbers change the records in the same way";
     }
     if (score.unobservable.empty())
@@ -155,11 +179,14 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   if (fit.jacobian.cols() > 0) everything.leftCols(fit.jacobian.cols()) = fit.jacobian;
   for (std::size_t k = 0; k < usable.size(); ++k)
     everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
-  result.noise = coloured_noise(data, Projection(everything).without(fit.residual));
+  const Eigen::Index columns = std::min(everything.cols(), data.rows / 2);  // each takes a degree of freedom
+  const Eigen::VectorXd left = Projection(everything).without(fit.residual);
+  result.noise = coloured_noise(data, left, columns);
+  const double power = std::max(1e-300, left.squaredNorm() / std::max(1.0, static_cast<double>(data.rows - columns)));
 
   std::vector<double> p;
   for (MotionScore& score : result.scores) {
-    if (score.unobservable.empty()) judge(data, result.noise, fit.residual, effects[score.effect], score);
+    if (score.unobservable.empty()) judge(data, result.noise, power, fit.residual, effects[score.effect], score);
     if (score.unobservable.empty()) p.push_back(score.p);
   }
   const std::vector<double> adjusted = holm(p);

@@ -12,14 +12,17 @@ namespace snare::identification {
 
 /// Score test of one effect beside a fitted scenario.                                              theory.md (I.22)
 struct MotionScore {
-  std::size_t effect = 0;            ///< index in the list
-  std::string unobservable;          ///< why the records cannot show it; empty: they can
-  double p = 1.0;                    ///< of the score, one-sided where the effect is
-  double adjusted_p = 1.0;           ///< by Holm
-  double z = 0.0;                    ///< normal deviate of that p
-  double fall = 0.0;                 ///< of the sum of squares that it promises, to first order
-  std::vector<double> start;         ///< of its numbers, for a refit
-  std::vector<double> scale;         ///< at which they were tried
+  std::size_t effect = 0;    ///< index in the list
+  std::string unobservable;  ///< why the records cannot show it; empty: they can
+  double p = 1.0;            ///< of the score, one-sided where the effect is
+  double adjusted_p = 1.0;   ///< by Holm
+  double z = 0.0;            ///< normal deviate of that p
+  double fall = 0.0;         ///< of the sum of squares that it promises, to first order
+  double chance = 0.0;       ///< fall that noise alone would bring, in the mean
+  std::vector<std::size_t>
+      numbers;                ///< of the effect's those that these records show, and that the others do not do as well
+  std::vector<double> start;  ///< of these numbers, for a refit
+  std::vector<double> scale;  ///< at which they were tried
   std::optional<double> detectable;  ///< size of the first number that would be seen in nine of ten cases, in its unit
   Eigen::MatrixXd columns;           ///< of the signal by the numbers over their scales, fitted columns out
 };

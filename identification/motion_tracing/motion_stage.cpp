@@ -106,7 +106,9 @@ MotionStage motion_stage(const MotionModel& model, const MotionData& data, const
     }
   }
   stage.nrmse = range;
-  stage.chi2_dof = count > 0.0 ? squares / count : 0.0;
+  const auto readings = static_cast<double>(fit.residual.size());
+  const double free = std::max(1.0, readings - static_cast<double>(fit.settings.size()));
+  stage.chi2_dof = count > 0.0 ? squares / count * (readings / free) : 0.0;
   stage.predictions.resize(model.records().records.size());
   for (std::size_t k = 0; k < data.records.size(); ++k) stage.predictions[data.records[k]] = fit.predictions[k];
   if (heldout == nullptr) return stage;

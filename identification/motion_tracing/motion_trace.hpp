@@ -74,10 +74,13 @@ struct MotionTrace {
   std::vector<MotionRound> rounds;
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
+  std::vector<std::string> partial;  ///< labels of effects that help without explaining: none of them is named
+  std::optional<MotionStage> with_partial;
   VerdictKind kind = VerdictKind::nothing_missing;
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
-  std::string channel;      ///< of the first effect selected
+  std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise
   std::vector<Leftover> leftovers;
+  std::vector<std::string> warnings;  ///< what of this is doubtful, a sentence each
   std::string next_measurement;
   std::vector<std::string> next_separates;
   long simulations = 0;

@@ -51,7 +51,8 @@ class Tracer {
     reached();
     trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
-    if (options_.effects && trace_.significant) look_for_effects();
+    if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
+    warn();
     trace_.simulations = model_.simulations();
     trace_.interrupted = stop_;
     return std::move(trace_);
@@ -66,6 +67,32 @@ class Tracer {
     return [this](int iteration, double chi2) {
       return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
     };
+  }
+  /// Records that are too short, and numbers of the file that they do not show.
+  void warn() {
+    const std::optional<SlowMode>& slow = model_.slowest();
+    for (const std::size_t r : fitted_) {
+      const MotionRecord& record = set_.records[r];
+      const double length = record.times[record.times.size() - 1] - record.times[0];
+      if (slow && length < slow->period)
+        trace_.warnings.push_back(
+            fmt::format("record {} lasts {:.4g} s, less than the slowest period of the declared scenario, {:.4g} s "
+                        "({}): it shows what belongs "
+                        "to that in part only",
+                        record.name, length, slow->period, slow->of));
+    }
+    for (const TracedNumber& n : trace_.final.numbers) {
+      const bool of_file = std::any_of(set_.free.begin(), set_.free.end(), [&](const FreeNumber& f) {
+        return f.key == n.key && !(f.lower && *f.lower < 0.0);
+      });
+      if (!of_file || !(model_.declared().number(n.key).value_or(0.0) > 0.0)) continue;
+      if (!n.lower)
+        trace_.warnings.push_back(fmt::format("{} is not identifiable: these records do not change with it", n.key));
+      else if (1.96 * n.stderr_ >= std::abs(n.value))
+        trace_.warnings.push_back(
+            fmt::format("{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
+                        n.value, n.stderr_, n.unit));
+    }
   }
   void reached() {
     if (!options_.reached) return;
@@ -136,7 +163,32 @@ class Tracer {
 
   MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
     const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
+    heldout_residual_ = heldout && heldout->report.usable() ? heldout->residual : Eigen::VectorXd();
     return motion_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
+  }
+
+  /// Whether the error of a channel is more than is worth a name.
+  [[nodiscard]] bool large(const MotionStage& s) const {
+    return std::any_of(s.errors.begin(), s.errors.end(),
+                       [&](const ChannelError& e) { return e.fitted && e.rmse > tolerance(e.sensor); });
+  }
+
+  /// Squares of a channel's residual over its variance, with the readings that it has.
+  struct ChannelMisfit {
+    double chi2 = 0.0, readings = 0.0;
+  };
+  [[nodiscard]] std::map<std::string, ChannelMisfit> misfits(const MotionStage& s,
+                                                             const Eigen::VectorXd& residual) const {
+    std::map<std::string, ChannelMisfit> found;
+    for (const ResidualPiece& p : data_.pieces) {
+      const std::string& sensor = set_.records[p.record].channels[p.channel].sensor;
+      for (const ChannelError& e : s.errors) {
+        if (!e.fitted || !(e.sigma > 0.0) || e.sensor != sensor) continue;
+        found[sensor].chi2 += residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale / (e.sigma * e.sigma);
+        found[sensor].readings += static_cast<double>(p.size);
+      }
+    }
+    return found;
   }
 
   /// Whether an error is more than noise, and more than is worth a name.
@@ -145,18 +197,17 @@ class Tracer {
     std::vector<Eigen::VectorXd> pieces;
     for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
     const double l = ljung_box_p(pieces, 10), r = runs_p(pieces);
-    const double dof = static_cast<double>(residual.size()) - static_cast<double>(s.numbers.size());
+    // Each channel by itself, the numbers shared out by its readings; of several the smallest p counts as often as there are channels.
+    const double shared = static_cast<double>(s.numbers.size()) / static_cast<double>(residual.size());
+    const std::map<std::string, ChannelMisfit> channels = misfits(s, residual);
     double f = 1.0;
-    bool large = false;
-    for (const ChannelError& e : s.errors) {
-      if (!e.fitted) continue;
-      if (e.sigma > 0.0) f = std::min(f, chi_square_tail(e.rmse * e.rmse / (e.sigma * e.sigma) * dof, dof));
-      large = large || e.rmse > tolerance(e.sensor);
-    }
+    for (const auto& [sensor, m] : channels)
+      f = std::min(f, static_cast<double>(channels.size()) *
+                          chi_square_tail(m.chi2, std::max(1.0, m.readings * (1.0 - shared))));
     if (ljung != nullptr) *ljung = l;
     if (runs != nullptr) *runs = r;
     if (lack != nullptr) *lack = f;
-    return large && 3.0 * std::min({l, r, f}) < like_noise;
+    return large(s) && 3.0 * std::min({l, r, f}) < like_noise;
   }
 
   /// Error of a channel below which nothing is called missing, in its unit.
@@ -169,7 +220,7 @@ class Tracer {
   }
 
   void tell_noise() {
-    trace_.significant =
+    trace_.significant = omnibus_ =
         more_than_noise(trace_.base, current_.residual, &trace_.ljung_box, &trace_.runs, &trace_.lack_of_fit);
     double squares = 0.0;
     int count = 0;
@@ -199,19 +250,43 @@ class Tracer {
     return one ? 1.0 : scale;
   }
 
+  /// The sensor with most beside its noise.
+  [[nodiscard]] std::string worst_channel() const {
+    std::string worst;
+    double most = 0.0;
+    for (const auto& [sensor, m] : misfits(trace_.base, current_.residual)) {
+      if (m.chi2 - m.readings <= most) continue;
+      most = m.chi2 - m.readings;
+      worst = sensor;
+    }
+    return worst;
+  }
+
   struct Reached {
     MotionFit fit;
     MotionStage stage;
+    Eigen::VectorXd heldout;  // residual of the records held out
+    std::size_t effects = 0;  // that are in it
   };
   /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
-  /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes.
+  /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes where it makes the prediction
+  /// worse by more than half a standard deviation: what these records hardly show they cannot take back.
   void keep_what_carries_over(std::vector<Reached>& kept) {
     if (heldout_data_.rows == 0 || kept.size() < 2 || stop_) return;  // what is only watched does not choose
-    const auto best = std::min_element(kept.begin(), kept.end(), [](const Reached& a, const Reached& b) {
-      return a.stage.heldout_rmse < b.stage.heldout_rmse;
+    std::erase_if(kept, [](const Reached& k) { return k.heldout.size() == 0; });  // no motion with it
+    if (kept.empty()) return;
+    auto best = std::min_element(kept.begin(), kept.end(), [](const Reached& a, const Reached& b) {
+      return a.heldout.squaredNorm() < b.heldout.squaredNorm();
     });
-    const auto count = static_cast<std::size_t>(best - kept.begin());
-    for (std::size_t k = count; k + 1 < kept.size() && k < trace_.rounds.size(); ++k) {
+    const ColouredNoise noise = coloured_noise(heldout_data_, best->heldout);
+    for (auto later = kept.end() - 1; later > best; --later) {
+      const double half = coloured(heldout_data_, noise, later->heldout - best->heldout).norm();
+      if (later->heldout.squaredNorm() > best->heldout.squaredNorm() + half) continue;
+      best = later;
+      break;
+    }
+    const std::size_t count = best->effects;
+    for (std::size_t k = count; k < trace_.selected.size() && k < trace_.rounds.size(); ++k) {
       trace_.rounds[k].reason = "taken back: the records held out are not predicted better with it";
       trace_.rounds[k].added.clear();
     }
@@ -220,8 +295,9 @@ class Tracer {
     if (count == 0) trace_.channel.clear();
     current_ = best->fit;
     trace_.final = best->stage;
-    trace_.kind = VerdictKind::not_explained;
-    trace_.share_left = 1.0;
+    trace_.kind = omnibus_ ? VerdictKind::not_explained : VerdictKind::nothing_missing;
+    trace_.share_left = omnibus_ ? 1.0 : 0.0;
+    trace_.significant = omnibus_ || count > 0;
     if (count > 0) judge();
     reached();
   }
@@ -231,8 +307,8 @@ class Tracer {
     const double fallen = round.better.residual.norm() / std::max(1e-300, current_.residual.norm());
     for (const MotionCandidate& c : round.round.candidates) {
       std::vector<MotionNumber>& numbers = trace_.effects[c.score.effect].numbers;
-      for (std::size_t k = 0; k < std::min(numbers.size(), c.score.scale.size()); ++k)
-        if (c.score.scale[k] > 0.0) numbers[k].scale = fallen * c.score.scale[k];
+      for (std::size_t k = 0; k < c.score.numbers.size(); ++k)
+        if (c.score.scale[k] > 0.0) numbers[c.score.numbers[k]].scale = fallen * c.score.scale[k];
     }
   }
 
@@ -243,13 +319,22 @@ class Tracer {
       return std::any_of(set_.free.begin(), set_.free.end(),
                          [&](const FreeNumber& f) { return f.key.starts_with(e.numbers.front().key); });
     });
-    std::vector<Reached> kept{{current_, trace_.base}};
+    std::vector<Reached> kept{{current_, trace_.base, heldout_residual_, 0}};
+    const Reached base = kept.front();
     for (int number = 1; number <= set_.most_effects; ++number) {
       if (!go_on(fmt::format("round {}: {} effects", number, trace_.effects.size()))) return;
       RoundInput input{model_, data_, current_, trace_.effects, trace_.selected_effects, options_.significance};
       for (const ChannelError& e : trace_.base.errors)
         if (e.fitted) input.tolerance[e.sensor] = tolerance(e.sensor);
       input.progress = asked();
+      if (heldout_data_.rows > 0) {
+        input.heldout_data = &heldout_data_;
+        input.heldout_now = heldout_residual_.squaredNorm();
+        input.heldout = [this](const MotionFit& fit) {
+          const std::optional<MotionFit> there = on_heldout(fit, {});
+          return there && there->report.usable() ? there->residual : Eigen::VectorXd();
+        };
+      }
       RoundResult round = motion_round(input);
       if (stop_) return;
       trace_.rounds.push_back(round.round);
@@ -261,14 +346,29 @@ class Tracer {
       if (trace_.channel.empty()) trace_.channel = trace_.effects[*round.added].channel;
       trace_.final = stage(current_, {});
       judge();
-      kept.push_back({current_, trace_.final});
+      trace_.significant = true;
+      kept.push_back({current_, trace_.final, heldout_residual_, trace_.selected.size()});
       if (heldout_data_.rows == 0) reached();
       if (trace_.kind == VerdictKind::explained) break;
     }
     keep_what_carries_over(kept);
-    if (trace_.kind != VerdictKind::explained) trace_.leftovers = leftovers(model_, data_, current_);
-    if (trace_.selected.empty() && !trace_.leftovers.empty()) trace_.channel = trace_.leftovers.front().sensor;
+    if (trace_.kind == VerdictKind::not_explained) withdraw(base);
+    if (trace_.kind == VerdictKind::partly_explained || trace_.kind == VerdictKind::not_explained)
+      trace_.leftovers = leftovers(model_, data_, current_);
     propose();
+  }
+
+  /// Nothing is named that leaves more than a little: what helped is told, and the model is again that without it.
+  void withdraw(const Reached& base) {
+    if (!trace_.selected.empty()) {
+      trace_.partial = std::move(trace_.selected);
+      trace_.with_partial = std::move(trace_.final);
+      trace_.selected.clear();
+      trace_.selected_effects.clear();
+      trace_.final = trace_.base;
+      current_ = base.fit;
+    }
+    trace_.channel = worst_channel();
   }
 
   void judge() {
@@ -306,6 +406,8 @@ class Tracer {
   MotionData data_, heldout_data_;
   std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
   MotionFit current_;
+  Eigen::VectorXd heldout_residual_;  // of the last stage
+  bool omnibus_ = false;              // what the base leaves is more than noise, whatever the effects' own tests say
   MotionTrace trace_;
 };
 

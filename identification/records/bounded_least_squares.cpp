@@ -83,6 +83,9 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
     for (Eigen::Index k = 0; k < slope.size(); ++k)
       held.push_back((result.x[k] <= problem.lower[k] && slope[k] >= 0.0) ||
                      (result.x[k] >= problem.upper[k] && slope[k] <= 0.0) || !(J.col(k).norm() > 0.0));
+    // What a whole step promises: at a minimum no simulation is spent on falls that are below those that end the search.
+    const Eigen::VectorXd whole = step_within(problem, result.x, r, J, held, least_damping);
+    if (result.chi2 - (r + J * whole).squaredNorm() <= tolerance * result.chi2) return result;
     double fall = 0.0;
     for (int attempt = 0; attempt < most_tries && !(fall > 0.0); ++attempt) {
       const Eigen::VectorXd there = result.x + step_within(problem, result.x, r, J, held, damping);

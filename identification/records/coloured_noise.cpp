@@ -63,12 +63,17 @@ Autoregression burg(const std::vector<Eigen::VectorXd>& stretches) {
 
 }  // namespace
 
-ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual) {
+ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual, Eigen::Index taken) {
   std::map<std::string, std::vector<Eigen::VectorXd>> by_sensor;
   for (const ResidualPiece& p : data.pieces)
     by_sensor[data.set->records[p.record].channels[p.channel].sensor].emplace_back(residual.segment(p.begin, p.size));
   std::map<std::string, Autoregression> fitted;
-  for (const auto& [sensor, stretches] : by_sensor) fitted[sensor] = burg(stretches);
+  const auto n = static_cast<double>(residual.size());
+  const double given_back = std::sqrt(n / std::max(1.0, n - static_cast<double>(taken)));
+  for (const auto& [sensor, stretches] : by_sensor) {
+    fitted[sensor] = burg(stretches);
+    fitted[sensor].innovation *= given_back;
+  }
   ColouredNoise noise;
   for (const ResidualPiece& p : data.pieces)
     noise.pieces.push_back(fitted[data.set->records[p.record].channels[p.channel].sensor]);

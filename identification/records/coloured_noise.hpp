@@ -20,7 +20,9 @@ struct ColouredNoise {
   std::vector<Autoregression> pieces;  ///< of every piece of the data
 };
 /// The noise of a residual [-]: one autoregression a channel, by its pieces together, told piece by piece.
-[[nodiscard]] ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual);
+/// `taken`: numbers that were fitted to the residual; what they took of its power is given back, n/(n - taken).
+[[nodiscard]] ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual,
+                                           Eigen::Index taken = 0);
 
 /// White residuals [-], e_t - sum a_k e_(t-k), over their s; the first ones of a piece, with fewer before them, too.
 [[nodiscard]] Eigen::VectorXd whitened(const MotionData& data, const ColouredNoise& noise,

@@ -76,12 +76,13 @@ std::vector<std::string> DeclaredScenario::names(const std::string& list) const 
   return names;
 }
 
-DeclaredScenario declared_scenario(const RecordSet& set) {
+DeclaredScenario declared_scenario(const RecordSet& set, const std::vector<base::Override>& more) {
   const auto parse = [](const std::filesystem::path& file) {
     return base::parse_toml(file.string(), base::read_text(file, base::TomlDocument::size_limit));
   };
   DeclaredScenario declared;
   std::vector<base::Override> own = set.set;
+  own.insert(own.end(), more.begin(), more.end());
   declared.scenario = scenario::read_with_parts(set.scenario, own);
   const scenario::ArmOverrides of_arms = scenario::take_arm_overrides(own);
   std::vector<base::InputProblem> problems;

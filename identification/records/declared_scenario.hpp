@@ -27,7 +27,7 @@ struct DeclaredScenario {
   [[nodiscard]] const base::TomlNode* find(const std::string& key) const;
 };
 
-/// Reads the files. Throws InputError.
-[[nodiscard]] DeclaredScenario declared_scenario(const RecordSet& set);
+/// Reads the files, with keys that are otherwise for all records and `more` of them. Throws InputError.
+[[nodiscard]] DeclaredScenario declared_scenario(const RecordSet& set, const std::vector<base::Override>& more = {});
 
 }  // namespace snare::identification

@@ -130,7 +130,7 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
   fit.chi2 = fit.residual.squaredNorm();
   if (options.derivatives && data.rows > 0 && !model.stopped()) {
     fit.jacobian = signal_derivatives(model, data, fit.settings, fit.predictions, options.fixed);
-    const ColouredNoise noise = coloured_noise(data, fit.residual);
+    const ColouredNoise noise = coloured_noise(data, fit.residual, fit.jacobian.cols());
     fit.covariance = sandwich(data, noise, fit.jacobian);
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)
       for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j)

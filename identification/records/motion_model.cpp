@@ -89,6 +89,7 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
+  for (const MotionRecord& r : set.records) declared_in_.push_back(declared_scenario(set, r.set));
   for (const FreeNumber& f : set.free) bounds_[f.key] = lower_bound(f);
   look_at_joints();
 }
@@ -146,7 +147,7 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
   for (const MotionSetting& s : settings) {
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
-    for (base::Override& one : s.number.overrides(s.value)) overrides.push_back(std::move(one));
+    for (base::Override& one : s.number.overrides(s.value, declared_in_[record])) overrides.push_back(std::move(one));
   }
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
   overrides.push_back({"duration_s", exact_text(duration_for(r, interval))});
@@ -233,6 +234,7 @@ void MotionModel::look_at_joints() {
   const std::size_t first = set_.used(false).front();
   const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first));
   const scenario::NamedMotion& run = run_of(read, set_).runs.front();
+  slowest_ = slowest_mode(run.motion);
   coupling::MotionOptions options = run.options;
   options.stop = stop_;
   struct Sum {

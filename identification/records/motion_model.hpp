@@ -3,6 +3,7 @@
 #include "identification/records/declared_scenario.hpp"
 #include "identification/records/motion_number.hpp"
 #include "identification/records/record_set.hpp"
+#include "identification/records/slowest_mode.hpp"
 
 #include <Eigen/Core>
 
@@ -54,6 +55,7 @@ class MotionModel {
   /// Unit of a channel's column, from the sensor's name: "mm".
   [[nodiscard]] std::string unit(const RecordChannel& channel) const;
   [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }
+  [[nodiscard]] const std::optional<SlowMode>& slowest() const { return slowest_; }  ///< of the first record's scenario
   /// Full column of a channel's sensor.
   [[nodiscard]] const std::string& column(const RecordChannel& channel) const { return columns_.at(channel.sensor); }
 
@@ -83,9 +85,11 @@ class MotionModel {
 
   const RecordSet& set_;
   DeclaredScenario declared_;
+  std::vector<DeclaredScenario> declared_in_;  ///< as the records declare it, each with its own keys
   std::function<bool()> stop_;
   std::map<std::string, std::string> columns_;  ///< full column of a sensor's short name
   std::map<std::string, JointUse> joints_;
+  std::optional<SlowMode> slowest_;
   std::map<std::string, double> bounds_;  ///< lower ones of the free numbers
   mutable std::atomic<long> simulations_ = 0;
   /// Runs kept for settings that differ in the sensors only: the last few, by record and keys.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/toml_tree.hpp"
+#include "identification/records/declared_scenario.hpp"
 
 #include <functional>
 #include <limits>
@@ -32,15 +33,15 @@ struct MotionNumber {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   double scale = 1.0;                 ///< a change of this size is small and can be seen, > 0
   std::optional<std::size_t> record;  ///< the one to which it belongs; none: all
-  /// Keys of the scenario with this value. Either this or `signal`.
-  std::function<std::vector<base::Override>(double value)> overrides;
+  /// Keys of the scenario with this value, in a record that declares them as `record` says. Either this or `signal`.
+  std::function<std::vector<base::Override>(double value, const DeclaredScenario& record)> overrides;
   std::function<void(SignalChanges&, double value)> signal;
 };
 
 /// A number, of any unit, as text that reads back to the same double.
 [[nodiscard]] std::string exact_text(double value);
 
-/// The number under a key of the scenario or of an arm's file; `declared` in the unit of the key.
+/// The number under a key of the scenario or of an arm's file, the same in all records; `declared` in the unit of the key.
 [[nodiscard]] MotionNumber keyed_number(const std::string& key, double declared);
 
 /// "mm", "N m/rad", ... of a key that ends in its unit; empty: a pure number.

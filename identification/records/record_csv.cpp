@@ -13,12 +13,28 @@ namespace snare::identification {
 namespace {
 
 constexpr double most_at_end = 0.5;  ///< share of the readings that may stand at the largest or the smallest value
-constexpr double usual_gaps = 20.0;  ///< times the median interval
+constexpr std::size_t longest_chance_run = 4;  ///< readings at an end of the range that noise never makes the same
+constexpr double least_distinct = 0.4;         ///< share of the readings: half of them may be at the end
+constexpr double usual_gaps = 20.0;            ///< times the median interval
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Readings one after the other that are exactly `value`, at most.
+std::size_t longest_run(const std::vector<double>& values, double value) {
+  std::size_t longest = 0, run = 0;
+  for (const double v : values) longest = std::max(longest, run = v == value ? run + 1 : 0);
+  return longest;
+}
+
+/// Whether readings hardly ever are the same, as those with noise and fine steps: then a run of the same ones is no rest.
+bool is_fine(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto distinct = std::unique(values.begin(), values.end()) - values.begin();
+  return static_cast<double>(distinct) > least_distinct * static_cast<double>(values.size());
 }
 
 /// Problems of the times, a few of each kind.
@@ -65,6 +81,11 @@ void check_values(const RecordCsv& csv, const std::string& column, const std::ve
     if (static_cast<double>(count) > most_at_end * static_cast<double>(values.size()))
       tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
                             count, values.size()));
+    else if (const std::size_t run = longest_run(values, end); run >= longest_chance_run && is_fine(values))
+      tell(end, fmt::format("{} readings one after the other stand at this end of the range, and others hardly ever "
+                            "are the same: the sensor was "
+                            "saturated, leave these out by from_s and to_s",
+                            run));
   }
 }
 

@@ -3,9 +3,11 @@
 #include "base/files.hpp"
 #include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
+#include "identification/records/motion_number.hpp"
 #include "identification/records/record_csv.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -30,11 +32,15 @@ const std::vector<base::TomlEntry>* entries_of(const TomlNode* node, const char*
   return found != nullptr && found->kind == TomlNode::Kind::table ? &found->entries : nullptr;
 }
 
-/// A TOML value as an override's text.
+/// A TOML value as an override's text. What a node keeps of how it was written is shortened for messages.
 std::string text_of(const TomlNode& node) {
   if (node.kind == TomlNode::Kind::text) return "\"" + node.text + "\"";
-  if (node.kind == TomlNode::Kind::number) return fmt::format("{:.17g}", node.number);
-  return node.written;
+  if (node.kind == TomlNode::Kind::number)
+    return node.integer ? fmt::format("{:.0f}", node.number) : exact_text(node.number);
+  if (node.kind != TomlNode::Kind::array) return node.written;
+  std::vector<std::string> items;
+  for (const TomlNode& item : node.items) items.push_back(text_of(item));
+  return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 std::vector<base::Override> read_set(const TomlTable& table, const TomlNode* node) {
