@@ -58,7 +58,8 @@ elements       = 20
 NOT_HERE = {
     "snare-ringdown-result/1": {f"series[].friction_mm_s.{k}" for k in ("value", "stderr", "lower", "upper")},  # no friction in the record
     "snare-trace/1": {"next_experiment.difference_N", "next_experiment.difference_sigma", "remaining.hangs_on[].sensor",
-                      "remaining.hangs_on[].on", "remaining.hangs_on[].share"},  # nothing to tell apart, nothing left
+                      "remaining.hangs_on[].on", "remaining.hangs_on[].share",  # nothing to tell apart, nothing left
+                      "partial.model", "partial.heldout"},  # of records: nothing that helps without explaining
     "snare-comparison/1": {"models[].from_full.first_touch_s", "models[].from_full.tight_s"},  # too short to touch
     "snare-summary/1": {"models[].quasi_static", *(f"models[].quasi_static[].{k}" for k in ("wire", "left_out_kinetic_J", "left_out_force_N"))},
 }
