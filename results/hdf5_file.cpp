@@ -280,8 +280,8 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::filesystem::path 
     const Handle access = properties("H5P_CLS_FILE_ACCESS_ID_g");
     // The root group is one of the first format, as that of the later one keeps its times whatever is asked (1.10).
     check(api.H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
-    check(api.H5Pset_file_locking(access, 0,
-                                  1));  // file systems of clusters may have no locks; ours is that of the folder
+    // File systems of clusters may have no locks; ours is that of the folder.
+    check(api.H5Pset_file_locking(access, 0, 1));
     const Handle made = timeless("H5P_CLS_FILE_CREATE_ID_g");
     check(api.H5Pset_istore_k(made, tree_of_chunks));
     library_->file.emplace(api.H5Fcreate(file.c_str(), H5F_ACC_TRUNC, made, access), api.H5Fclose);
