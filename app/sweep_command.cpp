@@ -80,7 +80,7 @@ SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, cons
   return answers;
 }
 
-void tell(const SweepAnswers& answers, const CommonOptions& options, Console& console) {
+void tell(const SweepAnswers& answers, bool histories, const CommonOptions& options, Console& console) {
   for (const FieldAnswer& f : answers.fields) {
     if (f.count == 0) continue;
     if (f.yes_or_no)
@@ -92,7 +92,8 @@ void tell(const SweepAnswers& answers, const CommonOptions& options, Console& co
     console.say(fmt::format("probability {:.3g}, coefficient of variation {:.2g}{}", answers.subset->probability,
                             answers.subset->variation, answers.subset->reached ? "" : " (the event was not reached)"));
   }
-  console.say(fmt::format("wrote {0}/cases.csv, summary.json, report.html", options.out.string()));
+  console.say(fmt::format("wrote {0}/cases.csv, summary.json, report.html{1}", options.out.string(),
+                          histories ? ", histories.h5" : ""));
 }
 
 /// Everything but the first rank's work is here.
@@ -106,6 +107,8 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
     console.complain(fmt::format("{}: {} damaged lines, their cases are run again", file.string(), journal->damaged()));
   if (journal->finished() > 0)
     console.say(fmt::format("goes on from {}: {} cases are there", file.string(), journal->finished()));
+  std::optional<SweepHistories> histories;
+  if (study.sweep().histories) histories.emplace(study, options.out);
   const KeepWhenInterrupted keeping(
       [&] {
         journal->flush();
@@ -117,7 +120,8 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
   const SweepWorkers workers{threads, threads * ranks, leader,
                              [&](std::uint64_t index, const std::vector<double>& values) -> std::shared_ptr<void> {
                                return std::make_shared<CrashNote>(*journal, index, values);
-                             }};
+                             },
+                             histories ? &*histories : nullptr};
   SweepEnd end;
   try {
     end = run_sweep_cases(study, *journal, workers,
@@ -143,7 +147,8 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
     console.complain(fmt::format("{} of {} cases have no result; summary.json has the reasons", answers.finished - well,
                                  answers.finished));
   }
-  if (!options.json) tell(answers, options, console);
+  if (histories && !end.partial) histories->join(*journal, end.cases);
+  if (!options.json) tell(answers, histories && !end.partial, options, console);
   return end.partial || well == 0 ? ExitStatus::solver_stopped : ExitStatus::done;
 }
 
@@ -178,21 +183,23 @@ ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& opt
   if (options.only_case > 0) return run_one_case(*study, options, console);
   const int threads = thread_count(options, ranks != nullptr);
   if (rank > 0) {
+    std::optional<SweepHistories> histories;
+    if (study->sweep().histories) histories.emplace(*study, options.out);
     study::follow(
         *ranks, study->identity(), threads,
         [&](std::uint64_t index, const std::vector<double>& values) {
-          return study::line_of(study->run(values.empty() ? study->sweep().design.values(index) : values, interrupted));
+          return case_line(*study, histories ? &*histories : nullptr, index, values, interrupted);
         },
         interrupted);
     return interrupted() ? ExitStatus::solver_stopped : ExitStatus::done;
   }
   if (!ranks || ranks->size() == 1) {
-    const ResultFolder folder(options, {"cases.csv", "cases.journal", "summary.json", "report.html"});
+    const ResultFolder folder(options, {"cases.csv", "cases.journal", "histories.h5", "summary.json", "report.html"});
     return lead(*study, threads, options, nullptr, 1, console);
   }
   std::optional<study::RankLeader> leader;
   leader.emplace(*ranks, study::RankLeader::Settings{.identity = study->identity(), .threads = threads});
-  const ResultFolder folder(options, {"cases.csv", "cases.journal", "summary.json", "report.html"});
+  const ResultFolder folder(options, {"cases.csv", "cases.journal", "histories.h5", "summary.json", "report.html"});
   const ExitStatus status = lead(*study, threads, options, &*leader, ranks->size(), console);
   if (const int lost = leader->lost(); lost > 0) {
     console.complain(fmt::format("{} of {} ranks were lost on the way; others ran their cases", lost, ranks->size()));

@@ -51,6 +51,9 @@ class AtomicFile {
 
   /// Appends bytes to the temporary file.
   void write(std::string_view text);
+  /// Where it is until then, for a library that opens files by name. It may empty this one and write it, must not put another in its
+  /// place, and must have closed it before the commit.
+  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// To be called once; no write after it.
   void commit();
 

@@ -13,6 +13,9 @@ find_package(Ceres 2.1 REQUIRED)
 find_package(NLopt 2.7 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(urdfdom REQUIRED)
+# Headers of one source file (results/hdf5_file.cpp); the library itself is opened by name, so users of the installed package need no more.
+set(HDF5_PREFER_PARALLEL OFF)
+find_package(HDF5 1.10.7 REQUIRED COMPONENTS C)
 # Headers of one source file (coupling/contact/mesh_shape.cpp); users of the installed package need GMP and MPFR only.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED)

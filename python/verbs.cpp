@@ -33,6 +33,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -247,16 +248,26 @@ py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::objec
     }
   };
   const auto study = std::make_shared<const results::SweepStudy>(file, overrides_of(set));
+  if (study->sweep().histories && folder.empty())
+    throw base::InputError({file.string(), 0, "histories", "", "must have a folder: call sweep with out"});
   const auto kept = std::make_shared<const Folder>(folder);
   const auto cases = std::make_shared<ColumnSink>();
   const int wanted = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const auto summary = made(
       [study, kept, cases, wanted](const results::Watch& watch) {
         study::Journal journal(kept->path / "cases.journal", study->identity(), study->count());
-        const results::SweepEnd end = results::run_sweep_cases(*study, journal, {wanted, wanted, nullptr, {}}, watch);
+        std::optional<results::SweepHistories> histories;
+        if (study->sweep().histories) histories.emplace(*study, kept->path);
+        const results::SweepEnd end = results::run_sweep_cases(
+            *study, journal, {wanted, wanted, nullptr, {}, histories ? &*histories : nullptr}, watch);
         journal.flush();
         results::give_cases(*cases, *study, journal, end.cases);
-        return results::sweep_summary(*study, results::sweep_answers(*study, journal, end));
+        json document = results::sweep_summary(*study, results::sweep_answers(*study, journal, end));
+        if (histories && !end.partial) {
+          histories->join(journal, end.cases);
+          document["histories"] = histories->file().string();
+        }
+        return document;
       },
       threads, progress);
   return py::make_tuple(to_python(*summary), cases->take());

@@ -6,7 +6,9 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
 #include "reduction/distil.hpp"
+#include "results/curves.hpp"
 #include "results/law_json.hpp"
+#include "results/motion_history.hpp"
 #include "results/motion_summary.hpp"
 #include "results/push_result.hpp"
 #include "results/trace_json.hpp"
@@ -38,8 +40,13 @@ CaseEnd ending(bool usable, numerics::Termination termination, const std::string
   return {termination == numerics::Termination::interrupted ? Status::stopped : Status::failed, message};
 }
 
-CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& motions, const Stop& stop,
-                 json& result) {
+/// Whether a run that ended so has come somewhere by itself: what a signal or a limit of time has cut off depends on the machine.
+bool keeps_history(const CaseEnd& end) {
+  return end.status == Status::done || end.status == Status::failed;
+}
+
+CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& motions, const Stop& stop, json& result,
+                 TableSink* history) {
   std::vector<MotionRecord> records;
   CaseEnd end;
   for (const scenario::NamedMotion& one : motions.runs) {
@@ -52,13 +59,16 @@ CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& m
     });
     end = ending(record.result.report.usable(), record.result.report.termination, record.result.report.message);
     records.push_back(std::move(record));
-    if (end.status != Status::done) return end;
+    if (end.status != Status::done) break;
   }
+  if (history != nullptr && keeps_history(end)) give_history(*history, motions, finished_motions(motions, records));
+  if (end.status != Status::done) return end;
   result = motion_summary(asked, motions, finished_motions(motions, records));
   return end;
 }
 
-CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const Stop& stop, json& result) {
+CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const Stop& stop, json& result,
+                 TableSink* history) {
   multibody::ArmScenario arm = motion.scenario;
   arm.progress = [&](double) { return !stop(); };
   ArmRecord record;
@@ -66,27 +76,32 @@ CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& mot
   if (motion.joint >= 0) record.swings = scenario::swings(record.history, arm.arm, motion.joint);
   const auto& report = record.history.report;
   CaseEnd end = ending(report.usable(), report.termination, report.message);
+  if (history != nullptr && keeps_history(end)) give_history(*history, motion.scenario.arm, record.history);
   if (end.status == Status::done) result = arm_summary(asked, motion, record);
   return end;
 }
 
-CaseEnd push(const identification::Experiment& experiment, const Stop& stop, json& result) {
+CaseEnd push(const identification::Experiment& experiment, const Stop& stop, json& result, TableSink* history) {
   PushResult pushed = results::push(experiment, {{}, stop});
-  for (std::size_t k = 0; k < pushed.predictions.size(); ++k) {
+  CaseEnd end;
+  for (std::size_t k = 0; k < pushed.predictions.size() && end.status == Status::done; ++k) {
     const numerics::SolveReport& report = pushed.predictions[k].curve.curve.report;
-    if (!report.usable())
-      return ending(false, report.termination, fmt::format("series {}: {}", experiment.series[k].name, report.message));
+    end = ending(report.usable(), report.termination,
+                 fmt::format("series {}: {}", experiment.series[k].name, report.message));
   }
-  result = std::move(pushed.document);
-  return {};
+  if (history != nullptr && keeps_history(end)) give_curves(*history, experiment.series, pushed.predictions);
+  if (end.status == Status::done) result = std::move(pushed.document);
+  return end;
 }
 
-CaseEnd trace(const identification::Experiment& experiment, bool whole, const Stop& stop, json& result) {
+CaseEnd trace(const identification::Experiment& experiment, bool whole, const Stop& stop, json& result,
+              TableSink* history) {
   identification::TraceOptions options = whole ? identification::TraceOptions{} : fitting_options();
   options.progress = [&](const std::string&) { return !stop(); };
   const identification::Trace traced = identification::trace(experiment, options);
   if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
   if (traced.interrupted) return {Status::stopped, "interrupted"};
+  if (history != nullptr) give_curves(*history, traced.series, traced.final_predictions, curve_columns(traced));
   result = whole ? trace_json(experiment, traced) : fit_json(experiment, traced);
   return {};
 }
@@ -168,27 +183,37 @@ CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& a
   }
 }
 
-void CaseRunner::check(const Overrides& overrides) const {
+void CaseRunner::check(const Overrides& overrides, TableSink* names) const {
   if (verb_ == "simulate") {
-    static_cast<void>(scenario::read_scenario(file_, overrides));
+    const scenario::Scenario asked = scenario::read_scenario(file_, overrides);
+    if (names == nullptr) return;
+    if (const auto* arm = std::get_if<scenario::ArmMotion>(&asked.content))
+      give_history(*names, arm->scenario.arm, {});
+    else
+      give_history(*names, std::get<scenario::WireMotions>(asked.content), {});
   } else if (verb_ == "distil") {
     static_cast<void>(reduction::read_wire_file(file_, overrides));
   } else {
-    static_cast<void>(identification::read_experiment(file_, identification::parameters(), overrides));
+    const identification::Experiment experiment =
+        identification::read_experiment(file_, identification::parameters(), overrides);
+    if (names == nullptr) return;
+    const std::vector<identification::Prediction> none(experiment.series.size());
+    give_curves(*names, experiment.series, none, verb_ == "push" ? std::vector<CurveColumn>() : curve_columns({}));
   }
 }
 
-CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& result) const {
+CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& result, TableSink* history) const {
   try {
     if (verb_ == "simulate") {
       const scenario::Scenario asked = scenario::read_scenario(file_, overrides);
-      return std::visit([&](const auto& content) { return simulate(asked, content, stop, result); }, asked.content);
+      return std::visit([&](const auto& content) { return simulate(asked, content, stop, result, history); },
+                        asked.content);
     }
     if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), stop, result);
     const identification::Experiment experiment =
         identification::read_experiment(file_, identification::parameters(), overrides);
-    if (verb_ == "push") return push(experiment, stop, result);
-    return trace(experiment, verb_ == "trace", stop, result);
+    if (verb_ == "push") return push(experiment, stop, result, history);
+    return trace(experiment, verb_ == "trace", stop, result, history);
   } catch (const base::InputError& error) {
     return {Status::refused, one_line(error.what())};
   } catch (const std::bad_alloc&) {

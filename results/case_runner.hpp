@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/toml_tree.hpp"
+#include "results/result_table.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -37,12 +38,17 @@ class CaseRunner {
   /// The file that is read.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
-  /// Reads the file as a case would. Throws base::InputError with everything that is wrong.
-  void check(const std::vector<base::Override>& overrides) const;
+  /// Whether its runs have a history: that of motions is history.csv, that of pushes, fits and traces curves.csv.
+  [[nodiscard]] bool has_history() const noexcept { return verb_ != "distil"; }
+
+  /// Reads the file as a case would. Throws base::InputError with everything that is wrong. names: gets the columns of the history that a
+  /// case would have, where it has one, and no row.
+  void check(const std::vector<base::Override>& overrides, TableSink* names = nullptr) const;
 
   /// Never throws but std::bad_alloc for the words of a failure. stop: asked often; true ends the case. result: set where it is done.
+  /// history: gets the table of a case that is done, or whose solver could not finish a motion or a push: as far as it came.
   [[nodiscard]] CaseEnd run(const std::vector<base::Override>& overrides, const std::function<bool()>& stop,
-                            nlohmann::json& result) const;
+                            nlohmann::json& result, TableSink* history = nullptr) const;
 
  private:
   std::filesystem::path file_;

@@ -118,10 +118,10 @@ StaticComparison read_static_comparison(const std::filesystem::path& file, const
 
 nlohmann::json comparison_json(const StaticComparison& comparison, const std::vector<CaseComparison>& results) {
   const bool partial = results.size() < comparison.cases.size();
-  nlohmann::json json{{"schema", "snare-comparison/1"}, {"version", version()}, {"interrupted", partial},
-                      {"title", comparison.title},      {"kind", "static"},     {"cases", nlohmann::json::array()}};
-  for (const CaseComparison& one : results) json["cases"].push_back(case_json(one));
-  return json;
+  nlohmann::json document{{"schema", "snare-comparison/1"}, {"version", version()}, {"interrupted", partial},
+                          {"title", comparison.title},      {"kind", "static"},     {"cases", nlohmann::json::array()}};
+  for (const CaseComparison& one : results) document["cases"].push_back(case_json(one));
+  return document;
 }
 
 }  // namespace snare::results

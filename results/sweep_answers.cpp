@@ -356,6 +356,7 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
                {"fields", json::object()},
                {"limits", json::object()},
                {"worst", json::array()}};
+  if (sweep.histories && !answers.interrupted) summary["histories"] = "histories.h5";
   const auto& variables = sweep.design.variables();
   for (const FieldAnswer& field : answers.fields) {
     json& one = summary["fields"][field.name];

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -32,11 +33,11 @@ class SweepRun {
 
   /// Cases of a design. Throws what ends all.
   void design() {
+    begin();
     const std::uint64_t count = study_.count();
     study::Scheduler scheduler({.count = count, .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                               [this](std::uint64_t k) { return journal_.has(k); });
+                               [this](std::uint64_t k) { return finished(k); });
     total_ = count;
-    begin();
     study::Dispatcher dispatcher(
         std::move(scheduler), [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
     run(
@@ -53,7 +54,7 @@ class SweepRun {
       const auto values = [&](std::uint64_t k) { return study_.sweep().design.values_of_scores(asked[k]); };
       study::Dispatcher dispatcher(
           study::Scheduler({.count = asked.size(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                           [&](std::uint64_t k) { return journal_.has(base + k); }),
+                           [&](std::uint64_t k) { return finished(base + k); }),
           [&](std::uint64_t k, const std::string& line) { keep(base + k, line); }, stop_);
       run(dispatcher, values, [base](std::uint64_t k) { return base + k; });
       if (watch_.stopped()) return false;
@@ -68,32 +69,42 @@ class SweepRun {
     return simulation.finished();
   }
 
+  /// No history is missing that was when this began.
+  [[nodiscard]] bool whole() const { return again_.empty(); }
+
  private:
   using Clock = std::chrono::steady_clock;
 
   /// Threads ask for a case at a time; ranks for half a second's.
   [[nodiscard]] double chunk_s() const { return workers_.leader != nullptr ? 0.5 : 0.0; }
 
+  /// Nothing of the case is to be done any more.
+  [[nodiscard]] bool finished(std::uint64_t index) const { return journal_.has(index) && !again_.contains(index); }
+
   void begin() {
-    before_ = journal_.finished();
+    if (workers_.histories != nullptr) again_ = workers_.histories->missing(journal_);
+    before_ = journal_.finished() - again_.size();
     began_ = Clock::now();
     if (const auto line = before_ > 0 ? journal_.result(0) : std::nullopt; line) any_done_ = true;
   }
 
   template <class Values, class Number>
   void run(study::Dispatcher& dispatcher, const Values& values, const Number& number) {
-    const auto run_one = [&](std::uint64_t k, const std::vector<double>& given) {
-      const std::shared_ptr<void> held = workers_.around ? workers_.around(number(k), given) : nullptr;
-      return study::line_of(study_.run(given.empty() ? study_.sweep().design.values(number(k)) : given, stop_));
+    const auto run_one = [&](std::uint64_t index, const std::vector<double>& given) {
+      const std::shared_ptr<void> held = workers_.around ? workers_.around(index, given) : nullptr;
+      return case_line(study_, workers_.histories, index, given, stop_);
     };
     if (workers_.leader != nullptr) {
-      workers_.leader->run(dispatcher, run_one, values, [&](std::uint64_t k) {
-        CaseRecord record{"lost", "the process that ran it ended, twice", 0.0, {}, {}};
-        if (study_.count() == 0) record.values = values(k);
-        return study::line_of(record);
-      });
+      workers_.leader->run(
+          dispatcher, run_one, values,
+          [&](std::uint64_t k) {
+            CaseRecord record{"lost", "the process that ran it ended, twice", 0.0, {}, {}};
+            if (study_.count() == 0) record.values = values(k);
+            return study::line_of(record);
+          },
+          number(0));
     } else {
-      study::run_cases(dispatcher, workers_.threads, [&](std::uint64_t k) { return run_one(k, values(k)); });
+      study::run_cases(dispatcher, workers_.threads, [&](std::uint64_t k) { return run_one(number(k), values(k)); });
       dispatcher.rethrow();
     }
   }
@@ -105,10 +116,12 @@ class SweepRun {
     if (record->status == "no_field" && !any_done_) {
       throw base::InputError({study_.sweep().file.string(), 0, "collect", "", record->reason});
     }
+    if (record->status == "unkept") throw std::runtime_error(record->reason);
     any_done_ = true;
     journal_.append(index, line);
+    again_.erase(index);
     if (!record->done()) ++without_;
-    const std::uint64_t done = journal_.finished();
+    const std::uint64_t done = journal_.finished() - again_.size();
     const double elapsed = std::chrono::duration<double>(Clock::now() - began_).count();
     if (elapsed - shown_ < 0.1 && done < total_) return;
     shown_ = elapsed;
@@ -125,6 +138,7 @@ class SweepRun {
   const Watch& watch_;
   const std::function<bool()> stop_{[this] { return watch_.stopped(); }};
   std::uint64_t total_ = 0, before_ = 0, without_ = 0;
+  std::set<std::uint64_t> again_;  // that the journal has and whose history is missing
   bool any_done_ = false;
   double shown_ = -1.0;
   Clock::time_point began_;
@@ -132,13 +146,20 @@ class SweepRun {
 
 }  // namespace
 
+std::string case_line(const SweepStudy& study, const SweepHistories* histories, std::uint64_t index,
+                      const std::vector<double>& values, const std::function<bool()>& stop) {
+  std::function<void(History&)> keep;
+  if (histories != nullptr) keep = [&](History& history) { histories->keep(index, history); };
+  return study::line_of(study.run(values.empty() ? study.sweep().design.values(index) : values, stop, keep));
+}
+
 SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepWorkers& workers, const Watch& watch) {
   SweepRun run(study, journal, workers, watch);
   SweepEnd end;
   if (study.count() > 0) {
     run.design();
     end.cases = study.count();
-    end.partial = journal.finished() < study.count();
+    end.partial = journal.finished() < study.count() || !run.whole();
     return end;
   }
   study::SubsetSimulation simulation(study.subset_settings());

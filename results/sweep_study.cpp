@@ -2,6 +2,7 @@
 
 #include "base/archive.hpp"
 #include "base/errors.hpp"
+#include "base/toml_reader.hpp"
 #include "results/version.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +21,29 @@ namespace {
 
 using nlohmann::json;
 
+/// Whether the verb has a history, with the columns that are asked for.
+void check_histories(const study::SweepFile& sweep, const CaseRunner& runner, const std::vector<std::string>& names) {
+  if (!runner.has_history()) {
+    throw base::InputError(
+        {sweep.file.string(), 0, "histories", "", fmt::format("must be left out: {} has no history", runner.verb())});
+  }
+  std::vector<base::InputProblem> problems;
+  for (std::size_t k = 0; k < sweep.histories->columns.size(); ++k) {
+    const std::string& asked = sweep.histories->columns[k];
+    if (std::ranges::find(names, asked) != names.end()) continue;
+    const std::string near = base::nearest_word(asked, names);
+    problems.push_back(
+        {sweep.file.string(), 0, fmt::format("histories.columns[{}]", k + 1), asked,
+         fmt::format(
+             "must be a column of {}{}", runner.verb() == "simulate" ? "history.csv" : "curves.csv",
+             near.empty() ? fmt::format(": {}", fmt::join(names, ", ")) : fmt::format("; did you mean {}?", near))});
+  }
+  if (!problems.empty()) throw base::InputError(std::move(problems));
+}
+
 /// Whether any of a few cases, spread over all, is one that its reader takes; else what the first is refused for. A key that does not
-/// exist is so found before anything runs, and a range of which a part is not allowed is none.
-void check_some(const study::SweepFile& sweep, const CaseRunner& runner) {
+/// exist is so found before anything runs, and a range of which a part is not allowed is none. Returns the columns of that case's history.
+std::vector<std::string> check_some(const study::SweepFile& sweep, const CaseRunner& runner) {
   const std::uint64_t count = sweep.design.count();
   std::set<std::uint64_t> some;
   constexpr std::uint64_t tried = 5;
@@ -30,8 +51,9 @@ void check_some(const study::SweepFile& sweep, const CaseRunner& runner) {
   std::vector<base::InputProblem> problems;
   for (const std::uint64_t index : some) {
     try {
-      runner.check(study::overrides_of(sweep, sweep.design.values(index)));
-      return;
+      HistoryTable table({}, 1);
+      runner.check(study::overrides_of(sweep, sweep.design.values(index)), &table);
+      return table.names();
     } catch (const base::InputError& error) {
       if (problems.empty()) problems = error.problems();
     }
@@ -47,7 +69,8 @@ void check_some(const study::SweepFile& sweep, const CaseRunner& runner) {
 
 SweepStudy::SweepStudy(const std::filesystem::path& file, const std::vector<base::Override>& overrides)
     : sweep_(study::read_sweep_file(file, overrides)), runner_(sweep_.case_file, sweep_.verb, sweep_.file) {
-  check_some(sweep_, runner_);
+  const std::vector<std::string> columns = check_some(sweep_, runner_);
+  if (sweep_.histories) check_histories(sweep_, runner_, columns);
   identity_ = fmt::format("{:016x} {} snare {}", base::fingerprint(sweep_.canonical),
                           fmt::format("{:016x}", base::fingerprint(contents_of_files(sweep_.case_file))), version());
 }
@@ -56,11 +79,14 @@ std::uint64_t SweepStudy::count() const noexcept {
   return sweep_.design.settings().kind == study::DesignKind::subset ? 0 : sweep_.design.count();
 }
 
-study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::function<bool()>& stop) const {
+study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::function<bool()>& stop,
+                                  const std::function<void(History&)>& keep) const {
   study::CaseRecord record;
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   std::atomic<bool> late{false};
+  std::optional<HistoryTable> table;
+  if (sweep_.histories && keep) table.emplace(sweep_.histories->columns, sweep_.histories->every);
   try {
     json result;
     const CaseEnd end = runner_.run(
@@ -69,7 +95,7 @@ study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::
           if (elapsed() > sweep_.time_limit) late = true;
           return late.load() || stop();
         },
-        result);
+        result, table ? &*table : nullptr);
     using Status = CaseEnd::Status;
     record.reason = end.reason;
     switch (end.status) {
@@ -90,6 +116,14 @@ study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::
       case Status::broken:
         record.status = "broken";
         break;
+    }
+    if (table && (record.done() || record.status == "failed")) {
+      if (!table->missing().empty()) throw std::out_of_range("its history has no column " + table->missing());
+      try {
+        keep(table->history());
+      } catch (const std::exception& error) {  // a full disk: this ends all
+        record = {"unkept", error.what(), 0.0, {}, {}};
+      }
     }
   } catch (const std::out_of_range& error) {  // no such field
     record = {"no_field", error.what(), 0.0, {}, {}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "results/case_runner.hpp"
+#include "results/history_table.hpp"
 #include "study/case_record.hpp"
 #include "study/journal.hpp"
 #include "study/subset.hpp"
@@ -34,8 +35,10 @@ class SweepStudy {
     return study::overrides_of(sweep_, values);
   }
 
-  /// Runs one case, values as above in the units of their keys; never throws. stop: asked often.
-  [[nodiscard]] study::CaseRecord run(const std::vector<double>& values, const std::function<bool()>& stop) const;
+  /// Runs one case, values as above in the units of their keys; never throws. stop: asked often. keep: is given what is asked to be kept
+  /// of its history, where it has one; what it throws becomes the reason of a case that is `unkept`.
+  [[nodiscard]] study::CaseRecord run(const std::vector<double>& values, const std::function<bool()>& stop,
+                                      const std::function<void(History&)>& keep = {}) const;
 
   /// The command that runs a case by itself, values in the units of their keys.
   [[nodiscard]] std::string command_of(const std::vector<double>& values) const;

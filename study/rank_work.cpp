@@ -22,12 +22,13 @@ constexpr double alive_every = 1.0;                      // [s]
 constexpr std::chrono::microseconds pause_between(200);  // looks for messages
 
 struct Task {
-  std::uint64_t index = 0;
+  std::uint64_t index = 0;   // of the dispatcher
+  std::uint64_t number = 0;  // in the study
   std::vector<double> values;
 };
 template <class Archive>
 void fields(Archive& archive, Task& task) {
-  archive(task.index)(task.values);
+  archive(task.index)(task.number)(task.values);
 }
 
 struct Done {
@@ -88,11 +89,12 @@ void RankLeader::hear(Dispatcher& dispatcher) {
 
 void RankLeader::run(Dispatcher& dispatcher, const RunWithValues& run,
                      const std::function<std::vector<double>(std::uint64_t)>& values,
-                     const std::function<std::string(std::uint64_t)>& given_up) {
+                     const std::function<std::string(std::uint64_t)>& given_up, std::uint64_t first) {
   // The leader's own cases on a thread of their own: this one talks.
   std::thread own([&] {
     run_cases(
-        dispatcher, settings_.threads, [&](std::uint64_t index) { return run(index, values(index)); }, Idle::wait);
+        dispatcher, settings_.threads, [&](std::uint64_t index) { return run(first + index, values(index)); },
+        Idle::wait);
   });
   try {
     for (Other& other : others_) other.heard = now();  // nobody listened in the meantime
@@ -109,7 +111,8 @@ void RankLeader::run(Dispatcher& dispatcher, const RunWithValues& run,
         }
         if (!other.idle) continue;
         std::vector<Task> tasks;
-        for (const std::uint64_t index : dispatcher.take(worker_of(r))) tasks.push_back({index, values(index)});
+        for (const std::uint64_t index : dispatcher.take(worker_of(r)))
+          tasks.push_back({index, first + index, values(index)});
         if (tasks.empty()) continue;
         other.idle = false;
         ranks_.send(r, message(Word::work, tasks));
@@ -154,7 +157,7 @@ void follow(Ranks& ranks, const std::string& identity, int threads, const RunWit
     std::atomic<bool> finished{false};
     std::thread work([&] {
       results = run_list(
-          tasks.size(), threads, [&](std::size_t k) { return run(tasks[k].index, tasks[k].values); },
+          tasks.size(), threads, [&](std::size_t k) { return run(tasks[k].number, tasks[k].values); },
           [&] { return over.load() || stop(); });
       finished = true;
     });

@@ -30,10 +30,11 @@ class RankLeader {
   RankLeader& operator=(const RankLeader&) = delete;
 
   /// Until everything is done or has ended. values: of a case, in the units of their keys, sent with it; may be empty. given_up: as of Dispatcher.
+  /// first: number in the study of the dispatcher's first case, for those who run one.
   /// Throws what the dispatcher was ended with; base::InputError when a rank has read other files.
   void run(Dispatcher& dispatcher, const RunWithValues& run,
            const std::function<std::vector<double>(std::uint64_t)>& values,
-           const std::function<std::string(std::uint64_t)>& given_up);
+           const std::function<std::string(std::uint64_t)>& given_up, std::uint64_t first = 0);
 
   [[nodiscard]] int lost() const noexcept { return lost_; }  ///< ranks that were lost
 
@@ -51,7 +52,7 @@ class RankLeader {
   int lost_ = 0;
 };
 
-/// Any other rank: runs what it is given until the leader says that it is over, or `stop`.
+/// Any other rank: runs what it is given, each by its number in the study, until the leader says that it is over, or `stop`.
 void follow(Ranks& ranks, const std::string& identity, int threads, const RunWithValues& run,
             const std::function<bool()>& stop);
 

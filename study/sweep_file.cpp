@@ -82,6 +82,7 @@ class Reader {
     std::vector<Collected> collect = read_collect();
     std::vector<Limit> limits = read_limits(collect);
     const SubsetSettings subset = read_subset(limits);
+    std::optional<HistorySettings> histories = read_histories();
     document_.finish();
     std::vector<Variable> variables;
     for (Draft& d : drafts_) variables.push_back(std::move(d.variable));
@@ -96,6 +97,7 @@ class Reader {
             collect,
             limits,
             subset,
+            std::move(histories),
             time_limit,
             std::move(canonical)};
   }
@@ -452,6 +454,32 @@ class Reader {
       top_.fail("cases", fmt::format("must be at least {:.0f}: ten cases start the next level",
                                      std::ceil(10.0 / s.level_probability)));
     return s;
+  }
+
+  std::optional<HistorySettings> read_histories() {
+    if (!top_.has("histories")) return std::nullopt;
+    HistorySettings kept;
+    const TomlTable table = top_.table("histories");
+    const TomlNode* node = root_.find("histories");
+    const TomlNode* columns = node->kind == TomlNode::Kind::table ? node->find("columns") : nullptr;
+    if (columns != nullptr && columns->kind == TomlNode::Kind::text) {
+      if (table.text("columns") != "all") table.fail("columns", "must be \"all\" or an array of names of columns");
+    } else if (columns == nullptr || columns->kind != TomlNode::Kind::array || columns->items.empty()) {
+      static_cast<void>(table.has("columns"));
+      table.fail(columns != nullptr ? "columns" : "", "must have columns: \"all\" or an array of names of columns");
+    } else {
+      kept.columns = table.texts_or_none("columns");
+      std::set<std::string> names;
+      for (std::size_t k = 0; k < kept.columns.size(); ++k)
+        if (!names.insert(kept.columns[k]).second) table.fail_element("columns", k, "must not be named twice");
+    }
+    kept.every = table.integer_or("every", 1, 1, 1000000);
+    // A case's group has its values beside its number and its status.
+    for (const Draft& d : drafts_) {
+      if (d.variable.name == "case" || d.variable.name == "status")
+        d.table.fail("name", "must not be case or status where histories are kept: these are names of what a case has");
+    }
+    return kept;
   }
 
   std::filesystem::path file_;

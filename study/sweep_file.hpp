@@ -25,6 +25,12 @@ struct SubsetSettings {
   int most_levels = 12;
 };
 
+/// What is kept of the histories of the cases: the tables that their verb writes beside its JSON.
+struct HistorySettings {
+  std::vector<std::string> columns;  ///< by their names in the table; none: all
+  int every = 1;                     ///< of so many rows the first is kept, >= 1
+};
+
 /// A sweep file as it was read.                                                        docs/sweep_file.md
 struct SweepFile {
   std::filesystem::path file;
@@ -36,8 +42,9 @@ struct SweepFile {
   std::vector<Collected> collect;
   std::vector<Limit> limits;
   SubsetSettings subset;
-  double time_limit = 0.0;  ///< of one case [s], > 0
-  std::string canonical;    ///< equal for files that say the same, trace and table beside them included
+  std::optional<HistorySettings> histories;  ///< none: no histories are kept
+  double time_limit = 0.0;                   ///< of one case [s], > 0
+  std::string canonical;  ///< equal for files that say the same, trace and table beside them included
 };
 
 /// Reads and checks a sweep file, and the table and traces that it names; the case is another reader's.

@@ -178,10 +178,12 @@ def sweep(study: File, *, set: Optional[Mapping[str, Any]] = None, threads: int 
     """Run many cases of one file: grids, designs, distributions, sensitivities, odds.
 
     study: sweep file (docs/sweep_file.md); set: keys of it to override. out: a folder for the journal of finished cases, from
-    which the same call goes on after an interrupt or a crash; without one they are lost then. The other arguments as of ``push``.
+    which the same call goes on after an interrupt or a crash; without one they are lost then. A sweep with ``[histories]`` must have
+    one. The other arguments as of ``push``.
 
     Returns summary.json (docs/sweep_file.md) with ``table``: columns of one length, a row a finished case: ``case`` (from 1),
-    ``status``, ``reason``, the variables and the collected fields, in the units of the files.
+    ``status``, ``reason``, the variables and the collected fields, in the units of the files; and ``histories``, the path of
+    histories.h5 in ``out``, where the sweep keeps histories and every case was run.
     Raises InputError; a case that has no result stands in ``table`` with its reason.
     """
     summary, cases = _core.sweep(study, _pairs(set), threads, _watcher(progress), "" if out is None else out)

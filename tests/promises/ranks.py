@@ -38,6 +38,8 @@ key = "wire.diameter_mm"
 normal = { mean = 1.5, sigma = 0.01 }
 [collect]
 force = "series[middle].largest_force_N"
+[histories]
+columns = ["force_N"]
 """
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 failures = []
@@ -89,13 +91,17 @@ def main() -> int:
             return subprocess.run(command, cwd=folder, env=ENVIRONMENT, timeout=600).returncode
 
         check(run([snare, "sweep", "sweep.toml", "--out", "whole", "--quiet"]) == 0, "one process")
-        whole = (folder / "whole/cases.csv").read_bytes()
+
+        def written(out: str) -> tuple[bytes, bytes]:
+            return (folder / out / "cases.csv").read_bytes(), (folder / out / "histories.h5").read_bytes()
+
+        whole = written("whole")
 
         for ranks in (1, 2, 4):
             begin = time.monotonic()
             status = run(mpirun(snare, folder, ranks, f"r{ranks}"))
             print(f"       {ranks} ranks: {time.monotonic() - begin:.1f} s")
-            check(status == 0 and (folder / f"r{ranks}/cases.csv").read_bytes() == whole, f"{ranks} ranks, same bytes")
+            check(status == 0 and written(f"r{ranks}") == whole, f"{ranks} ranks, same bytes")
 
         # All ranks at once, at random moments.
         chance = random.Random(1)
@@ -107,7 +113,7 @@ def main() -> int:
                 os.kill(pid, signal.SIGKILL)
             launcher.wait(timeout=120)
         check(run(mpirun(snare, folder, 2, "killed")) == 0, "goes on after kills of all ranks")
-        check((folder / "killed/cases.csv").read_bytes() == whole, "same bytes after them")
+        check(written("killed") == whole, "same bytes after them")
         check(journal_is_whole(folder / "killed/cases.journal", 2000), "no case twice or lost")
 
         # One rank that is not the first: the others run its cases, where the launcher lets them.
@@ -121,11 +127,11 @@ def main() -> int:
             launcher.wait(timeout=120)
         except subprocess.TimeoutExpired:
             launcher.kill()
-        there = (folder / "lost/cases.csv").exists()
+        there = (folder / "lost/histories.h5").exists()
         print(f"       a rank killed: the others {'finished' if there else 'were ended by the launcher'}")
         if not there:
             check(run(mpirun(snare, folder, 2, "lost")) == 0, "goes on after a kill of one rank")
-        check((folder / "lost/cases.csv").read_bytes() == whole, "same bytes after a kill of one rank")
+        check(written("lost") == whole, "same bytes after a kill of one rank")
         check(journal_is_whole(folder / "lost/cases.journal", 2000), "no case twice or lost")
     return 1 if failures else 0
 

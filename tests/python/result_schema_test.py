@@ -134,7 +134,7 @@ def prepare(work):
     (work / "wire.toml").write_text(wire.replace("friction  = 0.0", "friction  = 0.1") + LOSSES)
     sweep = (ranges / "sweep.toml").read_text().replace('"readings.toml"', f'"{ranges}/readings.toml"')
     sweep = sweep.replace("[collect]", '[collect]\nheld = "series[s60].in_contact_at_end"')
-    (work / "sweep.toml").write_text(sweep)
+    (work / "sweep.toml").write_text(sweep + '\n[histories]\ncolumns = "all"\n')
     free = sweep.split("[[correlate]]")[0] + "[collect]" + sweep.split("[collect]")[1]
     (work / "sobol.toml").write_text(free.replace('"latin_hypercube"', '"sensitivity"'))
     (work / "subset.toml").write_text(free.replace('"latin_hypercube"', '"subset"').replace("cases = 4", "cases = 20") +
