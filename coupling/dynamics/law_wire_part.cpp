@@ -38,6 +38,25 @@ struct NearestOfLines {
   }
 };
 
+/// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
+/// slope is t/rho. A mount that the shaft has reached, rho <= r, has none of them: the string goes on along the surface.
+template <class S>
+struct Tangent {
+  S length{}, over_the_arc{};
+  double turn = 0.0;
+
+  Tangent(const S& rho, double r) {
+    using std::sqrt;
+    constexpr double grazing = 1e-6;  // of the radius: shorter tangents do not change
+    const double distance = value_of(rho), square = distance * distance - r * r;
+    if (!(square > 0.0)) return;
+    const double t = std::sqrt(square);
+    turn = std::acos(r / distance);
+    over_the_arc = lifted(t - r * turn, t / distance, rho, 0.0, rho);
+    length = t > grazing * r ? S(sqrt(rho * rho - r * r)) : S(t);
+  }
+};
+
 }  // namespace
 
 template <class S>
@@ -75,7 +94,7 @@ void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<Fram
 // bulge; with the height h along the axis l = sqrt((t_1 + t_2 + r phi)^2 + h^2). dl is that of the ends along the string alone.
 template <class S>
 LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3>& frames) const {
-  using std::acos, std::atan2, std::sqrt;
+  using std::atan2, std::sqrt;
   Action<S> a;
   const Vector3<S> P = frames[from].p, T = frames[to].p, c = frames[on_shaft].p;
   Vector3<S> axis = frames[on_shaft].R.col(2);
@@ -87,29 +106,30 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   const double r = wire_.shaft.radius + wire_.radius;
   const S rho_p = p.norm(), rho_t = t.norm();
 
-  S turned{-1.0};
-  if (holds_ && value_of(rho_p) > r && value_of(rho_t) > r) {
-    S angle = atan2(axis.dot(p.cross(t)), p.dot(t));
+  const Tangent<S> on_p(rho_p, r), on_t(rho_t, r);
+  S angle{-1.0};
+  if (holds_) {
+    angle = atan2(axis.dot(p.cross(t)), p.dot(t));
     if (value_of(angle) < 0.0) angle += 2.0 * std::numbers::pi;
-    turned = angle - acos(r / rho_p) - acos(r / rho_t);
   }
-  a.touches = value_of(turned) > 0.0;
+  const double turned = value_of(angle) - on_p.turn - on_t.turn;
+  a.touches = turned > 0.0;
   Vector3<S> u_p, u_t, q_p = P, q_t = T;  // pulls on the mounts, and where the string meets and leaves the shaft
   S length;
   if (a.touches) {
-    const S t_p = sqrt(rho_p * rho_p - r * r), t_t = sqrt(rho_t * rho_t - r * r);
-    const S flat = t_p + t_t + r * turned, height = z_t - z_p;
+    const S &t_p = on_p.length, &t_t = on_t.length;
+    const S flat = on_p.over_the_arc + on_t.over_the_arc + r * angle, height = z_t - z_p;
     length = sqrt(flat * flat + height * height);
     const Vector3<S> p_unit = p / rho_p, t_unit = t / rho_t;
     const Vector3<S> m_p = p_unit * (r / rho_p) + axis.cross(p_unit) * (t_p / rho_p);
     const Vector3<S> m_t = t_unit * (r / rho_t) - axis.cross(t_unit) * (t_t / rho_t);
     const S rise = height / length, along = flat / length;
-    u_p = (m_p * S(r) - p) / t_p * along + axis * rise;
-    u_t = (m_t * S(r) - t) / t_t * along - axis * rise;
+    u_p = (axis.cross(p_unit) * (r / rho_p) - p_unit * (t_p / rho_p)) * along + axis * rise;
+    u_t = (-axis.cross(t_unit) * (r / rho_t) - t_unit * (t_t / rho_t)) * along - axis * rise;
     q_p = c + m_p * S(r) + axis * (z_p + height * t_p / flat);
     q_t = c + m_t * S(r) + axis * (z_t - height * t_t / flat);
     a.point = (q_p + q_t) * S(0.5);
-    a.share = (t_p + 0.5 * r * turned) / flat;
+    a.share = (t_p + 0.5 * (flat - t_p - t_t)) / flat;
   } else {
     length = (T - P).norm();
     u_p = (T - P) / length;

@@ -78,6 +78,38 @@ TEST(LawWire, RingHasTheClosedForm) {
   }
 }
 
+// A shaft that comes over a mount of its wire: length and force go on, and the force is the slope of the energy on both sides.
+TEST(LawWire, GoesOnWhereTheShaftReachesAMount) {
+  constexpr double r = 6.75e-3, theta = 3.0, length = 0.19;
+  const MotionOptions options;
+  const LawWire w = ring_wire(0.1, theta, length);
+  BodyPart body(block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), options);
+  numerics::DaeLayout layout;
+  body.declare(layout);
+  LawWirePart part(w, fixed_at(w.p_from), fixed_at(w.p_to), {body, {}});
+  const std::vector<double> before{1.0, 1.0};
+  std::span<const double> memory = before;
+  VectorXd y = VectorXd::Zero(layout.size());
+  y[body.quaternion()] = 1.0;
+  part.restore_state(y, memory);
+  // Towards the mount from the side on which the wire lies before the shaft.
+  const Vector3d inward = -w.p_to.normalized();
+  const auto at = [&](double distance) {
+    VectorXd there = y;
+    there.segment<3>(body.position()) = w.p_to + distance * inward;
+    return there;
+  };
+  const auto force = [&](double distance) { return part.wrenches(at(distance)).at(2).force; };
+  const auto energy = [&](double distance) { return part.work(at(distance)).power.energy; };
+  EXPECT_NEAR(part.depth(at(r * (1.0 + 1e-9))), part.depth(at(r * (1.0 - 1e-9))), 1e-9);
+  EXPECT_LT((force(r * (1.0 + 1e-9)) - force(r * (1.0 - 1e-9))).norm(), 1e-3 * force(r).norm());
+  for (const double distance : {1.5 * r, 1.01 * r, 0.99 * r, 0.6 * r}) {
+    constexpr double step = 1e-7;
+    const double slope = (energy(distance + step) - energy(distance - step)) / (2.0 * step);
+    EXPECT_NEAR(force(distance).dot(inward), -slope, 1e-4 * std::abs(slope) + 1e-3) << distance / r;
+  }
+}
+
 TEST(LawWire, JacobianMatchesDifferences) {
   const multibody::ElasticArm model = test::one_joint("ring", Vector3d(0.1, 0.05, 1.0).normalized());
   multibody::ElasticArmPart arm(model, {multibody::Drive::limp()}, {});
