@@ -108,7 +108,7 @@ class Histories(unittest.TestCase):
         file = self.folder / "sweep.toml"
         file.write_text(HEAD.format(case="one.toml", set="", vary='key = "wire.length_mm"\nvalues = [180.0, 180.1]',
                                     field="series[a].largest_force_N", histories='columns = ["force_N"]'))
-        with self.assertRaisesRegex(snare.InputError, "histories: must have a folder"):
+        with self.assertRaisesRegex(snare.InputError, "histories, must have a folder"):
             snare.sweep(file)
         result = snare.sweep(file, out=self.folder / "out")
         self.assertEqual(result["histories"], str(self.folder / "out/histories.h5"))

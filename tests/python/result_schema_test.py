@@ -31,6 +31,7 @@ RUNS = {
     "compare_motion": ["compare", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
     "ringdown": ["ringdown", "data/experiments/ringdown.toml"],
     "listed": ["simulate", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
+    "swings": ["simulate", "data/scenarios/ssrms_rigidize.toml", "--set", "duration_s=0.05", "--set", "output.modes=true"],
     "one_wire": ["simulate", "data/scenarios/air_table.toml", "--set", "duration_s=0.01", "--set", "solver.elements=8",
                  "--set", "wire.strength_N=100"],
     "arm_on_wire": ["simulate", "data/scenarios/jemrms_payload_on_wire.toml", "--set", "duration_s=0.001", "--set", "output_interval_s=0.0005"],
