@@ -33,11 +33,11 @@ class BenchToOdds(unittest.TestCase):
                 self.assertEqual(file.read(4), b"\x89PNG")
         said = done.stdout
         self.assertRegex(said, r"caught: 2\d of 24")
-        scatter = float(re.search(r"scatter ([\d.]+) N", said)[1])
-        left_open = float(re.search(r"bench leaves open: ([\d.]+) N", said)[1])
+        low, high = map(float, re.search(r"within (\d+) to (\d+) N", said).groups())
+        left_open = float(re.search(r"leaves open of it: ([\d.]+) N", said)[1])
         after = float(re.search(r"of travel, leaves ([\d.]+) N", said)[1])
         # The rope is known to a per cent, so it is a small part of the scatter; one more reading makes it smaller.
-        self.assertTrue(0.0 < after < left_open < 0.2 * scatter, said)
+        self.assertTrue(0.0 < after < left_open < 0.1 * (high - low), said)
 
 
 if __name__ == "__main__":
