@@ -19,7 +19,7 @@ inline constexpr std::string_view scenario_schema = "snare-scenario/1";
 inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts [s]
 inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
 /// What a window of work must bring a motion on by [s]: see docs/decisions/0038.
-inline constexpr double least_advance = 0.005;
+inline constexpr double least_advance = 0.002;
 /// Its key: when to give up makes no difference to what a run that goes on computes.
 inline constexpr std::string_view least_advance_key = "solver.least_advance_s";
 inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
