@@ -20,6 +20,9 @@ struct CommonOptions {
   bool quiet = false;
   bool json = false;                 ///< the result on standard output
   unsigned long long only_case = 0;  ///< of a sweep: this case alone, from 1; 0: all
+  std::string only_named;            ///< of a benchmark: this case alone; empty: all
+  std::filesystem::path against;     ///< of a benchmark: a history that is scored on the case; empty: none
+  bool archive = false;              ///< of a benchmark: its references are made anew
   std::string command;               ///< the verb and its file, as a message names them: "snare push x.toml"
 };
 

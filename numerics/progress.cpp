@@ -52,8 +52,7 @@ std::string Progress::why(const Ida& ida, double end, const Effort& effort) cons
   const double advance = ida.time() - effort.since;
   std::string text = fmt::format(
       "stalled at {:.9g} s: {} evaluations of {} equations brought it on by {:.3g} s, less than the {:g} s that they "
-      "must, "
-      "and the rest would take {:.2g} times as many; the last step was {:.3g} s",
+      "must, and the rest would take {:.2g} times as many; the last step was {:.3g} s",
       ida.time(), effort.evaluations, ida.y().size(), advance, least_, (end - ida.time()) / advance, ida.last_step());
   struct Share {
     StepLimit kind;

@@ -1,14 +1,18 @@
 #include "numerics/sparse_matrix.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <iterator>
 
 namespace snare::numerics {
 
+using base::at;
+
 int SparseMatrix::slot(int i, int j) const {
-  const auto first = row.begin() + column_start[static_cast<std::size_t>(j)];
-  const auto last = row.begin() + column_start[static_cast<std::size_t>(j) + 1];
+  const auto first = row.begin() + column_start[at(j)];
+  const auto last = row.begin() + column_start[at(j) + 1];
   const auto found = std::lower_bound(first, last, i);
   return found != last && *found == i ? static_cast<int>(found - row.begin()) : -1;
 }
@@ -19,11 +23,11 @@ SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& ent
   std::vector<std::size_t> next(columns + 1, 0);
   for (const auto& [i, j] : entries) {
     assert(i >= 0 && i < order && j >= 0 && j < order);
-    ++next[static_cast<std::size_t>(j) + 1];
+    ++next[at(j) + 1];
   }
   for (std::size_t j = 0; j < columns; ++j) next[j + 1] += next[j];
   std::vector<int> rows(entries.size());
-  for (const auto& [i, j] : entries) rows[next[static_cast<std::size_t>(j)]++] = i;
+  for (const auto& [i, j] : entries) rows[next[at(j)]++] = i;
   SparseMatrix result;
   result.order = order;
   result.column_start.assign(columns + 1, 0);
@@ -37,6 +41,15 @@ SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& ent
   }
   result.value.assign(result.row.size(), 0.0);
   return result;
+}
+
+Eigen::MatrixXd dense(const SparseMatrix& matrix) {
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
+  for (int j = 0; j < matrix.order; ++j) {
+    for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s)
+      full(matrix.row[at(s)], j) = matrix.value[at(s)];
+  }
+  return full;
 }
 
 SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {

@@ -23,6 +23,9 @@ struct SparseMatrix {
 /// Pattern from coordinates (i, j), repeated ones merged; values zero.
 [[nodiscard]] SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& entries);
 
+/// The same matrix with its zeros; in its unit.
+[[nodiscard]] Eigen::MatrixXd dense(const SparseMatrix& matrix);
+
 /// One value to be added at (row, column).
 struct Triplet {
   int row = 0;

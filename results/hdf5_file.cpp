@@ -170,8 +170,8 @@ void check(herr_t status) {
 
 constexpr std::size_t rows_of_chunk = 16384;
 constexpr unsigned effort = 4;  // of the compression, 1 to 9
-constexpr unsigned tree_of_chunks =
-    4;  // half the chunks of a node of their tree: histories have few, and a node is stored whole
+/// Half the chunks of a node of their tree: histories have few, and a node is stored whole.
+constexpr unsigned tree_of_chunks = 4;
 
 Handle properties(const char* of) {
   const Api& api = Api::get();

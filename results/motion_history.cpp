@@ -186,7 +186,7 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
     const multibody::ElasticArm& arm = motion.arms[a].arm;
     for (int j = 0; j < arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.joints[at(j)];
-      const std::string name = joint_name(motion, a, j);
+      const std::string name = motion.arms[a].joint_name(j);
       const bool slides = arm.tree.body(joint.body).joint == multibody::JointKind::prismatic;
       const double unit = slides ? mm : degree;
       const char* angle = slides ? "mm" : "deg";

@@ -1,7 +1,5 @@
 #include "results/motion_record.hpp"
 
-#include "base/index.hpp"
-
 #include <algorithm>
 
 namespace snare::results {
@@ -52,12 +50,6 @@ double ArmRecord::time() const {
 
 double ArmRecord::real_time_factor() const {
   return wall_seconds > 0.0 ? time() / wall_seconds : 0.0;
-}
-
-std::string joint_name(const coupling::Motion& motion, std::size_t arm, int joint) {
-  const std::string& name = motion.arms[arm].arm.joints[base::at(joint)].name;
-  const bool with_owner = name.find("::") != std::string::npos;  // of a snare
-  return with_owner ? name : motion.arms[arm].name + "::" + name;
 }
 
 }  // namespace snare::results

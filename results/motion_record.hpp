@@ -65,7 +65,4 @@ struct ArmRecord {
   [[nodiscard]] double real_time_factor() const;
 };
 
-/// Name of a motor's joint in results: "ARM::JOINT", "SNARE::ring".
-[[nodiscard]] std::string joint_name(const coupling::Motion& motion, std::size_t arm, int joint);
-
 }  // namespace snare::results

@@ -260,7 +260,7 @@ json peak_torques(const FinishedMotion& run) {
     for (int j = 0; j < motion.arms[a].arm.motors(); ++j) {
       double peak = 0.0;
       for (const MotionSample& s : run.samples) peak = std::max(peak, std::abs(s.arms[a].joint_torque[j]));
-      all[joint_name(motion, a, j)] = peak;
+      all[motion.arms[a].joint_name(j)] = peak;
     }
   }
   return all;
@@ -270,7 +270,8 @@ json peak_torques(const FinishedMotion& run) {
 json modes_json(const FinishedMotion& run) {
   json list = json::array(), frequencies = json::object();
   std::map<std::string, double> largest;
-  for (const coupling::MotionMode& mode : coupling::modes_at(run.asked.motion, run.asked.options, run.result.last)) {
+  const coupling::SmallMotions small = coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last);
+  for (const coupling::MotionMode& mode : small.modes) {
     json shares = json::object();
     for (const auto& [name, share] : mode.shares) {
       shares[name] = share;
@@ -280,7 +281,9 @@ json modes_json(const FinishedMotion& run) {
     }
     list.push_back({{"frequency_Hz", mode.frequency}, {"damping_ratio", mode.damping}, {"shares", shares}});
   }
-  return {{"modes", list}, {"frequencies_Hz", frequencies}};
+  return {{"modes", list},
+          {"frequencies_Hz", frequencies},
+          {"largest_explicit_step_s", small.fastest > 0.0 ? json(small.largest_explicit_step()) : json()}};
 }
 
 json head(const scenario::Scenario& asked) {

@@ -18,7 +18,8 @@ RESULTS = [("push", "what `snare push --json` prints", "curves_csv"), ("fit", "f
            ("law", "law.json of `snare distil`", "law_json"), ("comparison", "compare.json of `snare compare`", "law_json"),
            ("summary", "summary.json of `snare simulate`", "summary_json"), ("sweep-summary", "summary.json of `snare sweep`", "sweep_file"),
            ("ringdown-result", "ringdown.json of `snare ringdown`", "ringdown_file"),
-           ("arm-show", "what `snare arm show --json` prints", "arm_files"), ("validation", "validation.json of `snare validate`", None)]
+           ("arm-show", "what `snare arm show --json` prints", "arm_files"), ("benchmark-result", "benchmark.json of `snare benchmark`", "benchmark_file"),
+           ("validation", "validation.json of `snare validate`", None)]
 HEAD = """# Every field of every JSON result
 
 Written from the JSON Schemas in [data/schemas](../data/schemas) by `scripts/result_fields.py`; the pages of the formats say more of what

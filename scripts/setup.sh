@@ -73,6 +73,15 @@ snare_build() {
   mkdir -p "$snare_root/build" || return 1
   exec {lock}>"$snare_root/build/lock"
   flock "$lock"
+  snare_build_locked "$preset" "$@"
+  local status=$?
+  exec {lock}>&-
+  return $status
+}
+
+snare_build_locked() {
+  local preset=$1
+  shift
   snare_install_packages || return 1
   snare_configure "$preset" || return 1
   # The two lines of a build that has nothing to do are left out.
@@ -84,5 +93,4 @@ snare_build() {
     snare_say "Building the preset '$preset' failed; see above."
     return 1
   fi
-  exec {lock}>&-
 }

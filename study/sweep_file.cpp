@@ -4,6 +4,7 @@
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "base/toml_reader.hpp"
+#include "study/fixed_keys.hpp"
 #include "study/trace_numbers.hpp"
 
 #include <fmt/format.h>
@@ -22,29 +23,6 @@ namespace {
 using base::Range;
 using base::TomlNode;
 using base::TomlTable;
-
-/// A value of the file as a literal for an override.
-std::string literal_of(const TomlNode& node) {
-  switch (node.kind) {
-    case TomlNode::Kind::number:
-      return node.integer ? fmt::format("{:.0f}", node.number) : fmt::format("{}", node.number);
-    case TomlNode::Kind::boolean:
-      return node.boolean ? "true" : "false";
-    case TomlNode::Kind::text:
-      return nlohmann::json(node.text).dump();  // a basic string of TOML is one of JSON
-    case TomlNode::Kind::array: {
-      std::string list;
-      for (const TomlNode& item : node.items) {
-        const std::string one = literal_of(item);
-        if (one.empty()) return {};
-        list += (list.empty() ? "" : ", ") + one;
-      }
-      return "[" + list + "]";
-    }
-    default:
-      return {};
-  }
-}
 
 /// A variable while the file is read, and where its mistakes are told.
 struct Draft {
@@ -76,7 +54,7 @@ class Reader {
     const std::string verb = top_.text_or("verb", "");
     const double time_limit = top_.number_or("time_limit_s", 3600.0, Range::above(0.0));
     kind_ = top_.choice("design", designs).value_or(DesignKind::grid);
-    const std::vector<base::Override> fixed = read_fixed();
+    const std::vector<base::Override> fixed = read_fixed_keys(top_, &root_, "set");
     read_variables();
     DesignSettings settings = read_design();
     std::vector<Collected> collect = read_collect();
@@ -106,21 +84,6 @@ class Reader {
   [[nodiscard]] std::filesystem::path beside(const std::string& name) const {
     const std::filesystem::path path(name);
     return path.is_absolute() ? path : file_.parent_path() / path;
-  }
-
-  std::vector<base::Override> read_fixed() {
-    std::vector<base::Override> fixed;
-    const TomlTable table = top_.table("set");
-    const TomlNode* node = root_.find("set");
-    if (node == nullptr || node->kind != TomlNode::Kind::table) return fixed;
-    for (const base::TomlEntry& entry : node->entries) {
-      [[maybe_unused]] const bool known = table.has(entry.key);
-      const std::string text = literal_of(entry.node);
-      if (text.empty())
-        table.fail(entry.key, "must be a number, a text, a boolean or an array of them; quote a key with dots");
-      fixed.push_back({entry.key, text});
-    }
-    return fixed;
   }
 
   void read_variables() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/index.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "wire/end.hpp"
 
@@ -16,6 +17,13 @@ struct MotionArm {
   std::vector<multibody::Drive> drives;          ///< at the start, one a joint
   std::vector<multibody::DriveSwitch> switches;  ///< in the order of their times
   std::vector<multibody::TimedLoad> loads;
+
+  /// Name of a motor's joint in results: "ARM::JOINT", "SNARE::ring".
+  [[nodiscard]] std::string joint_name(int joint) const {
+    const std::string& own = arm.joints[base::at(joint)].name;
+    const bool with_owner = own.find("::") != std::string::npos;  // of a snare
+    return with_owner ? own : name + "::" + own;
+  }
 };
 
 /// What something is fastened to: the world, a body, or a frame of an arm.

@@ -25,7 +25,8 @@ struct MotionShaft {
 /// A wire without mass for which a law stands, between two mounts on carriers, and the one shaft that it meets.  theory.md (M.27)
 ///
 /// It holds the shaft on the side away from its bulge. A shaft that is out of its reach along z when it is behind the wire is missed:
-/// nothing acts until it has been before it.
+/// nothing acts until it has been before it. The mounts of a string stop the shaft: F = (EA/r) d (1 + a d'), d the depth, r its radius
+/// with the wire's, a the damping of an elastic foundation.
 struct LawWire {
   enum class Kind {
     stretched,  ///< an elastic string, straight and round the shaft: T = EA (l - L)/L

@@ -1,5 +1,6 @@
 #include "coupling/dynamics/law_wire_part.hpp"
 
+#include "coupling/contact/foundation.hpp"
 #include "coupling/dynamics/dual_frames.hpp"
 
 #include <Eigen/Geometry>
@@ -39,7 +40,7 @@ struct NearestOfLines {
 };
 
 /// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
-/// slope is t/rho. A mount that the shaft has reached, rho <= r, has none of them: the string goes on along the surface.
+/// slope is t/rho. A mount into which the shaft is pressed, rho <= r, has none of them: the string goes on along the surface.
 template <class S>
 struct Tangent {
   S length{}, over_the_arc{};
@@ -59,22 +60,34 @@ struct Tangent {
 
 }  // namespace
 
+/// How a mount presses on the shaft.
+template <class S>
+struct LawWirePart::Stop {
+  S normal{};                             // [N]
+  Vector3<S> slide = Vector3<S>::Zero();  // of the shaft on the mount
+  double energy = 0.0, lost = 0.0;        // [J], [W]; without friction
+};
+
 template <class S>
 struct LawWirePart::Action {
   std::array<FrameWrench<S>, 3> wrenches;
   bool acts = false, touches = false;
+  double angle = 0.0;                                // of a string, between the mounts as seen from the axis
   S depth{-1.0};                                     // elongation, or x of the rod
   S tension{}, normal{};                             // [N]
   Vector3<S> point;                                  // on the shaft
   Vector3<S> slide = Vector3<S>::Zero();             // of the shaft along the wire there
   S share{0.5};                                      // of the way from the first mount
   double stiffness = 0.0, rate = 0.0, energy = 0.0;  // of the string: d(tension)/d(elongation), rate of the elongation
+  std::array<Stop<S>, 2> stops{};                    // at the mounts of a string, by their frames
 };
 
 LawWirePart::LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft)
     : PressPart({std::move(from), std::move(to), std::move(shaft)}),
       wire_(wire),
-      binormal_(wire.bulge.cross(wire.p_to - wire.p_from).normalized()) {}
+      binormal_(wire.bulge.cross(wire.p_to - wire.p_from).normalized()),
+      stop_stiffness_(wire.axial_stiffness / (wire.shaft.radius + wire.radius)),
+      stop_(power_law(stop_stiffness_, 1.0, ElasticFoundation{}.damping * stop_stiffness_, 1.0)) {}
 
 // Friction on the shaft and, shared by the carriers of the mounts, against it: all at the point of contact.
 namespace {
@@ -88,6 +101,33 @@ void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<Fram
 }
 
 }  // namespace
+
+// F = k d (1 + a d'), d = r - rho, along the line from the axis to the mount.
+template <class S>
+LawWirePart::Stop<S> LawWirePart::stop(const std::array<FrameMotion<S>, 3>& frames, std::size_t mount,
+                                       Action<S>& a) const {
+  Stop<S> s;
+  const Vector3<S> axis = frames[on_shaft].R.col(2);
+  Vector3<S> out = frames[mount].p - frames[on_shaft].p;
+  out -= axis * axis.dot(out);
+  const S rho = out.norm();
+  const S depth = S(wire_.shaft.radius + wire_.radius) - rho;
+  if (!(value_of(depth) > 0.0 && value_of(rho) > 0.0)) return s;
+  const Vector3<S> n = out / rho;
+  const Vector3<S> v = frames[on_shaft].velocity_at(frames[mount].p) - frames[mount].linear;
+  const S rate = n.dot(v);
+  const Vector3d law = stop_(value_of(depth), value_of(rate));
+  s.normal = lifted(law.x(), law.y(), depth, law.z(), rate);
+  s.slide = v - n * rate;
+  const double elastic = stop_stiffness_ * value_of(depth);
+  s.energy = 0.5 * elastic * value_of(depth);
+  s.lost = (value_of(s.normal) - elastic) * value_of(rate);
+  const Vector3<S> force = smooth_friction(wire_.friction, s.slide, s.normal) - n * s.normal;
+  a.wrenches[on_shaft].add(frames[on_shaft], frames[mount].p, force);
+  a.wrenches[mount].add(frames[mount], frames[mount].p, -force);
+  a.acts = true;
+  return s;
+}
 
 // A string round a cylinder unrolls to a straight line: in the plane across the axis two tangents t_k = sqrt(rho_k^2 - r^2) and an
 // arc r phi, phi = Phi - acos(r/rho_1) - acos(r/rho_2), Phi the angle between the mounts as seen from the axis on the side of the
@@ -107,13 +147,11 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   const S rho_p = p.norm(), rho_t = t.norm();
 
   const Tangent<S> on_p(rho_p, r), on_t(rho_t, r);
-  S angle{-1.0};
-  if (holds_) {
-    angle = atan2(axis.dot(p.cross(t)), p.dot(t));
-    if (value_of(angle) < 0.0) angle += 2.0 * std::numbers::pi;
-  }
-  const double turned = value_of(angle) - on_p.turn - on_t.turn;
-  a.touches = turned > 0.0;
+  S angle = atan2(axis.dot(p.cross(t)), p.dot(t));
+  constexpr double circle = 2.0 * std::numbers::pi;
+  angle += circle * std::round((angle_ - value_of(angle)) / circle);  // as it has turned since the shaft came
+  a.angle = value_of(angle);
+  a.touches = holds_ && a.angle > on_p.turn + on_t.turn;
   Vector3<S> u_p, u_t, q_p = P, q_t = T;  // pulls on the mounts, and where the string meets and leaves the shaft
   S length;
   if (a.touches) {
@@ -214,7 +252,11 @@ LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& fra
 
 template <class S>
 LawWirePart::Action<S> LawWirePart::act(const std::array<FrameMotion<S>, 3>& frames) const {
-  return wire_.kind == LawWire::Kind::stretched ? stretched(frames) : rod(frames);
+  if (wire_.kind == LawWire::Kind::rod) return rod(frames);
+  Action<S> a = stretched(frames);
+  if (within_)
+    for (const std::size_t mount : {from, to}) a.stops[mount] = stop(frames, mount, a);
+  return a;
 }
 
 LawWirePart::Action<double> LawWirePart::now(const VectorView& y) const {
@@ -239,8 +281,9 @@ PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
   const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
   const Action<double> a = act(frames);
   Pressing p;
-  p.sample.closed = a.touches && a.acts;
   p.sample.normal_force = a.normal;
+  for (const Stop<double>& s : a.stops) p.sample.normal_force += s.normal;
+  p.sample.closed = p.sample.normal_force > 0.0;
   if (p.sample.closed) p.sample.force = -a.wrenches[on_shaft].force;
   p.sample.point = a.point;
   p.sample.arc = a.share * wire_.length;
@@ -250,8 +293,15 @@ PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
   if (wire_.kind == LawWire::Kind::rod) {
     p.work.power.lost = -power_of(a.wrenches, frames);
   } else {
-    const double by_friction = -smooth_friction(wire_.friction, a.slide, a.normal).dot(a.slide);
-    p.work.power = {a.energy, (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction};
+    const auto by_friction = [&](const Vector3d& slide, double normal) {
+      return -smooth_friction(wire_.friction, slide, normal).dot(slide);
+    };
+    p.work.power = {a.energy,
+                    (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction(a.slide, a.normal)};
+    for (const Stop<double>& s : a.stops) {
+      p.work.power.energy += s.energy;
+      p.work.power.lost += s.lost + by_friction(s.slide, s.normal);
+    }
   }
   return p;
 }
@@ -276,9 +326,11 @@ void LawWirePart::look_around(const VectorView& y) {
     holds_ = false;
   } else if (!was_within) {
     holds_ = true;
+    angle_ = std::numbers::pi;
     const double depth = act(now).depth;
     holds_ = depth <= (wire_.kind == LawWire::Kind::stretched ? largest_strain * wire_.length : wire_.shaft.radius);
   }
+  if (holds_) angle_ = act(now).angle;
 }
 
 bool LawWirePart::accept(const numerics::DaePoint& at) {
@@ -289,11 +341,13 @@ bool LawWirePart::accept(const numerics::DaePoint& at) {
 void LawWirePart::save_state(std::vector<double>& memory) const {
   memory.push_back(within_ ? 1.0 : 0.0);
   memory.push_back(holds_ ? 1.0 : 0.0);
+  memory.push_back(angle_);
 }
 
 void LawWirePart::restore_state(const VectorView& /*y*/, std::span<const double>& memory) {
   within_ = numerics::take(memory) != 0.0;
   holds_ = numerics::take(memory) != 0.0;
+  angle_ = numerics::take(memory);
 }
 
 }  // namespace snare::coupling

@@ -45,19 +45,26 @@ class LawWirePart final : public PressPart {
  private:
   template <class S>
   struct Action;
+  template <class S>
+  struct Stop;
   [[nodiscard]] Eigen::MatrixXd derivatives(const numerics::VectorView& y) const override;
   template <class S>
   [[nodiscard]] Action<S> act(const std::array<FrameMotion<S>, 3>& frames) const;
   template <class S>
   [[nodiscard]] Action<S> stretched(const std::array<FrameMotion<S>, 3>& frames) const;
   template <class S>
+  [[nodiscard]] Stop<S> stop(const std::array<FrameMotion<S>, 3>& frames, std::size_t mount, Action<S>& a) const;
+  template <class S>
   [[nodiscard]] Action<S> rod(const std::array<FrameMotion<S>, 3>& frames) const;
   [[nodiscard]] Action<double> now(const numerics::VectorView& y) const;
 
   LawWire wire_;
   Eigen::Vector3d binormal_;  // of bulge and chord, in the axes of the frame at `from`
-  bool within_ = false;       // the shaft is within reach along its axis
-  bool holds_ = false;        // and was before the wire when it came there
+  double stop_stiffness_;     // of a mount against the shaft [N/m]
+  ContactLaw stop_;
+  bool within_ = false;  // the shaft is within reach along its axis
+  bool holds_ = false;   // and was before the wire when it came there
+  double angle_ = 0.0;   // of a string between its mounts as seen from the axis of the shaft, at the last step
 };
 
 }  // namespace snare::coupling

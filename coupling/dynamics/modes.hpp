@@ -19,14 +19,23 @@ struct MotionMode {
   std::vector<std::pair<std::string, double>> shares;
 };
 
+/// What a motion does about a state of it.                                                              theory.md (M.31)
+struct SmallMotions {
+  std::vector<MotionMode> modes;  ///< ascending
+  double fastest = 0.0;           ///< largest |lambda|, of what only decays, too [1/s]
+
+  /// 2/|lambda|: the largest step of central differences on the fastest oscillation, and of Euler's method on the fastest decay [s].
+  [[nodiscard]] double largest_explicit_step() const { return 2.0 / fastest; }
+};
+
 /// Most unknowns for which modes are computed: the work grows with their third power.
 inline constexpr int most_unknowns_of_modes = 1200;
 [[nodiscard]] int unknowns_of(const Motion& motion, const MotionOptions& options);
 
 /// Oscillations of a motion about a state of it [SI units], by the eigenvalues of its linearised equations: contacts, drives and stuck joints stay
-/// as they are, and what the state itself moves by is held. Slower than 1e-3 rad/s and overdamped ones are left out; ascending.
+/// as they are, and what the state itself moves by is held. Of the modes slower than 1e-3 rad/s and overdamped ones are left out.
 /// Throws base::InputError above `most_unknowns_of_modes`.                                            theory.md (M.31)
-[[nodiscard]] std::vector<MotionMode> modes_at(const Motion& motion, const MotionOptions& options,
-                                               const MotionState& state);
+[[nodiscard]] SmallMotions small_motions_at(const Motion& motion, const MotionOptions& options,
+                                            const MotionState& state);
 
 }  // namespace snare::coupling

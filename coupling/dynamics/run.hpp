@@ -62,8 +62,8 @@ class MotionRun {
   void resume(const MotionState& from);
   /// Goes on to `limit` [s].
   MotionResult go(double limit);
-  /// See modes_at, about the present state (run_modes.cpp). Frequencies in Hz.
-  [[nodiscard]] std::vector<MotionMode> modes();
+  /// See small_motions_at, about the present state (run_modes.cpp). Frequencies in Hz.
+  [[nodiscard]] SmallMotions small_motions();
   [[nodiscard]] int unknowns() const { return system_->size(); }
 
  private:

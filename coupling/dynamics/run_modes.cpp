@@ -30,23 +30,13 @@ constexpr double slowest = 1e-3;  // [rad/s]: below it are the coordinates that 
 constexpr double smallest_share = 0.01;
 constexpr double trusted = 1e-6;  // of the largest term that an equation could have: what may be left of it
 
-MatrixXd dense(const numerics::SparseMatrix& sparse) {
-  MatrixXd full = MatrixXd::Zero(sparse.order, sparse.order);
-  for (int j = 0; j < sparse.order; ++j) {
-    for (int k = sparse.column_start[at(j)]; k < sparse.column_start[at(j + 1)]; ++k)
-      full(sparse.row[at(k)], j) = sparse.value[at(k)];
-  }
-  return full;
-}
-
 /// Twice the kinetic energy of rates about a pose, by joint with its motor; what moves no elastic joint is the base.
-void add_arm(const multibody::ElasticArm& arm, const VectorXd& q, const multibody::ArmState& rates,
-             const std::string& owner, std::map<std::string, double>& energy) {
-  std::vector<std::string> names(at(arm.tree.velocities()), owner + " base");
+void add_arm(const MotionArm& one, const VectorXd& q, const multibody::ArmState& rates,
+             std::map<std::string, double>& energy) {
+  const multibody::ElasticArm& arm = one.arm;
+  std::vector<std::string> names(at(arm.tree.velocities()), one.name + " base");
   for (int j = 0; j < arm.motors(); ++j) {
-    const std::string& joint = arm.joints[at(j)].name;
-    const bool with_owner = joint.find("::") != std::string::npos;  // of a snare
-    const std::string name = with_owner ? joint : owner + "::" + joint;
+    const std::string name = one.joint_name(j);
     names[at(arm.tree.body(arm.joints[at(j)].body).v_index)] = name;
     energy[name] += arm.joints[at(j)].motor_inertia * rates.motor_rate[j] * rates.motor_rate[j];
   }
@@ -59,13 +49,13 @@ void add_arm(const multibody::ElasticArm& arm, const VectorXd& q, const multibod
 
 // F(y + x, y' + x') = 0 to first order: A x + B x' = 0. With M = (A + s B)^-1 B and M x = mu x it is lambda = s - 1/mu; what no rate acts on has
 // mu = 0. The columns are scaled by the tolerances, the sizes at which unknowns of different units are alike, the rows by their largest entry.
-std::vector<MotionMode> MotionRun::modes() {
+SmallMotions MotionRun::small_motions() {
   constexpr double shift = 0.9173;  // [1/s]: no eigenvalue of note
-  constexpr double weight =
-      1e3;  // [1/s], of the rates in the second matrix: lifts them out of the round-off of the first
+  // Of the rates in the second matrix [1/s]: lifts them out of the round-off of the first.
+  constexpr double weight = 1e3;
   const numerics::DaePoint now{time_, y_, rate_};
-  const MatrixXd A = dense(system_->jacobian(now, 0.0));
-  const MatrixXd B = (dense(system_->jacobian(now, weight)) - A) / weight;
+  const MatrixXd A = numerics::dense(system_->jacobian(now, 0.0));
+  const MatrixXd B = (numerics::dense(system_->jacobian(now, weight)) - A) / weight;
   VectorXd size(system_->size());
   for (const numerics::DaeBlock& block : system_->layout().blocks())
     size.segment(block.first, block.count).setConstant(block.absolute_tolerance);
@@ -79,21 +69,24 @@ std::vector<MotionMode> MotionRun::modes() {
   // Largest coefficients of an equation.
   const VectorXd of_A = (A * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
   const VectorXd of_B = (B * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
-  std::vector<MotionMode> modes;
+  SmallMotions small;
   for (Index k = 0; k < M.cols(); ++k) {
     const std::complex<double> mu = solver.eigenvalues()[k];
     if (std::abs(mu) == 0.0) continue;
     const std::complex<double> lambda = shift - 1.0 / mu;
-    if (!(lambda.imag() > slowest) || !std::isfinite(std::abs(lambda))) continue;
+    if (lambda.imag() < 0.0 || !(std::abs(lambda) > slowest) || !std::isfinite(std::abs(lambda))) continue;
     const VectorXcd x = size.asDiagonal() * solver.eigenvectors().col(k);
     // What constraints make of mu = 0 in round-off is no solution of the equations themselves.
     const VectorXd rest = (A * x + lambda * (B * x)).cwiseAbs();
     const VectorXd largest = (of_A + std::abs(lambda) * of_B) * solver.eigenvectors().col(k).cwiseAbs().maxCoeff();
     if (!(rest.array() <= trusted * largest.array()).all()) continue;
-    modes.push_back({std::abs(lambda) / (2.0 * std::numbers::pi), -lambda.real() / std::abs(lambda), shares_of(x)});
+    small.fastest = std::max(small.fastest, std::abs(lambda));
+    if (lambda.imag() > slowest)
+      small.modes.push_back(
+          {std::abs(lambda) / (2.0 * std::numbers::pi), -lambda.real() / std::abs(lambda), shares_of(x)});
   }
-  std::ranges::sort(modes, {}, &MotionMode::frequency);
-  return modes;
+  std::ranges::sort(small.modes, {}, &MotionMode::frequency);
+  return small;
 }
 
 // The kinetic energy is quadratic in the velocities: of an oscillation the sum of those of the real and of the imaginary part.
@@ -115,7 +108,7 @@ std::vector<std::pair<std::string, double>> MotionRun::shares_of(const VectorXcd
     }
     for (std::size_t a = 0; a < motion_.arms.size(); ++a) {
       const multibody::ElasticArmPart& arm = constraints_->arm(static_cast<int>(a));
-      add_arm(arm.arm(), arm.state(y_).q, arm.state(v), motion_.arms[a].name, energy);
+      add_arm(motion_.arms[a], arm.state(y_).q, arm.state(v), energy);
     }
     for (std::size_t w = 0; w < rods_.size(); ++w) {
       if (motion_.wires[w].rod.quasi_static) continue;
@@ -138,7 +131,7 @@ int unknowns_of(const Motion& motion, const MotionOptions& options) {
   return MotionRun(motion, options, none).unknowns();
 }
 
-std::vector<MotionMode> modes_at(const Motion& motion, const MotionOptions& options, const MotionState& state) {
+SmallMotions small_motions_at(const Motion& motion, const MotionOptions& options, const MotionState& state) {
   const MotionObserver none;
   MotionRun run(motion, options, none);
   if (run.unknowns() > most_unknowns_of_modes) {
@@ -148,7 +141,7 @@ std::vector<MotionMode> modes_at(const Motion& motion, const MotionOptions& opti
                      most_unknowns_of_modes)});
   }
   run.resume(state);
-  return run.modes();
+  return run.small_motions();
 }
 
 }  // namespace snare::coupling

@@ -1,5 +1,4 @@
-#include "tests/app/command_fixture.hpp"
-#include "tests/support/wire_text.hpp"
+#include "tests/app/small_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,41 +15,14 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string one_push = "schema = \"snare-experiment/1\"\ntitle = \"push\"\nsource = \"a test\"\n" +
-                             test::wire_tables("180.0") + R"([[series]]
-name = "middle"
-contact_position_mm = 87.5
-travel_mm = 0.5
-points = 2
-[solver]
-elements = 16
-)";
-
-constexpr const char* sweep_of_pushes = R"(schema = "snare-sweep/1"
-title = "pushes"
-case = "one.toml"
-design = "latin_hypercube"
-cases = 60
-[[vary]]
-key = "wire.length_mm"
-uniform = [174.9, 181.0]
-[[vary]]
-key = "wire.diameter_mm"
-normal = { mean = 1.5, sigma = 0.01 }
-[collect]
-force = "series[middle].largest_force_N"
-touching = "series[middle].in_contact_at_end"
+class SweepCommand : public SmallSweep {
+ protected:
+  SweepCommand()
+      : SmallSweep("174.9", "0.01", R"(touching = "series[middle].in_contact_at_end"
 [[limits]]
 of = "force"
 above = 50.0
-)";
-
-class SweepCommand : public CommandFixture {
- protected:
-  SweepCommand() {
-    write("one.toml", one_push);
-    write("sweep.toml", sweep_of_pushes);
-  }
+)") {}
   [[nodiscard]] std::string cases(const std::string& out) const {
     return contents(std::filesystem::path(out) / "cases.csv");
   }
@@ -68,7 +40,7 @@ TEST_F(SweepCommand, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(summary["interrupted"], false);
   // A wire that is shorter than its span is a case of its own kind: whatever it comes to, it does so by itself.
   EXPECT_EQ(summary["limits"]["force > 50"]["cases"], summary["statuses"]["done"]);
-  EXPECT_TRUE(std::filesystem::exists(path("a/report.html")));
+  EXPECT_TRUE(exists("a/report.html"));
 }
 
 // A line of cases.csv against the command that it stands for.
@@ -82,7 +54,7 @@ TEST_F(SweepCommand, ACaseRunsAloneWithTheSameResult) {
   const nlohmann::json alone = parsed("out.txt");
   const std::string force = nlohmann::json(alone["series"][0]["largest_force_N"]).dump();
   EXPECT_THAT(line, HasSubstr("," + force + ",1"));
-  EXPECT_TRUE(std::filesystem::exists(path("a/case_7/curves.csv")));
+  EXPECT_TRUE(exists("a/case_7/curves.csv"));
   EXPECT_EQ(run("sweep sweep.toml --out a --case 61"), 2);
   EXPECT_THAT(contents("err.txt"), HasSubstr("must be from 1 to 60"));
 }
@@ -108,12 +80,11 @@ TEST_F(SweepCommand, WrongFilesWriteNothing) {
   EXPECT_THAT(contents("err.txt"), HasSubstr("push, fit, trace"));
   EXPECT_EQ(run("sweep one.toml --out a"), 2);
   EXPECT_THAT(contents("err.txt"), HasSubstr("snare-sweep/1"));
-  EXPECT_FALSE(std::filesystem::exists(path("a")));
+  EXPECT_FALSE(exists("a"));
 }
 
 TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
-  write("sweep.toml",
-        std::string(sweep_of_pushes).replace(std::string(sweep_of_pushes).find("cases = 60"), 10, "cases = 600"));
+  write("sweep.toml", std::string(sweep).replace(sweep.find("cases = 60"), 10, "cases = 600"));
   ASSERT_EQ(run("sweep sweep.toml --out whole"), 0);
   const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--threads", "1"});
   const Ending ending = interrupt(child, 0.4);
@@ -163,9 +134,9 @@ TEST_F(SweepCommand, AChangedInputIsRefusedAndNothingIsLost) {
   const std::string before = cases("a"), journal = contents("a/cases.journal");
   EXPECT_EQ(run("sweep sweep.toml --out a --set seed=2"), 2);
   EXPECT_THAT(contents("err.txt"), HasSubstr("belongs to another study"));
-  write("one.toml", one_push + "instability = \"follow_path\"\n");
+  write("one.toml", push + "instability = \"follow_path\"\n");
   EXPECT_EQ(run("sweep sweep.toml --out a"), 2);
-  write("one.toml", "# a comment\n" + one_push);
+  write("one.toml", "# a comment\n" + push);
   EXPECT_EQ(run("sweep sweep.toml --out a"), 0) << contents("err.txt");
   EXPECT_EQ(cases("a"), before);
   EXPECT_EQ(contents("a/cases.journal"), journal);
@@ -173,7 +144,7 @@ TEST_F(SweepCommand, AChangedInputIsRefusedAndNothingIsLost) {
 
 TEST_F(SweepCommand, TwoSweepsDoNotShareAFolder) {
   const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--set", "cases=3000"});
-  for (int k = 0; k < 200 && !std::filesystem::exists(path("a/cases.journal")); ++k)
+  for (int k = 0; k < 200 && !exists("a/cases.journal"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(shell("'" SNARE_COMMAND "' sweep sweep.toml --out a --set cases=3000 >o2 2>e2"), 2);
   EXPECT_THAT(contents("e2"), HasSubstr("is writing into this one"));

@@ -1,5 +1,4 @@
-#include "tests/app/command_fixture.hpp"
-#include "tests/support/wire_text.hpp"
+#include "tests/app/small_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,44 +14,16 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string push_with_history = "schema = \"snare-experiment/1\"\ntitle = \"push\"\nsource = \"a test\"\n" +
-                                      test::wire_tables("180.0") + R"([[series]]
-name = "middle"
-contact_position_mm = 87.5
-travel_mm = 0.5
-points = 2
-[solver]
-elements = 16
-)";
-
-constexpr const char* sweep_with_histories = R"(schema = "snare-sweep/1"
-title = "pushes"
-case = "one.toml"
-design = "latin_hypercube"
-cases = 60
-[[vary]]
-key = "wire.length_mm"
-uniform = [179.0, 181.0]
-[[vary]]
-key = "wire.diameter_mm"
-normal = { mean = 1.5, sigma = 1.0 }
-[collect]
-force = "series[middle].largest_force_N"
-[histories]
-columns = ["displacement_mm", "force_N", "series"]
-)";
-
 /// What stands in the file is read by tests/python/histories_test.py.
-class SweepHistories : public CommandFixture {
+class SweepHistories : public SmallSweep {
  protected:
-  SweepHistories() {
-    write("one.toml", push_with_history);
-    write("sweep.toml", sweep_with_histories);
-  }
+  SweepHistories()
+      : SmallSweep("179.0", "1.0", R"([histories]
+columns = ["displacement_mm", "force_N", "series"]
+)") {}
   [[nodiscard]] std::string histories(const std::string& out) const {
     return contents(std::filesystem::path(out) / "histories.h5");
   }
-  [[nodiscard]] bool exists(const std::string& file) const { return std::filesystem::exists(path(file)); }
   /// Names in the folder of a sweep.
   [[nodiscard]] std::set<std::string> names(const std::string& out) const {
     std::set<std::string> all;
@@ -78,8 +49,7 @@ TEST_F(SweepHistories, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(SweepHistories, WithoutTheTableThereIsNoFile) {
-  const std::string text(sweep_with_histories);
-  write("sweep.toml", text.substr(0, text.find("[histories]")));
+  write("sweep.toml", sweep.substr(0, sweep.find("[histories]")));
   ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
   EXPECT_FALSE(exists("a/histories.h5"));
   EXPECT_FALSE(parsed("a/summary.json").contains("histories"));
@@ -155,8 +125,7 @@ TEST_F(SweepHistories, AFullDiskKeepsWhatIsFinished) {
 
 // A subset simulation numbers its cases from level to level.
 TEST_F(SweepHistories, OfARareEvent) {
-  const std::string text(sweep_with_histories);
-  write("sweep.toml", text + "[[limits]]\nof = \"force\"\nabove = 60.0\n");
+  write("sweep.toml", sweep + "[[limits]]\nof = \"force\"\nabove = 60.0\n");
   const std::string subset = " --set design=subset --set cases=100 --set vary[2].normal.sigma=0.05";
   ASSERT_EQ(run("sweep sweep.toml --out a --threads 1" + subset), 0) << contents("err.txt");
   ASSERT_EQ(run("sweep sweep.toml --out b --threads 2" + subset), 0);

@@ -16,6 +16,7 @@ import sys
 PAGES = {
     "experiment": ["experiment_file"], "wire": ["wire_file", "experiment_file", "scenario_file"], "scenario": ["scenario_file", "experiment_file"],
     "arm": ["arm_files"], "ringdown": ["ringdown_file", "experiment_file"], "record": ["record_file"], "sweep": ["sweep_file"],
+    "benchmark": ["benchmark_file"],
 }
 RESULTS = ["result_fields"]
 # Ends of names that are units, and what the description has for them.

@@ -61,12 +61,6 @@ Eigen::MatrixXd dense(const BorderedSystem& system) {
   return a;
 }
 
-Eigen::MatrixXd dense(const SparseMatrix& matrix) {
-  Eigen::MatrixXd a(matrix.order, matrix.order);
-  for (int k = 0; k < matrix.order; ++k) a.col(k) = matrix * Eigen::VectorXd::Unit(matrix.order, k);
-  return a;
-}
-
 /// The chain held in the mean: sum x = b. Regular, though K is singular.
 BorderedSystem chain_with_mean(int n, double scale, const Eigen::VectorXd& column) {
   BorderedSystem system;

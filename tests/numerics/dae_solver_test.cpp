@@ -14,15 +14,6 @@
 namespace snare::numerics {
 namespace {
 
-Eigen::MatrixXd dense(const SparseMatrix& m) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m.order, m.order);
-  for (int j = 0; j < m.order; ++j) {
-    for (int s = m.column_start[static_cast<std::size_t>(j)]; s < m.column_start[static_cast<std::size_t>(j) + 1]; ++s)
-      result(m.row[static_cast<std::size_t>(s)], j) = m.value[static_cast<std::size_t>(s)];
-  }
-  return result;
-}
-
 /// A chain of n places 0 ... n-1 and their rates n ... 2n-1 with rows c x - v and banded balances, and two unknowns that are
 /// coupled with the middle of the chain.
 SparseMatrix chain(int n, double diagonal, unsigned seed) {

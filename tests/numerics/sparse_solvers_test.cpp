@@ -35,17 +35,6 @@ SymmetricBandMatrix random_band(int n, int b, std::mt19937& random, double diago
   return matrix;
 }
 
-Eigen::MatrixXd dense(const SparseMatrix& matrix) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
-  for (int j = 0; j < matrix.order; ++j) {
-    for (int i = 0; i < matrix.order; ++i) {
-      const int slot = matrix.slot(i, j);
-      if (slot >= 0) result(i, j) = matrix.value[static_cast<std::size_t>(slot)];
-    }
-  }
-  return result;
-}
-
 TEST(SparseMatrix, PatternMergesRepeatedEntriesAndFindsSlots) {
   const SparseMatrix m = make_pattern(3, {{2, 0}, {0, 0}, {2, 0}, {1, 2}});
   EXPECT_EQ(m.row, (std::vector<int>{0, 2, 1}));

@@ -39,6 +39,7 @@ RUNS = {
     "sweep": ["sweep", "WORK/sweep.toml"],
     "sweep_sobol": ["sweep", "WORK/sobol.toml"],
     "sweep_subset": ["sweep", "WORK/subset.toml"],
+    "benchmark": ["benchmark", "--case", "push_middle"],
     "arm": ["arm", "show", "data/arms/jemrms_like.toml", "--json"],
     "urdf": ["arm", "show", "data/arms/jemrms_like.urdf", "--json"],
 }
@@ -61,6 +62,7 @@ NOT_HERE = {
     "snare-trace/1": {"next_experiment.difference_N", "next_experiment.difference_sigma", "remaining.hangs_on[].sensor",
                       "remaining.hangs_on[].on", "remaining.hangs_on[].share",  # nothing to tell apart, nothing left
                       "partial.model", "partial.heldout"},  # of records: nothing that helps without explaining
+    "snare-benchmark-result/1": {f"cases[].models[].outcome.*.{k}" for k in ("value", "reference", "same")},  # a push that has none
     "snare-comparison/1": {"models[].from_full.first_touch_s", "models[].from_full.tight_s"},  # too short to touch
     "snare-summary/1": {"models[].quasi_static", *(f"models[].quasi_static[].{k}" for k in ("wire", "left_out_kinetic_J", "left_out_force_N"))},
 }

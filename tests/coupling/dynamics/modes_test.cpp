@@ -27,7 +27,27 @@ std::vector<MotionMode> modes_of(const Motion& motion) {
   MotionOptions options = test::fine(1e-6, 1e-6);
   const MotionResult result = simulate(motion, options);
   EXPECT_TRUE(result.report.usable()) << result.report.message;
-  return modes_at(motion, options, result.last);
+  return small_motions_at(motion, options, result.last).modes;
+}
+
+// A body on a spring alone, and with a dashpot that lets it only creep: lambda = -(c -+ (c^2 - 4 k m)^1/2)/(2 m).
+TEST(Modes, FastestIsOfWhatOnlyDecaysToo) {
+  for (const double damping : {0.0, 1000.0}) {
+    Motion motion;
+    motion.bodies = {block("visitor", 3.0, {0.3, 0.4, 0.5})};
+    MotionBushing bushing;
+    bushing.second = body_of(0);
+    bushing.translational_stiffness = {0.0, 0.0, 5000.0};
+    bushing.translational_damping = {0.0, 0.0, damping};
+    motion.bushings = {bushing};
+    const MotionOptions options = test::fine(1e-6, 1e-6);
+    const SmallMotions small = small_motions_at(motion, options, simulate(motion, options).last);
+    const double fastest =
+        damping > 0.0 ? (damping + std::sqrt(damping * damping - 4.0 * 5000.0 * 3.0)) / 6.0 : std::sqrt(5000.0 / 3.0);
+    EXPECT_NEAR(small.fastest, fastest, 1e-7 * fastest);
+    EXPECT_NEAR(small.largest_explicit_step(), 2.0 / fastest, 1e-7 / fastest);
+    EXPECT_EQ(small.modes.size(), damping > 0.0 ? 0U : 1U);
+  }
 }
 
 // (K/I)^1/2 and c/(2 (K I)^1/2) on a clamped fixture: three shifts and three turns, each by itself.
@@ -121,7 +141,7 @@ TEST(Modes, OfTooManyUnknownsAreRefused) {
   const MotionOptions options = test::fine(1e-6, 1e-6);
   EXPECT_GT(unknowns_of(motion, options), most_unknowns_of_modes);
   const MotionResult result = simulate(motion, options);
-  EXPECT_ANY_THROW(static_cast<void>(modes_at(motion, options, result.last)));
+  EXPECT_ANY_THROW(static_cast<void>(small_motions_at(motion, options, result.last)));
 }
 
 }  // namespace

@@ -35,31 +35,27 @@ class FreeBodyRecords : public test::FolderFixture {
       text += fmt::format("{:.4f},{:.9g}\n", i * interval, value(i * interval) + noise(engine));
     write(file, text);
   }
+  /// scenario.toml: a body "craft" in free motion with one sensor; `body`: its numbers, and the tables after it.
+  void scenario(double duration, double interval, const std::string& body, const std::string& sensor,
+                const std::string& kind) const {
+    write("scenario.toml",
+          fmt::format("schema = \"snare-scenario/2\"\ntitle = \"craft\"\nduration_s = {:.1f}\noutput_interval_s = {}\n"
+                      "[[bodies]]\nname = \"craft\"\n{}"
+                      "[[sensors]]\nname = \"{}\"\nkind = \"{}\"\nframe = \"craft\"\n[solver]\nmax_order = 5\n",
+                      duration, interval, body, sensor, kind));
+  }
   /// A craft of 10 kg m^2 with a moment of 0.05 N m about z: w = w0 + M t/J. Declared 8 % heavier to turn.
   std::filesystem::path craft(double first_spin, double second_spin, const std::string& second_declared) const {
-    write("scenario.toml", R"(schema = "snare-scenario/2"
-title = "craft"
-duration_s = 10.0
-output_interval_s = 0.05
-[[bodies]]
-name = "craft"
-mass_kg = 100.0
+    scenario(10.0, 0.05, R"(mass_kg = 100.0
 inertia_kg_m2 = [10.8, 10.8, 10.8]
-position_mm = [0.0, 0.0, 0.0]
-velocity_m_s = [0.0, 0.0, 0.0]
 spin_rad_s = [0.0, 0.0, 0.01]
 [[loads]]
 name = "thruster"
 frame = "craft"
 axes = "frame"
 moment_Nm = [0.0, 0.0, 0.05]
-[[sensors]]
-name = "gyro"
-kind = "rate"
-frame = "craft"
-[solver]
-max_order = 5
-)");
+)",
+             "gyro", "rate");
     for (const auto& [name, spin, seed] : {std::tuple{"first", first_spin, 1u}, std::tuple{"second", second_spin, 2u}})
       readings(fmt::format("{}.csv", name), "rate_deg_s", 10.0, 0.1, 0.01, seed,
                [spin = spin](double t) { return (spin + 0.05 * t / 10.0) / degree; });
@@ -85,28 +81,17 @@ heldout = ["second"]
   }
   /// 5 kg on 200 N/m with a start of 0.02 m/s: x = v/w sin(w t), w = sqrt(40) rad/s, a period of 0.993 s. `free`: what is fitted.
   std::filesystem::path spring(double duration, const std::string& free) const {
-    write("scenario.toml", R"(schema = "snare-scenario/2"
-title = "spring"
-duration_s = 2.0
-output_interval_s = 0.01
-[[bodies]]
-name = "payload"
-mass_kg = 5.0
+    scenario(2.0, 0.01, R"(mass_kg = 5.0
 inertia_kg_m2 = [1.0, 1.0, 1.0]
 velocity_m_s = [0.02, 0.0, 0.0]
 [[bushings]]
 name = "fixture"
 frame = "world"
-other_frame = "payload"
+other_frame = "craft"
 translational_stiffness_N_m = 190.0
 rotational_stiffness_Nm_rad = 100.0
-[[sensors]]
-name = "place"
-kind = "position"
-frame = "payload"
-[solver]
-max_order = 5
-)");
+)",
+             "place", "position");
     const double w = std::sqrt(40.0);
     readings("a.csv", "x_mm", duration, 0.01, 0.01, 3, [w](double t) { return 20.0 / w * std::sin(w * t); });
     return write("record.toml", R"(schema = "snare-record/1"

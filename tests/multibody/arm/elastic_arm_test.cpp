@@ -14,17 +14,6 @@ namespace {
 using multibody::Drive;
 using test::Base;
 
-Eigen::MatrixXd dense(const numerics::SparseMatrix& matrix) {
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
-  for (int j = 0; j < matrix.order; ++j) {
-    for (int s = matrix.column_start[static_cast<std::size_t>(j)];
-         s < matrix.column_start[static_cast<std::size_t>(j) + 1]; ++s) {
-      m(matrix.row[static_cast<std::size_t>(s)], j) = matrix.value[static_cast<std::size_t>(s)];
-    }
-  }
-  return m;
-}
-
 }  // namespace
 
 TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
@@ -62,7 +51,7 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
     part.write_state(state, y);
     part.settle(2.0, y);
     const double c = 3.7;
-    const Eigen::MatrixXd analytic = dense(system.jacobian({2.0, y, rate}, c));
+    const Eigen::MatrixXd analytic = numerics::dense(system.jacobian({2.0, y, rate}, c));
     const auto residual = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       Eigen::VectorXd rows = Eigen::VectorXd::Zero(system.size());
       const Eigen::VectorXd moved_rate = rate + c * (x - y);
