@@ -47,6 +47,10 @@ using namespace results;
 /// Many cases of one file: cases.csv, summary.json, report.html; goes on where it was killed.
 [[nodiscard]] ExitStatus run_sweep(const std::filesystem::path& sweep, const CommonOptions& options, Console& console);
 
+/// Wire models scored on frozen cases with archived histories: benchmark.json, scores.csv, report.html.
+[[nodiscard]] ExitStatus run_benchmark(const std::filesystem::path& benchmark, const CommonOptions& options,
+                                       Console& console);
+
 /// Every validation row: validation.json, report.html.
 [[nodiscard]] ExitStatus run_validate(const CommonOptions& options, Console& console);
 

@@ -78,6 +78,9 @@ const Verb verbs[] = {
      "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown},
     {"sweep", "many cases of a file at once; goes on where it was killed", "SWEEP.toml", "sweep file", true,
      "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep},
+    {"benchmark", "wire models, and anybody's history, scored on frozen cases with archived histories",
+     "BENCHMARK.toml", "benchmark file; the shipped ring when left out", false,
+     "snare benchmark --case impact_middle --against theirs.csv", snare::app::run_benchmark},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
@@ -164,6 +167,11 @@ int run(int argc, char** argv) {
     if (verb.run == snare::app::run_sweep)
       p.command->add_option("--case", p.options.only_case, "run this case alone, as its verb would")
           ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}, "CASE from 1 to 1e12"));
+    if (verb.run == snare::app::run_benchmark) {
+      p.command->add_option("--case", p.options.only_named, "this case alone, by its name");
+      p.command->add_option("--against", p.options.against, "CSV file of a history that is scored on the case, too");
+      p.command->add_flag("--archive", p.options.archive, "make the archived histories anew, beside the file");
+    }
     p.command->footer(std::string("Example: ") + verb.example);
   }
 

@@ -3,7 +3,7 @@ _snare() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} verb=${COMP_WORDS[1]} ending words files=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "reproduce push fit trace distil compare simulate ringdown sweep validate arm new -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "reproduce push fit trace distil compare simulate ringdown sweep benchmark validate arm new -h --help --version" -- "$current")
     return
   fi
   case $before in
@@ -37,6 +37,9 @@ _snare() {
       files="toml" ;;
     sweep)
       words="-h --help --out --threads --set --quiet --json --case"
+      files="toml" ;;
+    benchmark)
+      words="-h --help --out --threads --set --quiet --json --case --against --archive"
       files="toml" ;;
     validate)
       words="-h --help --out --threads --set --quiet --json"
