@@ -52,6 +52,7 @@ class Tracer {
     trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
     if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
+    profile();
     warn();
     trace_.simulations = model_.simulations();
     trace_.interrupted = stop_;
@@ -67,6 +68,34 @@ class Tracer {
     return [this](int iteration, double chi2) {
       return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
     };
+  }
+  /// Profiles of the numbers for which they are asked, in the final model.
+  void profile() {
+    for (const FreeNumber& f : set_.free) {
+      for (std::size_t k = 0; f.profile && k < current_.settings.size(); ++k) {
+        const MotionNumber& number = current_.settings[k].number;
+        if (number.key != f.key && !(number.record && number.key.ends_with("." + f.key))) continue;
+        if (!go_on("profile of " + number.key)) return;
+        MotionFitOptions options;
+        options.progress = asked();
+        Profile found = profile_of(model_, data_, current_, k, options);
+        if (stop_) return;  // half a profile is none
+        trace_.profiles.push_back(std::move(found));
+      }
+    }
+    constexpr double worth_a_word = 0.1;  // of a deviate squared: no interval moves by a twentieth of its width
+    for (const Profile& p : trace_.profiles) {
+      if (p.lower_fall > worth_a_word)
+        trace_.warnings.push_back(
+            fmt::format("the profile of {} meets a sum of squares that is lower than that of the fit: begin from "
+                        "other values",
+                        p.key));
+      for (const bool upper : {false, true})
+        if ((upper ? p.upper : p.lower).end == ProfileEnd::open)
+          trace_.warnings.push_back(fmt::format("{} has no {} limit of 95 %: its profile stays below that to {:.4g} {}",
+                                                p.key, upper ? "upper" : "lower",
+                                                (upper ? p.points.back() : p.points.front()).value, p.unit));
+    }
   }
   /// Records that are too short, and numbers of the file that they do not show.
   void warn() {
