@@ -315,10 +315,9 @@ class Tracer {
       break;
     }
     const std::size_t count = best->effects;
-    for (std::size_t k = count; k < trace_.selected.size() && k < trace_.rounds.size(); ++k) {
-      trace_.rounds[k].reason = "taken back: the records held out are not predicted better with it";
-      trace_.rounds[k].added.clear();
-    }
+    for (std::size_t k = count; k < trace_.selected.size(); ++k)
+      take_back(rounds_of_[k], "taken back: the records held out are not predicted better with it");
+    rounds_of_.resize(count);
     trace_.selected.resize(count);
     trace_.selected_effects.resize(count);
     if (count == 0) trace_.channel.clear();
@@ -329,6 +328,55 @@ class Tracer {
     trace_.significant = omnibus_ || count > 0;
     if (count > 0) judge();
     reached();
+  }
+
+  void take_back(std::size_t round, const std::string& reason) {
+    trace_.rounds[round].reason = reason;
+    trace_.rounds[round].added.clear();
+  }
+
+  /// Effects that were named before the last one and are no longer needed beside it: what imitated in part what was missing. Such an effect has
+  /// numbers that are null within their errors, and without it the misfit grows by less than log n times what chance takes a number.
+  bool drop_needless() {
+    bool dropped = false;
+    for (std::size_t e = 0; e + 1 < trace_.selected_effects.size() && !stop_;) {
+      const std::vector<MotionNumber>& numbers = trace_.effects[trace_.selected_effects[e]].numbers;
+      std::vector<MotionSetting> without;
+      bool null = true;
+      for (std::size_t k = 0; k < current_.settings.size(); ++k) {
+        const MotionSetting& s = current_.settings[k];
+        const bool own =
+            std::any_of(numbers.begin(), numbers.end(), [&](const MotionNumber& n) { return n.key == s.number.key; });
+        if (!own) {
+          without.push_back(s);
+          continue;
+        }
+        const auto i = static_cast<Eigen::Index>(k);
+        const double variance = i < current_.covariance.rows() ? current_.covariance(i, i) : 0.0;
+        null = null && std::abs(s.value - s.number.declared) <= 1.96 * std::sqrt(std::max(0.0, variance));
+      }
+      bool needless = false;
+      if (null) {
+        MotionFitOptions options;
+        options.progress = asked();
+        MotionFit fit = fit_motion(model_, data_, without, options);
+        const double rows = std::max(1.0, static_cast<double>(data_.rows));
+        const auto count = static_cast<double>(current_.settings.size() - without.size());
+        needless = fit.report.usable() && fit.chi2 - current_.chi2 <= count * std::log(rows) * current_.chi2 / rows;
+        if (needless) current_ = std::move(fit);
+      }
+      if (!needless) {
+        ++e;
+        continue;
+      }
+      take_back(rounds_of_[e], "taken back: not needed beside " + trace_.selected.back());
+      const auto at = static_cast<std::ptrdiff_t>(e);
+      trace_.selected.erase(trace_.selected.begin() + at);
+      trace_.selected_effects.erase(trace_.selected_effects.begin() + at);
+      rounds_of_.erase(rounds_of_.begin() + at);
+      dropped = true;
+    }
+    return dropped;
   }
 
   /// The next round begins at the sizes that were found to show, less as much as the residual has fallen.
@@ -372,7 +420,9 @@ class Tracer {
       current_ = std::move(round.better);
       trace_.selected.push_back(trace_.effects[*round.added].label());
       trace_.selected_effects.push_back(*round.added);
-      if (trace_.channel.empty()) trace_.channel = trace_.effects[*round.added].channel;
+      rounds_of_.push_back(trace_.rounds.size() - 1);
+      if (drop_needless()) kept.resize(1);  // the models along the way had what is dropped
+      trace_.channel = trace_.effects[trace_.selected_effects.front()].channel;
       trace_.final = stage(current_, {});
       judge();
       trace_.significant = true;
@@ -435,8 +485,9 @@ class Tracer {
   MotionData data_, heldout_data_;
   std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
   MotionFit current_;
-  Eigen::VectorXd heldout_residual_;  // of the last stage
-  bool omnibus_ = false;              // what the base leaves is more than noise, whatever the effects' own tests say
+  std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
+  Eigen::VectorXd heldout_residual_;    // of the last stage
+  bool omnibus_ = false;                // what the base leaves is more than noise, whatever the effects' own tests say
   MotionTrace trace_;
 };
 
