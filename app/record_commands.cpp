@@ -111,6 +111,13 @@ void tell_numbers(const MotionStage& stage, Console& console) {
   }
 }
 
+void tell_profiles(const MotionTrace& trace, Console& console) {
+  for (const identification::Profile& p : trace.profiles)
+    console.say(fmt::format(
+        "  {} by its profile: {} to {}{}{}", p.key, p.lower.limit ? fmt::format("{:.5g}", *p.lower.limit) : "no limit",
+        p.upper.limit ? fmt::format("{:.5g}", *p.upper.limit) : "no limit", p.unit.empty() ? "" : " ", p.unit));
+}
+
 ExitStatus status_of(const MotionTrace& trace) {
   return trace.report.usable() && !trace.interrupted ? ExitStatus::done : ExitStatus::solver_stopped;
 }
@@ -126,6 +133,7 @@ ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& o
     tell(trace.declared, "declared", console);
     tell(trace.base, "fitted", console);
     tell_numbers(trace.base, console);
+    tell_profiles(trace, console);
     console.say(fmt::format("{0} simulations of the fit; wrote {1}/fit.json, {1}/curves.csv", trace.fit_simulations,
                             options.out.string()));
   }
@@ -143,6 +151,7 @@ ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOpti
     tell(trace.base, "base", console);
     tell(trace.final, "final", console);
     tell_numbers(trace.final, console);
+    tell_profiles(trace, console);
     if (!trace.next_measurement.empty()) console.say("next: " + trace.next_measurement);
     console.say(fmt::format("wrote {0}/curves.csv, {0}/trace.json, {0}/report.html", options.out.string()));
   }

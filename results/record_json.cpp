@@ -66,6 +66,39 @@ json stage_json(const MotionTrace& trace, const MotionStage& stage) {
           {"channels", errors_json(stage.errors)}};
 }
 
+const char* end_name(identification::ProfileEnd end) {
+  switch (end) {
+    case identification::ProfileEnd::crossed:
+      return "crossed";
+    case identification::ProfileEnd::bound:
+      return "bound";
+    case identification::ProfileEnd::open:
+      return "open";
+    case identification::ProfileEnd::not_simulated:
+      break;
+  }
+  return "not_simulated";
+}
+
+json profiles_json(const MotionTrace& trace) {
+  json all = json::object();
+  for (const identification::Profile& p : trace.profiles) {
+    json points = json::array();
+    for (const identification::ProfilePoint& point : p.points)
+      points.push_back({{"value", finite(point.value)}, {"rise", finite(point.rise)}});
+    all[p.key] = {{"value", finite(p.value)},
+                  {"unit", p.unit},
+                  {"lower", finite(p.lower.limit)},
+                  {"upper", finite(p.upper.limit)},
+                  {"lower_end", end_name(p.lower.end)},
+                  {"upper_end", end_name(p.upper.end)},
+                  {"fall", finite(p.lower_fall)},
+                  {"simulations", p.simulations},
+                  {"points", points}};
+  }
+  return all;
+}
+
 json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
   const identification::MotionEffect& effect = trace.effects[c.score.effect];
   json value = json::object();
@@ -97,6 +130,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"warnings", trace.warnings},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
+          {"profiles", profiles_json(trace)},
           {"simulations",
            {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
 }

@@ -49,6 +49,33 @@ void numbers(ReportPage& page, const MotionStage& stage) {
   page.table(table);
 }
 
+/// Limits, and the rise of the misfit along each number.
+void profiles(ReportPage& page, const MotionTrace& trace) {
+  Table table{"Intervals of 95 % by profile: the number is held, all others are fitted anew",
+              {"Key"_code, "Value"_number, "From"_number, "To"_number, "Unit"_text}};
+  const auto limit = [](const identification::ProfileSide& side) {
+    if (side.end == identification::ProfileEnd::bound) return format_number(*side.limit) + " (its bound)";
+    if (side.limit) return format_number(*side.limit);
+    return std::string(side.end == identification::ProfileEnd::open ? "no limit" : "cannot be simulated beyond");
+  };
+  for (const identification::Profile& p : trace.profiles)
+    table.rows.push_back({p.key, format_number(p.value), limit(p.lower), limit(p.upper), p.unit});
+  page.table(table);
+  for (const identification::Profile& p : trace.profiles) {
+    Values value, rise, ends, limit_of_95;
+    for (const identification::ProfilePoint& point : p.points) {
+      value.push_back(point.value);
+      rise.push_back(point.rise);
+    }
+    ends = {value.front(), value.back()};
+    limit_of_95 = {identification::profile_rise_95, identification::profile_rise_95};
+    PlotSpecification plot{"profile of " + p.key, {p.key, p.unit}, {"rise of the misfit, 3.84 at 95 %", ""}};
+    plot.curves.push_back(make_curve("profile", value, rise, CurveStyle::line, 2));
+    plot.curves.push_back(make_curve("95 %", ends, limit_of_95, CurveStyle::dashes, 1));
+    page.line_plot(plot);
+  }
+}
+
 void rounds(ReportPage& page, const MotionTrace& trace) {
   for (std::size_t k = 0; k < trace.rounds.size(); ++k) {
     const identification::MotionRound& round = trace.rounds[k];
@@ -142,6 +169,7 @@ std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
     page.paragraph(trace.effects[e].label() + ": " + trace.effects[e].meaning + ".");
   errors(page, trace);
   numbers(page, trace.final);
+  if (!trace.profiles.empty()) profiles(page, trace);
   if (!trace.leftovers.empty() && trace.leftovers.front().share > 0.05) {
     page.heading("What is left");
     std::vector<std::string> items;

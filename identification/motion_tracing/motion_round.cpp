@@ -13,7 +13,9 @@ namespace snare::identification {
 
 namespace {
 
-constexpr std::size_t most_refits = 5;
+constexpr std::size_t most_refits = 5;  // of effects that come out within their physical range
+constexpr std::size_t most_tried =
+    15;  // with those that do not: what is missing may be hidden behind many that imitate it in part
 constexpr double promising = 0.3;     // of the best promise: what falls less is not refitted
 constexpr double least_fall = 1e-4;   // share of the misfit below which a refit has not moved
 constexpr int enough_iterations = 8;  // to compare effects; the one that is named is fitted to the end
@@ -144,9 +146,10 @@ RoundResult motion_round(const RoundInput& in) {
   std::vector<Refit> fits(candidates.size());
   const double present = bic(in.data, scores.noise, in.current);
   const double promise = candidates.front().score.fall;
-  for (std::size_t k = 0; k < std::min(candidates.size(), most_refits); ++k) {
+  std::size_t plausible = 0;
+  for (std::size_t k = 0; k < std::min(candidates.size(), most_tried) && plausible < most_refits; ++k) {
     MotionCandidate& c = candidates[k];
-    if (!significant(c) || c.score.fall < promising * promise) break;
+    if (!significant(c) || (plausible > 0 && c.score.fall < promising * promise)) break;
     if (in.model.stopped()) return result;
     const MotionFit& fit = fits[k].fit = refit(in, c.score);
     if (fit.residual.size() == 0 || fit.covariance.size() == 0) continue;
@@ -160,6 +163,7 @@ RoundResult motion_round(const RoundInput& in) {
     const MotionEffect& effect = in.effects[c.score.effect];
     c.plausible =
         c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
+    if (c.plausible) ++plausible;
     c.why_not = objection(in, c, fit);
   }
   // Refitted ones by their misfit, those that may be named first.

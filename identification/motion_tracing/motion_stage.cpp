@@ -9,6 +9,8 @@ namespace snare::identification {
 
 namespace {
 
+constexpr double median_of_normal = 0.674489750196082;  // of its size, over its standard deviation
+
 struct Sums {
   double squares = 0.0, measured = 0.0, count = 0.0;
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
@@ -59,17 +61,24 @@ double rmse_of(const MotionData& data, const Eigen::VectorXd& residual) {
 }  // namespace
 
 double reading_sigma(const RecordSet& set, const std::string& sensor) {
-  double sum = 0.0, count = 0.0;
+  std::vector<double> sizes;
+  double sum = 0.0;
   for (const MotionRecord& record : set.records) {
     for (const RecordChannel& c : record.channels) {
       if (c.sensor != sensor) continue;
       if (c.sigma) return *c.sigma;
       const Eigen::Index n = c.values.size();
-      sum += (c.values.head(n - 2) - 2.0 * c.values.segment(1, n - 2) + c.values.tail(n - 2)).squaredNorm() / 6.0;
-      count += static_cast<double>(n - 2);
+      const Eigen::VectorXd second = c.values.head(n - 2) - 2.0 * c.values.segment(1, n - 2) + c.values.tail(n - 2);
+      for (const double d : second) sizes.push_back(std::abs(d));
+      sum += second.squaredNorm();
     }
   }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  // A coarse encoder stands still most of the time: then the mean square.
+  const double of_one = *middle > 0.0 ? *middle / median_of_normal : std::sqrt(sum / static_cast<double>(sizes.size()));
+  return of_one / std::sqrt(6.0);
 }
 
 std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {

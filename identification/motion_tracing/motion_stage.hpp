@@ -10,8 +10,8 @@ namespace snare::identification {
 [[nodiscard]] MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
                                        const MotionFit* heldout, const MotionData& heldout_data);
 
-/// Standard deviation of one reading of a channel: declared; else of its white part, from second differences of the readings,
-/// sum (y_(i-1) - 2 y_i + y_(i+1))^2 / (6 n), which smooth motions hardly enter.
+/// Standard deviation of one reading of a channel, in its unit: declared; else of its white part, the median of |y_(i-1) - 2 y_i + y_(i+1)| over
+/// 0.674 sqrt(6), which smooth motions hardly enter and jumps, as of a drive that turns round, not at all. Where the median is zero, the mean square.
 [[nodiscard]] double reading_sigma(const RecordSet& set, const std::string& sensor);
 
 /// Numbers of a fit with their intervals.

@@ -4,6 +4,7 @@
 #include "identification/motion_tracing/leftover.hpp"
 #include "identification/motion_tracing/motion_score.hpp"
 #include "identification/records/motion_fit.hpp"
+#include "identification/records/profile.hpp"
 #include "identification/tracing/verdict.hpp"
 
 #include <functional>
@@ -80,6 +81,7 @@ struct MotionTrace {
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
   std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise
   std::vector<Leftover> leftovers;
+  std::vector<Profile> profiles;      ///< of the numbers for which they are asked, in the final model
   std::vector<std::string> warnings;  ///< what of this is doubtful, a sentence each
   std::string next_measurement;
   std::vector<std::string> next_separates;

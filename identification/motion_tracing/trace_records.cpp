@@ -52,6 +52,7 @@ class Tracer {
     trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
     if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
+    profile();
     warn();
     trace_.simulations = model_.simulations();
     trace_.interrupted = stop_;
@@ -67,6 +68,34 @@ class Tracer {
     return [this](int iteration, double chi2) {
       return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
     };
+  }
+  /// Profiles of the numbers for which they are asked, in the final model.
+  void profile() {
+    for (const FreeNumber& f : set_.free) {
+      for (std::size_t k = 0; f.profile && k < current_.settings.size(); ++k) {
+        const MotionNumber& number = current_.settings[k].number;
+        if (number.key != f.key && !(number.record && number.key.ends_with("." + f.key))) continue;
+        if (!go_on("profile of " + number.key)) return;
+        MotionFitOptions options;
+        options.progress = asked();
+        Profile found = profile_of(model_, data_, current_, k, options);
+        if (stop_) return;  // half a profile is none
+        trace_.profiles.push_back(std::move(found));
+      }
+    }
+    constexpr double worth_a_word = 0.1;  // of a deviate squared: no interval moves by a twentieth of its width
+    for (const Profile& p : trace_.profiles) {
+      if (p.lower_fall > worth_a_word)
+        trace_.warnings.push_back(
+            fmt::format("the profile of {} meets a sum of squares that is lower than that of the fit: begin from "
+                        "other values",
+                        p.key));
+      for (const bool upper : {false, true})
+        if ((upper ? p.upper : p.lower).end == ProfileEnd::open)
+          trace_.warnings.push_back(fmt::format("{} has no {} limit of 95 %: its profile stays below that to {:.4g} {}",
+                                                p.key, upper ? "upper" : "lower",
+                                                (upper ? p.points.back() : p.points.front()).value, p.unit));
+    }
   }
   /// Records that are too short, and numbers of the file that they do not show.
   void warn() {
@@ -286,10 +315,9 @@ class Tracer {
       break;
     }
     const std::size_t count = best->effects;
-    for (std::size_t k = count; k < trace_.selected.size() && k < trace_.rounds.size(); ++k) {
-      trace_.rounds[k].reason = "taken back: the records held out are not predicted better with it";
-      trace_.rounds[k].added.clear();
-    }
+    for (std::size_t k = count; k < trace_.selected.size(); ++k)
+      take_back(rounds_of_[k], "taken back: the records held out are not predicted better with it");
+    rounds_of_.resize(count);
     trace_.selected.resize(count);
     trace_.selected_effects.resize(count);
     if (count == 0) trace_.channel.clear();
@@ -300,6 +328,55 @@ class Tracer {
     trace_.significant = omnibus_ || count > 0;
     if (count > 0) judge();
     reached();
+  }
+
+  void take_back(std::size_t round, const std::string& reason) {
+    trace_.rounds[round].reason = reason;
+    trace_.rounds[round].added.clear();
+  }
+
+  /// Effects that were named before the last one and are no longer needed beside it: what imitated in part what was missing. Such an effect has
+  /// numbers that are null within their errors, and without it the misfit grows by less than log n times what chance takes a number.
+  bool drop_needless() {
+    bool dropped = false;
+    for (std::size_t e = 0; e + 1 < trace_.selected_effects.size() && !stop_;) {
+      const std::vector<MotionNumber>& numbers = trace_.effects[trace_.selected_effects[e]].numbers;
+      std::vector<MotionSetting> without;
+      bool null = true;
+      for (std::size_t k = 0; k < current_.settings.size(); ++k) {
+        const MotionSetting& s = current_.settings[k];
+        const bool own =
+            std::any_of(numbers.begin(), numbers.end(), [&](const MotionNumber& n) { return n.key == s.number.key; });
+        if (!own) {
+          without.push_back(s);
+          continue;
+        }
+        const auto i = static_cast<Eigen::Index>(k);
+        const double variance = i < current_.covariance.rows() ? current_.covariance(i, i) : 0.0;
+        null = null && std::abs(s.value - s.number.declared) <= 1.96 * std::sqrt(std::max(0.0, variance));
+      }
+      bool needless = false;
+      if (null) {
+        MotionFitOptions options;
+        options.progress = asked();
+        MotionFit fit = fit_motion(model_, data_, without, options);
+        const double rows = std::max(1.0, static_cast<double>(data_.rows));
+        const auto count = static_cast<double>(current_.settings.size() - without.size());
+        needless = fit.report.usable() && fit.chi2 - current_.chi2 <= count * std::log(rows) * current_.chi2 / rows;
+        if (needless) current_ = std::move(fit);
+      }
+      if (!needless) {
+        ++e;
+        continue;
+      }
+      take_back(rounds_of_[e], "taken back: not needed beside " + trace_.selected.back());
+      const auto at = static_cast<std::ptrdiff_t>(e);
+      trace_.selected.erase(trace_.selected.begin() + at);
+      trace_.selected_effects.erase(trace_.selected_effects.begin() + at);
+      rounds_of_.erase(rounds_of_.begin() + at);
+      dropped = true;
+    }
+    return dropped;
   }
 
   /// The next round begins at the sizes that were found to show, less as much as the residual has fallen.
@@ -343,7 +420,9 @@ class Tracer {
       current_ = std::move(round.better);
       trace_.selected.push_back(trace_.effects[*round.added].label());
       trace_.selected_effects.push_back(*round.added);
-      if (trace_.channel.empty()) trace_.channel = trace_.effects[*round.added].channel;
+      rounds_of_.push_back(trace_.rounds.size() - 1);
+      if (drop_needless()) kept.resize(1);  // the models along the way had what is dropped
+      trace_.channel = trace_.effects[trace_.selected_effects.front()].channel;
       trace_.final = stage(current_, {});
       judge();
       trace_.significant = true;
@@ -406,8 +485,9 @@ class Tracer {
   MotionData data_, heldout_data_;
   std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
   MotionFit current_;
-  Eigen::VectorXd heldout_residual_;  // of the last stage
-  bool omnibus_ = false;              // what the base leaves is more than noise, whatever the effects' own tests say
+  std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
+  Eigen::VectorXd heldout_residual_;    // of the last stage
+  bool omnibus_ = false;                // what the base leaves is more than noise, whatever the effects' own tests say
   MotionTrace trace_;
 };
 

@@ -129,7 +129,7 @@ void read_fit(const TomlTable& table, RecordSet& set) {
     const std::vector<std::string> free = table.texts_or_none(list);
     for (std::size_t k = 0; k < free.size(); ++k) {
       if (!keys.insert(free[k]).second) table.fail_element(list, k, "stands there already");
-      set.free.push_back({free[k], each, {}, {}, {}});
+      set.free.push_back({free[k], each, {}, {}, {}, false});
     }
   }
   for (const TomlTable& one : table.tables("numbers")) {
@@ -147,6 +147,15 @@ void read_fit(const TomlTable& table, RecordSet& set) {
     found->lower = lower;
     found->upper = upper;
     found->scale = scale;
+  }
+  const std::vector<std::string> profile = table.texts_or_none("profile");
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    const auto found =
+        std::find_if(set.free.begin(), set.free.end(), [&](const FreeNumber& f) { return f.key == profile[k]; });
+    if (found == set.free.end())
+      table.fail_element("profile", k, "must be one of fit.free or fit.free_each");
+    else
+      found->profile = true;
   }
   const std::vector<std::string> heldout = table.texts_or_none("heldout");
   for (std::size_t k = 0; k < heldout.size(); ++k) {

@@ -44,6 +44,7 @@ struct FreeNumber {
   std::string key;
   bool each = false;  ///< of every record for itself
   std::optional<double> lower, upper, scale;
+  bool profile = false;  ///< its profile likelihood is asked
 };
 
 enum class FitMethod { gauss_newton, nelder_mead };
