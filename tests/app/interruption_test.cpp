@@ -226,8 +226,8 @@ class AtAnyMoment : public Interruption, public testing::WithParamInterface<Long
 // The moments are drawn once for all: reading, the first work, later work.
 TEST_P(AtAnyMoment, IsAnsweredAndSaidToBeAPart) {
   std::mt19937 random(static_cast<unsigned>(std::hash<std::string>()(GetParam().name)));
-  for (const double latest : {0.4, 1.2, 3.0}) {
-    const double after = std::uniform_real_distribution(0.25, latest)(random);
+  for (const double latest : {0.8, 1.6, 3.0}) {
+    const double after = std::uniform_real_distribution(0.5, latest)(random);
     std::vector<std::string> arguments = GetParam().arguments;
     if (arguments.front() != "arm") arguments.insert(arguments.end(), {"--out", "here"});
     if (GetParam().json) arguments.emplace_back("--json");
