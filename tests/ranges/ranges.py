@@ -9,8 +9,9 @@ with what is allowed. Each key gets its ends, the numbers just beyond them, zero
 and infinities (of elements of a list the first only). Then a covering array of strength two: every two ends of every two keys of a
 file stand together in at least one case, ROW keys a case, the others as in the file. Every case must end by itself within 60 s of the
 processor with status 0, 2 or 3, say why where it is not 0, write no number that is none, and leave no half file and no lock. Where a key
-asks for work (a million points or outputs, 20,000 elements, of a push also a tolerance of 1e-100) it may take longer: after 15 s it is
-told to end and must do so, with status 3: "long". Motions have no other exception: one that gets nowhere gives up by itself.
+asks for work (a million points or outputs, 20,000 elements, of a push also a tolerance of 1e-100, a motion that is never to be given up) it
+may take longer: after 15 s it is told to end and must do so, with status 3: "long". Motions have no other exception: one that gets nowhere
+gives up by itself.
 `--part 3 15` runs every fifteenth case from the third on. With `--journal` every case that has ended stands in FILE, a line each, and is not
 run again. `--from` runs the cases of a file, a line of JSON each as a journal has them ([[BASE, [KEY=VALUE, ...]], ...]), and no others:
 long.jsonl has those that ever took long. `--time` is the limit in place of 60 s, then of every case, whatever it asks for. Prints what fails and a count; appends the count as a line of JSON to the results; exits 1 where a case fails.
@@ -36,9 +37,9 @@ WORK_LIMIT = 15.0  # [s]
 ANSWER = 15.0  # [s]; a second, or to the end of results that are being written, and what a loaded machine adds
 ROW = 6
 WORK = re.compile(r"points|elements|knots|interval|duration|tolerance|max_step|max_order|modes|speeds|travels|window|cases|pulses|every_s|"
-                  r"rate_Hz")
+                  r"rate_Hz|least_advance")
 STIFF = re.compile(r"bending_stiffness|extra_stiffness")  # of a wire in motion: its waves are followed
-ASKED = re.compile(r"elements|points|interval|duration|pulses|every_s|rate_Hz")  # work that a motion cannot give up
+ASKED = re.compile(r"elements|points|interval|duration|pulses|every_s|rate_Hz|least_advance")  # work that a motion cannot give up, or must not: 0
 NUMBER = re.compile(r"(?<![A-Za-z_])[-+]?(nan|inf(inity)?)(?![A-Za-z_])", re.I)
 
 # What is run, made small: the file, the verb, what else is set.
