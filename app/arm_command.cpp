@@ -168,7 +168,6 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
   }
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const Eigen::VectorXd angles = angles_of(pose, arm);
-  const KeepWhenInterrupted word({}, options.json ? "snare-arm-show/1" : "");
   console.progress(fmt::format("natural frequencies of {} joints", arm.arm.motors()));
   const nlohmann::json result = describe(arm, angles);
   console.end_progress();

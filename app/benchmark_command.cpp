@@ -52,7 +52,9 @@ ExitStatus make_archive(const study::BenchmarkFile& benchmark, Console& console,
     const CaseEnd end = archive_case(benchmark, c, watch);
     console.end_progress();
     if (end.status != CaseEnd::Status::done) {
-      console.complain(fmt::format("{}: {}; its archive is as before", c.name, end.reason));
+      const bool stopped = end.status == CaseEnd::Status::stopped;
+      console.complain(
+          fmt::format("{}: {}; its archive is as before", c.name, stopped ? "interrupted" : end.reason.c_str()));
       return end.status == CaseEnd::Status::refused ? ExitStatus::wrong_input : ExitStatus::solver_stopped;
     }
     console.say(fmt::format("wrote {}.csv, .json", (benchmark.references / c.name).string()));

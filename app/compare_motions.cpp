@@ -25,8 +25,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string page_of(const std::string& title, const std::string& subtitle, const json& models) {
+std::string page_of(const std::string& title, const std::string& subtitle, const json& models, bool interrupted) {
   ReportPage page(title, subtitle);
+  page.doubts({}, interrupted);
   page.heading("Wire models beside the full wire");
   Table table{"", {"Model"_code, "Steps"_number, "Wall time [s]"_number, "Real-time factor"_number, "Caught"_text}, {}};
   for (const json& m : models) {
@@ -58,7 +59,6 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
   const scenario::WireMotions& motions = composed_motions(file, asked);
   const ResultFolder folder(options, {"compare.json", "report.html", "checkpoint.bin"});
-  const KeepWhenInterrupted word({}, options.json ? "snare-comparison/1" : "");
   const MotionComparison comparison = with_every_model(file, overrides_of(options), motions);
   const std::vector<MotionRecord> records = run_motions(
       comparison.motions.runs,
@@ -66,8 +66,10 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
   begin_writing();
   const json compared = comparison_json(asked, comparison, records);
   const json& models = compared["models"];
+  const bool partial = compared["interrupted"].get<bool>();
+  base::write_text(options.out / "report.html", page_of(asked.title, asked.source, models, partial));
   write_result(options, "compare.json", compared);
-  base::write_text(options.out / "report.html", page_of(asked.title, asked.source, models));
+  if (partial) console.complain("interrupted: the results are a part of what was asked for");
   if (!options.json) {
     for (const json& m : models)
       console.say(fmt::format("{:<14} {} steps, {:.3g} s, {:.3g} times real time", m["model"].get<std::string>(),

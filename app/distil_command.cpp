@@ -80,7 +80,7 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
         if (!journalled) return "what was finished is not kept: the journal could not be written";
         return fmt::format("the curves that were finished are kept in {}; the same command goes on", journal.string());
       },
-      options.json ? "snare-law/1" : "");
+      std::nullopt);
   const reduction::Distillation result = reduction::distil(
       wire, journal,
       [&](std::size_t finished, std::size_t wanted) {

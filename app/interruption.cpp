@@ -98,11 +98,11 @@ void set_stage(const std::string& stage) {
   work().stage = stage;
 }
 
-KeepWhenInterrupted::KeepWhenInterrupted(std::function<std::string()> keep, std::string json_schema) {
+KeepWhenInterrupted::KeepWhenInterrupted(std::function<std::string()> keep, std::optional<std::string> json_schema) {
   const std::scoped_lock lock(work().mutex);
   keep_before_ = std::exchange(work().keep, std::move(keep));
   schema_before_ = work().json_schema;
-  if (!json_schema.empty()) work().json_schema = std::move(json_schema);
+  if (json_schema) work().json_schema = *std::move(json_schema);
 }
 
 KeepWhenInterrupted::~KeepWhenInterrupted() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace snare::app {
@@ -28,8 +29,8 @@ class KeepWhenInterrupted {
  public:
   /// `keep` writes what is finished at any time and says what that is, as a sentence; it is called from another thread while the
   /// work goes on, so what it reads must be guarded against it. Empty: nothing is kept. `json_schema`: under which standard output
-  /// gets the word that all was interrupted; empty: as before, at first it gets nothing.
-  KeepWhenInterrupted(std::function<std::string()> keep, std::string json_schema);
+  /// gets the word that all was interrupted; empty: it gets none, or what `keep` writes; nothing: as before, at first none.
+  KeepWhenInterrupted(std::function<std::string()> keep, std::optional<std::string> json_schema);
   ~KeepWhenInterrupted();
   KeepWhenInterrupted(const KeepWhenInterrupted&) = delete;
   KeepWhenInterrupted& operator=(const KeepWhenInterrupted&) = delete;

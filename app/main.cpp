@@ -53,45 +53,52 @@ struct Verb {
   bool needed;           ///< the file may not be left out
   const char* example;
   ExitStatus (*run)(const std::filesystem::path& file, const CommonOptions& options, Console& console);
+  const char* schema;  ///< of its result
 };
 
 const Verb verbs[] = {
     {"reproduce", "the published static wire tests beside the computed curves", "EXPERIMENT.toml",
      "experiment file; the published tests when left out", false,
-     "snare reproduce --out out/reproduce --set series[s40].law.to_mm=5", snare::app::run_reproduce},
+     "snare reproduce --out out/reproduce --set series[s40].law.to_mm=5", snare::app::run_reproduce,
+     "snare-reproduce/1"},
     {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml", "experiment file", true,
-     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2",
-     snare::app::run_push},
+     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2", snare::app::run_push,
+     "snare-push/1"},
     {"fit", "calibrate the declared model's free numbers", "FILE.toml", "experiment file, or records in time", true,
-     "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit},
+     "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit, "snare-fit/1"},
     {"trace", "find the effect that the declared model lacks", "FILE.toml", "experiment file, or records in time", true,
-     "snare trace data/experiments/published_static.toml --out out/trace", snare::app::run_trace},
+     "snare trace data/experiments/published_static.toml --out out/trace", snare::app::run_trace, "snare-trace/1"},
     {"distil", "reduced spring laws and stiffness tables with their error bounds", "WIRE.toml", "wire file", true,
-     "snare distil data/wires/traced_published.toml --out out/distil", snare::app::run_distil},
+     "snare distil data/wires/traced_published.toml --out out/distil", snare::app::run_distil, "snare-law/1"},
     {"compare", "the same case with every wire model: accuracy and cost side by side", "SCENARIO.toml",
      "experiment, wire or scenario file", true,
-     "snare compare data/experiments/published_static.toml --out out/compare", snare::app::run_compare},
+     "snare compare data/experiments/published_static.toml --out out/compare", snare::app::run_compare,
+     "snare-comparison/1"},
     {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml",
      "scenario file", true, "snare simulate data/scenarios/air_table.toml --out out/air_table",
-     snare::app::run_simulate},
+     snare::app::run_simulate, "snare-summary/1"},
     {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,
-     "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown},
+     "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown,
+     "snare-ringdown-result/1"},
     {"sweep", "many cases of a file at once; goes on where it was killed", "SWEEP.toml", "sweep file", true,
-     "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep},
+     "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep, "snare-sweep-summary/1"},
     {"benchmark", "wire models, and anybody's history, scored on frozen cases with archived histories",
      "BENCHMARK.toml", "benchmark file; the shipped ring when left out", false,
-     "snare benchmark --case impact_middle --against theirs.csv", snare::app::run_benchmark},
+     "snare benchmark --case impact_middle --against theirs.csv", snare::app::run_benchmark,
+     "snare-benchmark-result/1"},
     {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
        return snare::app::run_validate(options, console);
-     }},
+     },
+     "snare-validation/1"},
 };
 
-/// Runs one verb; what it throws becomes a message and an exit status.
+/// Runs one verb, whose result has a schema; what it throws becomes a message and an exit status.
 template <typename Run>
-ExitStatus guarded(const CommonOptions& options, const Run& run) {
+ExitStatus guarded(const CommonOptions& options, const char* schema, const Run& run) {
   Console console(options.quiet);
+  const snare::app::KeepWhenInterrupted word({}, options.json ? schema : "");
   if (options.threads > 0) snare::base::set_thread_count(options.threads);
   try {
     return run(console);
@@ -211,16 +218,16 @@ int run(int argc, char** argv) {
 
   ExitStatus status = ExitStatus::failure;
   if (arm_show->parsed()) {
-    status =
-        guarded(arm_options, [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
+    status = guarded(arm_options, "snare-arm-show/1",
+                     [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
   if (new_files->parsed())
-    status = guarded(new_options, [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
+    status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     Parsed& p = parsed[k];
     p.options.command = std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + p.file.string());
     if (p.command->parsed())
-      status = guarded(p.options, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
+      status = guarded(p.options, verbs[k].schema, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
   return static_cast<int>(status);
 }

@@ -135,7 +135,7 @@ class Runs {
 std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions, const CheckpointPolicy& policy,
                                       Console& console) {
   Runs runs(motions, policy, console);
-  const KeepWhenInterrupted keeping([&runs] { return runs.keep(); }, "");
+  const KeepWhenInterrupted keeping([&runs] { return runs.keep(); }, std::nullopt);
   return runs.all();
 }
 

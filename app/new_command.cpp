@@ -64,9 +64,16 @@ ExitStatus run_new(const std::string& what, const CommonOptions& options, Consol
                           "must be a folder without that file: nothing was written"});
   }
   if (!problems.empty()) throw base::InputError(problems);
-  for (const auto& [path, text] : files) {
-    fs::create_directories(path.parent_path());
-    base::write_text(path, text);
+  std::vector<fs::path> written;
+  try {
+    for (const auto& [path, text] : files) {
+      base::write_text(path, text);
+      written.push_back(path);
+    }
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& path : written) fs::remove(path, ignored);
+    throw;
   }
   for (const auto& [path, text] : files) console.say(path.string());
   console.say(fmt::format("next: snare {} {} --out {}", set->verb, files.front().first.string(),

@@ -17,7 +17,6 @@ using namespace results;
 ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "report.html"});
-  const KeepWhenInterrupted keeping({}, options.json ? "snare-push/1" : "");
 
   const PushResult pushed =
       push(experiment, {[&console](const std::string& stage) { console.progress(stage); }, interrupted});

@@ -317,7 +317,10 @@ class Finished {
   /// Writes it; says what it was.
   std::string keep() {
     const std::scoped_lock lock(mutex_);
-    if (!result_) return "nothing was finished, nothing is kept";
+    if (!result_) {
+      if (options_.json) print(nlohmann::json{{"schema", "snare-reproduce/1"}, {"interrupted", true}}.dump(1) + "\n");
+      return "nothing was finished, nothing is kept";
+    }
     write_files(options_, *result_);
     return partial_words(*result_);
   }

@@ -64,7 +64,6 @@ json damping_json(const DampingSplit& split) {
 ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& options, Console& console) {
   const RingDownFile file = identification::read_ring_down_file(path, overrides_of(options));
   const ResultFolder folder(options, {"ringdown.json", "ringdown.csv", "report.html"});
-  const KeepWhenInterrupted keeping({}, options.json ? "snare-ringdown-result/1" : "");
   std::vector<RingDownFit> fits;
   ExitStatus status = ExitStatus::done;
   json result{{"schema", "snare-ringdown-result/1"},

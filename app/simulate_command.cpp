@@ -98,7 +98,9 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& 
   write_results(options, summary, arm_page(asked, motion, record, version()));
   if (summary["interrupted"].get<bool>()) console.complain("interrupted: the results are a part of what was asked for");
   if (!history.report.usable()) {
-    console.complain(history.report.message + " (what was reached is kept)");
+    const bool stalled = history.report.termination == numerics::Termination::stalled;
+    console.complain(fmt::format("{} (what was reached is kept{})", history.report.message,
+                                 stalled ? "; a smaller solver.least_advance_s gives it more" : ""));
     return ExitStatus::solver_stopped;
   }
   if (!options.json) {
@@ -115,7 +117,6 @@ ExitStatus simulate(const scenario::Scenario& asked, const scenario::ArmMotion& 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
   const ResultFolder folder(options, {"history.csv", "telemetry.csv", "summary.json", "report.html", "checkpoint.bin"});
-  const KeepWhenInterrupted word({}, options.json ? "snare-summary/1" : "");
   return std::visit([&](const auto& content) { return simulate(asked, content, options, console); }, asked.content);
 }
 

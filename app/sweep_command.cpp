@@ -115,7 +115,7 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
         return fmt::format("{} finished cases are kept in {}; the same command goes on", journal->finished(),
                            file.string());
       },
-      options.json ? "snare-sweep-summary/1" : "");
+      std::nullopt);
 
   const SweepWorkers workers{threads, threads * ranks, leader,
                              [&](std::uint64_t index, const std::vector<double>& values) -> std::shared_ptr<void> {
@@ -173,6 +173,8 @@ ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& opt
       if (ranks != nullptr && orderly) ranks->leave();
     }
   } leaving(ranks.get());
+  std::optional<KeepWhenInterrupted> silent;  // one of them speaks
+  if (rank > 0) silent.emplace(nullptr, "");
   std::optional<SweepStudy> study;
   try {
     study.emplace(file, overrides_of(options));

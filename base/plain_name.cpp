@@ -21,15 +21,18 @@ bool is_letter_or_digit(char c) {
 
 void require_plain_name(const TomlTable& table, std::string_view key, std::string_view name) {
   constexpr std::size_t longest = 64;
-  const std::size_t scope = name.rfind("::");
-  const std::string_view own = scope == std::string_view::npos ? name : name.substr(scope + 2);
   const auto fits = [](char c) { return is_letter_or_digit(c) || others.find(c) != std::string_view::npos; };
-  if (own.empty() ||
-      (own.size() <= longest && std::all_of(own.begin(), own.end(), fits) && is_letter_or_digit(own.front())))
+  if (name.empty() && !table.has(key)) return;
+  if (!name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), fits) &&
+      is_letter_or_digit(name.front()))
     return;
   table.fail(key,
              fmt::format("must be 1 to {} letters, digits, spaces or \"_-.+()\", the first a letter, a digit or '_'",
                          longest));
+}
+
+bool names_a_column(std::string_view text) {
+  return !text.empty() && text.find_first_of(",\"\n\r#") == std::string_view::npos;
 }
 
 }  // namespace snare::base

@@ -59,6 +59,12 @@ std::string identity_of(const BenchmarkCase& c) {
   return fmt::format("{:016x}", base::fingerprint(all));
 }
 
+/// Of an archived history, byte by byte: what is said about it belongs to this one and to no other.
+std::string fingerprint_of(const std::filesystem::path& history) {
+  constexpr std::size_t longest = std::size_t{1} << 30u;  // [byte]
+  return fmt::format("{:016x}", base::fingerprint(base::read_text(history, longest)));
+}
+
 /// The numbers of a column of a history; none where it has no such column.
 const std::vector<double>& numbers_of(const History& history, const std::string& column) {
   static const std::vector<double> none;
@@ -254,6 +260,8 @@ BenchmarkReference read_reference(const BenchmarkFile& benchmark, const Benchmar
     const json j = json::parse(base::read_text(about, std::size_t{1} << 20u));
     if (j.at("schema") != reference_schema)
       throw std::runtime_error(fmt::format("schema must be {}", reference_schema));
+    if (j.at("history") != fingerprint_of(csv))
+      throw std::runtime_error(fmt::format("{} has been changed since", csv.filename().string()));
     for (const auto& [name, column] : c.columns) reference.bars[name] = score_of_json(j.at("bars").at(name));
     for (const study::Collected& field : c.outcome) reference.outcome[field.name] = j.at("outcome").at(field.name);
     reference.stale = j.at("identity") != identity_of(c);
@@ -277,14 +285,14 @@ CaseEnd archive_case(const BenchmarkFile& benchmark, const BenchmarkCase& c, con
     apart.push_back(scores_json(scores_of(c, runs[k].tracks, finest.tracks)));
   json seconds = json::array();
   for (const ModelRun& one : runs) seconds.push_back(one.seconds);
-  const json about{{"schema", reference_schema}, {"case", c.name},           {"identity", identity_of(c)},
-                   {"version", version()},       {"bars", apart.back()},     {"refinements", apart},
-                   {"wall_s", seconds},          {"outcome", finest.outcome}};
+  json about{{"schema", reference_schema}, {"case", c.name},           {"identity", identity_of(c)},
+             {"version", version()},       {"bars", apart.back()},     {"refinements", apart},
+             {"wall_s", seconds},          {"outcome", finest.outcome}};
   std::filesystem::create_directories(benchmark.references);
   std::vector<std::string> names{c.x};
   for (const auto& [name, track] : finest.tracks) names.push_back(name);
-  base::CsvWriter csv(benchmark.references / (c.name + ".csv"), names,
-                      {c.title + "; made by snare benchmark --archive"});
+  const std::filesystem::path file = benchmark.references / (c.name + ".csv");
+  base::CsvWriter csv(file, names, {c.title + "; made by snare benchmark --archive"});
   const study::Track& first = finest.tracks.begin()->second;
   for (std::size_t i = 0; i < first.x.size(); ++i) {
     std::vector<base::CsvCell> cells{first.x[i]};
@@ -292,6 +300,7 @@ CaseEnd archive_case(const BenchmarkFile& benchmark, const BenchmarkCase& c, con
     csv.row(cells);
   }
   csv.commit();
+  about["history"] = fingerprint_of(file);
   base::write_text(benchmark.references / (c.name + ".json"), about.dump(1) + "\n");
   return {};
 }

@@ -70,7 +70,7 @@ CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& m
 CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const Stop& stop, json& result,
                  TableSink* history) {
   multibody::ArmScenario arm = motion.scenario;
-  arm.progress = [&](double) { return !stop(); };
+  arm.stop = stop;
   ArmRecord record;
   record.history = multibody::simulate(arm);
   if (motion.joint >= 0) record.swings = scenario::swings(record.history, arm.arm, motion.joint);

@@ -29,8 +29,8 @@ ArmRecord simulate_arm(const scenario::ArmMotion& motion, const Watch& watch) {
   multibody::ArmScenario scenario = motion.scenario;
   scenario.progress = [&watch, end = scenario.end](double time) {
     watch.say(fmt::format("{:.2f} of {:.2f} s", time, end));
-    return !watch.stopped();
   };
+  scenario.stop = watch.stop;
   ArmRecord record;
   const auto begin = std::chrono::steady_clock::now();
   record.history = multibody::simulate(scenario);

@@ -108,6 +108,7 @@ ArmMotion read_arm_motion(TomlDocument& document, const std::filesystem::path& f
   const TomlTable solver = root.table("solver");
   const double tolerance = solver.number_or("relative_tolerance", 1e-6, Range::from(1e-12, 1e-2));
   const double motion_tolerance = solver.number_or("motion_tolerance", 1e-8, Range::above(0.0, 1e-3));
+  const double least = read_least_advance(solver);
   const std::optional<multibody::ArmDescription> arm = read_arm_beside(document, folder);
   if (!arm) finish_without(document, "arm");  // the other keys depend on it
   const Eigen::VectorXd angles = read_pose(root, "pose", "angles_deg", *arm);
@@ -116,6 +117,7 @@ ArmMotion read_arm_motion(TomlDocument& document, const std::filesystem::path& f
                                                 : read_joint_motion;
   ArmMotion motion = read(document, *arm, angles, duration);
   motion.scenario.sample = interval;
+  motion.scenario.least_advance = least;
   motion.scenario.ida.relative_tolerance = tolerance;
   motion.scenario.tolerances.coordinate = motion.scenario.tolerances.rate = motion_tolerance;
   return motion;

@@ -65,6 +65,10 @@ void check_output_interval(const TomlTable& root, double duration, double interv
     root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
 }
 
+double read_least_advance(const TomlTable& solver) {
+  return solver.number_or("least_advance_s", least_advance, Range::from(0.0, 1e6));
+}
+
 void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   o.duration = root.number("duration_s", durations);
   o.output_interval = root.number_or("output_interval_s", 1e-3, durations);
@@ -82,7 +86,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   if (solver.has("max_order")) o.max_order = solver.integer("max_order", 1, 5);
   o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
-  o.least_advance = solver.number_or("least_advance_s", least_advance, Range::from(0.0, 1e6));
+  o.least_advance = read_least_advance(solver);
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
 }
 

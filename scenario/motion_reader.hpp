@@ -57,6 +57,9 @@ struct MotionOutput {
 /// Simulated time between two checkpoints where nobody asks for another: a tenth of a duration, at most a second [s].
 [[nodiscard]] double default_checkpoint_interval(double duration);
 
+/// `least_advance_s` of a table `[solver]` [s].
+[[nodiscard]] double read_least_advance(const base::TomlTable& solver);
+
 /// `duration_s`, `output_interval_s` and the tolerances of `[solver]`.
 void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& options);
 

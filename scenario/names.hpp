@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace snare::scenario {
@@ -25,7 +26,7 @@ class Names {
     if (name.find("::", own) != std::string::npos)
       table.fail("name", "must not have \"::\", which parts names of what belongs together");
     else
-      base::require_plain_name(table, "name", name);
+      base::require_plain_name(table, "name", std::string_view(name).substr(own));
     if (!add(name)) table.fail("name", fmt::format("is taken by another {}", what_));
     return name;
   }

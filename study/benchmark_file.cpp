@@ -1,6 +1,7 @@
 #include "study/benchmark_file.hpp"
 
 #include "base/files.hpp"
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "study/fixed_keys.hpp"
 
@@ -50,8 +51,8 @@ class Reader {
     const auto plain = [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     };
-    if (name.empty()) return name;
-    if (!std::ranges::all_of(name, plain)) table.fail("name", "must be of letters, digits and _");
+    if (name.empty() && !table.has("name")) return name;
+    if (name.empty() || !std::ranges::all_of(name, plain)) table.fail("name", "must be of letters, digits and _");
     if (!taken.insert(name).second) table.fail("name", "must not be that of another one");
     return name;
   }
@@ -61,7 +62,11 @@ class Reader {
     const TomlTable table = owner.table(key);
     const TomlNode* node = parent->find(key);
     if (node == nullptr || node->kind != TomlNode::Kind::table) return columns;
-    for (const base::TomlEntry& entry : node->entries) columns[entry.key] = table.text(entry.key);
+    for (const base::TomlEntry& entry : node->entries) {
+      columns[entry.key] = table.text(entry.key);
+      if (!base::names_a_column(entry.key))
+        table.fail(entry.key, "must be a name without commas, quotes, number signs and line breaks");
+    }
     return columns;
   }
 
@@ -73,6 +78,7 @@ class Reader {
     c.fixed = read_fixed_keys(table, node, "set");
     c.x = table.text_or("x", "time_s");
     c.columns = read_columns(table, node, "quantities");
+    if (c.columns.contains(c.x)) table.table("quantities").fail(c.x, "must be another name than that of x");
     if (c.columns.empty()) table.fail("quantities", "must be one or more: a name = \"the column of the history\"");
     const TomlTable touches = table.table("touch_above");
     for (const auto& [name, column] : c.columns)

@@ -161,7 +161,7 @@ void Journal::append(std::uint64_t index, std::string_view result) {
   note(index, offset);
   if (now() - flushed_ < flush_every) return;
   flushed_ = now();
-  ::fdatasync(descriptor_);
+  sync();
 }
 
 void Journal::append_at_the_end(std::uint64_t index, std::string_view result) noexcept {
@@ -183,6 +183,11 @@ void Journal::append_at_the_end(std::uint64_t index, std::string_view result) no
 
 void Journal::flush() {
   const std::scoped_lock lock(mutex_);
+  sync();
+}
+
+// What the system could not write it says once: who looks only at the end is told that all is well.
+void Journal::sync() {
   if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
     throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
 }

@@ -48,6 +48,7 @@ class Journal {
   void load(const std::string& identity);
   void note(std::uint64_t index, std::uint64_t offset);
   void write(std::string_view text);
+  void sync();
   [[nodiscard]] int try_write(std::string_view text) noexcept;
 
   std::filesystem::path file_;

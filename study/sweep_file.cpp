@@ -3,6 +3,7 @@
 #include "base/archive.hpp"
 #include "base/csv.hpp"
 #include "base/files.hpp"
+#include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
 #include "study/fixed_keys.hpp"
 #include "study/trace_numbers.hpp"
@@ -102,8 +103,9 @@ class Reader {
       Draft d{tables[k], &list->items[k], {}, {}, {}, {}, false, {}};
       read_keys(d, keys);
       d.variable.name = d.table.text_or("name", d.variable.keys.front());
-      if (d.variable.name.find_first_of(",\"\n\r#") != std::string::npos)
-        d.table.fail("name", "must have no commas, quotes, number signs or line breaks: it names a column");
+      if ((d.table.has("name") || !d.variable.name.empty()) && !base::names_a_column(d.variable.name))
+        d.table.fail("name",
+                     "must be a name without commas, quotes, number signs and line breaks: it is that of a column");
       if (!names.insert(d.variable.name).second) d.table.fail("name", "must not be used twice");
       read_source(d);
       drafts_.push_back(std::move(d));
@@ -358,7 +360,7 @@ class Reader {
                    "and with nothing else one of min, max, sum, mean, count before it");
         continue;
       }
-      if (!names.insert(entry.key).second || entry.key.find_first_of(",\"\n\r#") != std::string::npos)
+      if (!names.insert(entry.key).second || !base::names_a_column(entry.key))
         table.fail(entry.key, "must be a name that no other column has, without commas, quotes and number signs");
       for (const char* timed : {"wall_s", "real_time_factor", "seconds"}) {
         if (std::ranges::any_of(field->path, [&](const auto& step) { return step.key == timed; }))

@@ -297,6 +297,7 @@ std::string arm_page(const scenario::Scenario& asked, const scenario::ArmMotion&
                      const std::string& version) {
   const multibody::ArmHistory& history = record.history;
   ReportPage page(asked.title, asked.source);
+  page.doubts({}, history.report.termination == numerics::Termination::interrupted);
   page.heading("Summary");
   if (!history.report.usable()) page.callout(history.report.message, Tone::bad);
   page.key_figures(

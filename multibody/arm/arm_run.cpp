@@ -1,6 +1,7 @@
 #include "multibody/arm/arm_run.hpp"
 
 #include "multibody/arm/arm_stepper.hpp"
+#include "numerics/progress.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,9 @@ class Run {
         ida_(system_, cautious(scenario.ida)),
         y_(Eigen::VectorXd::Zero(system_.size())),
         rate_(Eigen::VectorXd::Zero(system_.size())),
-        stepper_(part_, scenario.switches) {}
+        stepper_(part_, scenario.switches),
+        progress_(scenario.least_advance),
+        effort_{0, scenario.begin} {}
 
   ArmHistory run() {
     part_.write_state(scenario_.initial, y_);
@@ -76,23 +79,25 @@ class Run {
   /// To a time, or to the switch that a torque sets off; false where the run ends early.
   bool until(double limit) {
     for (;;) {
+      const long evaluated = ida_.statistics().residuals;
       const numerics::IdaAdvance done = ida_.advance(limit);
       if (done == numerics::IdaAdvance::failed) {
         history_.report = ida_.report();
         return false;
       }
-      if (!keep_samples()) return false;
+      keep_samples();
+      if (scenario_.stop && scenario_.stop())
+        return end_early(numerics::Termination::interrupted, "stopped on request");
+      const long evaluations = ida_.statistics().residuals - evaluated;
+      if (const auto stalled = progress_.add(ida_, evaluations, scenario_.end, effort_))
+        return end_early(numerics::Termination::stalled, *stalled);
       if (done == numerics::IdaAdvance::reached_limit) return true;
       const std::vector<int> ended_modes =
           stepper_.ended_modes({ida_.time(), ida_.y(), ida_.rate()}, ida_.events_found());
       if (stepper_.torque_reached()) return true;
       if (ended_modes.empty()) continue;
-      if (const auto stuck = stepper_.crowding(ended_modes, ida_.time())) {
-        history_.report.termination = numerics::Termination::step_too_small;
-        history_.report.time = ida_.time();
-        history_.report.message = *stuck;
-        return false;
-      }
+      if (const auto stuck = stepper_.crowding(ended_modes, ida_.time()))
+        return end_early(numerics::Termination::step_too_small, *stuck);
       y_ = ida_.y();
       for (const int event : ended_modes) {
         history_.events.push_back({ida_.time(), ElasticArmPart::joint_of_event(event), name_of_event(event)});
@@ -102,19 +107,20 @@ class Run {
     }
   }
 
-  bool keep_samples() {
+  /// Ends where the integrator stands, for a reason that is not its own; false.
+  bool end_early(numerics::Termination termination, const std::string& why) {
+    history_.report.termination = termination;
+    history_.report.time = ida_.time();
+    history_.report.message = why;
+    return false;
+  }
+
+  void keep_samples() {
     while (next_sample_ <= ida_.time() && next_sample_ <= scenario_.end) {
       keep(next_sample_, ida_.interpolate(next_sample_));
-      const double time = next_sample_;
+      if (scenario_.progress) scenario_.progress(next_sample_);
       next_sample_ = scenario_.begin + scenario_.sample * static_cast<double>(history_.samples.size());
-      if (scenario_.progress && !scenario_.progress(time)) {
-        history_.report.termination = numerics::Termination::interrupted;
-        history_.report.message = "stopped on request";
-        history_.report.time = time;
-        return false;
-      }
     }
-    return true;
   }
 
   void keep(double time, const Eigen::VectorXd& y) {
@@ -157,6 +163,8 @@ class Run {
   Eigen::VectorXd y_, rate_;
   ArmHistory history_;
   ArmStepper stepper_;
+  numerics::Progress progress_;
+  numerics::Effort effort_;
   double next_sample_ = 0.0;
 };
 

@@ -21,8 +21,9 @@ struct ArmScenario {
   double sample = 0.01;           ///< interval of the history [s], > 0
   numerics::IdaOptions ida;
   ArmTolerances tolerances;
-  /// Told every sample's time; false: stop.
-  std::function<bool(double)> progress;
+  double least_advance = 0.0;            ///< what a window of work must bring [s], >= 0; 0: nothing.   theory.md (M.30)
+  std::function<void(double)> progress;  ///< told every sample's time [s]
+  std::function<bool()> stop;            ///< asked after every step; true: stop here
 };
 
 /// One line of the history.

@@ -356,9 +356,9 @@ TEST(TomlReader, PlainNames) {
       return error.problems().front().message();
     }
   };
-  for (const char* good : {"a", "pin on snare::wire_1", "ball joint", "_x", "8.9 kg (slow)", "L\xc3\xa4ngs"})
+  for (const char* good : {"a", "ball joint", "_x", "8.9 kg (slow)", "L\xc3\xa4ngs"})
     EXPECT_EQ(problems(good), "") << good;
-  for (const char* bad : {"<b>", "a&b", "../x", "a/b", "a\\b", "a,b", "a[b]", "-a", " a", "a\tb", "a\"b", "a::<i>"})
+  for (const char* bad : {"<b>", "a&b", "../x", "a/b", "a\\b", "a,b", "a[b]", "-a", " a", "a\tb", "a\"b", "a::b", ""})
     EXPECT_THAT(problems(bad), testing::HasSubstr("must be 1 to 64 letters")) << bad;
   EXPECT_NE(problems(std::string(65, 'a')), "");
 }

@@ -1,7 +1,9 @@
-// Preloaded into the command: one call of the system fails, once. SNARE_FAIL_CALL names it, SNARE_FAIL_AT counts it from 1.
-// Standard streams are left alone.
+// Preloaded into the command: one call of the system fails, once. SNARE_FAIL_CALL names it, SNARE_FAIL_AT counts it from 1; when it
+// fails the file SNARE_FAIL_NOTE is made. Standard streams and files that are read are left alone.
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -19,12 +21,19 @@ bool fails(const char* call) {
   static const char* const at = std::getenv("SNARE_FAIL_AT");
   if (wanted == nullptr || at == nullptr || std::strcmp(wanted, call) != 0) return false;
   if (++count != std::atol(at)) return false;
+  if (const char* const note = std::getenv("SNARE_FAIL_NOTE")) ::close(::open(note, O_WRONLY | O_CREAT, 0600));
   errno = ENOSPC;
   return true;
 }
 
 bool is_file(std::FILE* stream) {
-  return stream != nullptr && ::fileno(stream) > STDERR_FILENO;
+  const int descriptor = stream != nullptr ? ::fileno(stream) : -1;
+  return descriptor > STDERR_FILENO && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+}
+
+bool is_regular(int descriptor) {
+  struct stat status {};
+  return descriptor > STDERR_FILENO && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
 template <class Function>
@@ -55,9 +64,39 @@ int fclose(std::FILE* stream) {
   return EOF;
 }
 
+std::FILE* fopen(const char* path, const char* mode) {
+  static auto* const original = next<std::FILE*(const char*, const char*)>("fopen");
+  return std::strpbrk(mode, "wa+") != nullptr && fails("fopen") ? nullptr : original(path, mode);
+}
+
 int fsync(int descriptor) {
   static auto* const original = next<int(int)>("fsync");
   return fails("fsync") ? -1 : original(descriptor);
+}
+
+int fdatasync(int descriptor) {
+  static auto* const original = next<int(int)>("fdatasync");
+  return fails("fdatasync") ? -1 : original(descriptor);
+}
+
+int ftruncate(int descriptor, off_t size) {
+  static auto* const original = next<int(int, off_t)>("ftruncate");
+  return fails("ftruncate") ? -1 : original(descriptor, size);
+}
+
+ssize_t write(int descriptor, const void* from, std::size_t size) {
+  static auto* const original = next<ssize_t(int, const void*, std::size_t)>("write");
+  return is_regular(descriptor) && fails("write") ? -1 : original(descriptor, from, size);
+}
+
+ssize_t pwrite(int descriptor, const void* from, std::size_t size, off_t at) {
+  static auto* const original = next<ssize_t(int, const void*, std::size_t, off_t)>("pwrite");
+  return is_regular(descriptor) && fails("pwrite") ? -1 : original(descriptor, from, size, at);
+}
+
+ssize_t pwrite64(int descriptor, const void* from, std::size_t size, off64_t at) {
+  static auto* const original = next<ssize_t(int, const void*, std::size_t, off64_t)>("pwrite64");
+  return is_regular(descriptor) && fails("pwrite") ? -1 : original(descriptor, from, size, at);
 }
 
 int rename(const char* from, const char* to) {

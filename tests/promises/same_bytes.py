@@ -1,12 +1,17 @@
 #!/usr/bin/env python3
 """Every verb with 1, 2 and 4 threads: the same bytes in every file, times of the clock aside.
 
-    same_bytes.py SNARE [OTHER]
+    same_bytes.py SNARE [OTHER] [--only VERB] [--without VERB]
 
-OTHER: another build of the same source, whose bytes must be the same as well. Exits 1 where they differ.
+OTHER: another build of the same source, whose bytes must be the same as well. Exits 1 where they differ, or a verb of the command is
+not in the list.
 """
 
+import argparse
+import csv
+import io
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -32,8 +37,15 @@ VERBS = [
     ["sweep", ROOT / "tests/ranges/sweep.toml", "cases=24"],
     ["fit", ROOT / "tests/ranges/record.toml"],
     ["trace", ROOT / "tests/ranges/record.toml", "fit.most_effects=1"],
+    ["simulate", DATA / "scenarios/air_table.toml", "duration_s=0.02"],
+    ["arm show", DATA / "arms/jemrms_like.toml"],
+    ["benchmark", None, "--case", "push_middle"],
+    ["benchmark", None, "--case", "impact_middle"],
+    ["new", "capture"],
+    ["validate", None],
 ]
 CLOCK = {"wall_s", "real_time_factor", "seconds", "seconds_per_evaluation"}
+CLOCK_COLUMNS = {"scores.csv": {"wall_s"}}
 
 
 def timeless(value):
@@ -42,12 +54,21 @@ def timeless(value):
     return [timeless(v) for v in value] if isinstance(value, list) else value
 
 
+def timeless_rows(name, text):
+    """A table without its columns of times."""
+    rows = list(csv.reader(io.StringIO(text)))
+    kept = [k for k, column in enumerate(rows[0]) if column not in CLOCK_COLUMNS[name]]
+    return json.dumps([[row[k] for k in kept] for row in rows])
+
+
 def files(folder):
     """Name and content of each; of pages, which print times, only that they are there."""
     result = {}
     for file in sorted(folder.rglob("*")):
         if file.suffix == ".json":
             result[file.name] = json.dumps(timeless(json.loads(file.read_text())))
+        elif file.name in CLOCK_COLUMNS:
+            result[file.name] = timeless_rows(file.name, file.read_text())
         elif file.is_file() and file.suffix != ".journal":  # of a sweep: cases as they end, with their times
             result[file.name] = "" if file.suffix == ".html" else file.read_bytes()
     return result
@@ -56,30 +77,48 @@ def files(folder):
 def run(snare, verb, threads):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
-        line = [snare, verb[0], str(verb[1]), "--out", str(out), "--quiet", "--threads", str(threads)]
+        line = [snare, *verb[0].split(), *([str(verb[1])] if verb[1] else [])]
+        if verb[0] not in ("arm show", "new"):
+            line += ["--quiet", "--threads", str(threads)]
+        line += ["--json"] if verb[0] == "arm show" else ["--out", str(out)]
         for setting in verb[2:]:
-            line += ["--set", setting]
-        done = subprocess.run(line, capture_output=True, text=True, check=False)
+            line += [setting] if setting.startswith("--") or "=" not in setting else ["--set", setting]
+        environment = dict(os.environ, OMP_NUM_THREADS=str(threads))  # of the verbs that have no option for them
+        done = subprocess.run(line, capture_output=True, text=True, check=False, env=environment)
         if done.returncode != 0:
             return {"status": f"{done.returncode}: {done.stderr[-300:]}"}
+        if verb[0] == "arm show":
+            return {"standard output": done.stdout}
         # No result names its own folder.
         return {name: re.sub(re.escape(folder), "", text) if isinstance(text, str) else text
                 for name, text in files(out).items()}
 
 
 def main():
-    commands = sys.argv[1:]
+    parser = argparse.ArgumentParser()
+    parser.add_argument("commands", nargs="+", metavar="SNARE")
+    parser.add_argument("--only", help="the verb that is run, and no other")
+    parser.add_argument("--without", help="a verb that is left out")
+    options = parser.parse_args()
+    help_text = subprocess.run([options.commands[0], "--help"], capture_output=True, text=True, check=True).stdout
+    verbs = re.findall(r"^  (\w+)  +\S", help_text.split("Subcommands:")[1], re.M)
     wrong = 0
+    for verb in sorted(set(verbs) - {v[0].split()[0] for v in VERBS}):
+        wrong += 1
+        print(f"{verb}: is not among the verbs that are looked at")
     for verb in VERBS:
-        first = run(commands[0], verb, 1)
-        others = [(commands[0], 2), (commands[0], 4), *((c, 2) for c in commands[1:])]
+        if options.only not in (None, verb[0]) or options.without == verb[0]:
+            continue
+        name = f"{verb[0]} {verb[1].name if isinstance(verb[1], pathlib.Path) else verb[1] or ' '.join(verb[2:])}".strip()
+        first = run(options.commands[0], verb, 1)
+        others = [(options.commands[0], 2), (options.commands[0], 4), *((c, 2) for c in options.commands[1:])]
         for command, threads in others:
             other = run(command, verb, threads)
-            for name in sorted(first.keys() | other.keys()):
-                if first.get(name) != other.get(name):
+            for file in sorted(first.keys() | other.keys()):
+                if first.get(file) != other.get(file):
                     wrong += 1
-                    print(f"{verb[0]} {verb[1].name}: {name} differs with {threads} threads of {command}")
-        print(verb[0], verb[1].name, ", ".join(first) if "status" not in first else first["status"], flush=True)
+                    print(f"{name}: {file} differs with {threads} threads of {command}")
+        print(name, ", ".join(first) if "status" not in first else first["status"], flush=True)
         wrong += "status" in first
     return 1 if wrong else 0
 

@@ -21,7 +21,7 @@ NOWHERE = "z" * 29
 READERS = {"experiment": ("push", "data/experiments/published_static.toml"), "wire": ("distil", "data/wires/traced_published.toml")}
 # A schema, the verb that reads such a file, and files that have every key between them, in elements of every kind.
 EVERY_KEY = {"scenario": (["simulate"], ["scenario"]), "arm": (["arm", "show"], ["arm", "arm_geared"]), "ringdown": (["ringdown"], ["ringdown"]),
-             "record": (["fit"], ["record"]), "sweep": (["sweep"], ["sweep", "sweep_grid", "sweep_table"])}
+             "record": (["fit"], ["record"]), "sweep": (["sweep"], ["sweep", "sweep_grid", "sweep_table"]), "benchmark": (["benchmark"], ["benchmark"])}
 KINDS = [*READERS, *EVERY_KEY]
 # Keys of a wire and its mounts that motion refuses, which its readers know.
 REFUSED = {"natural_curvature_1_m", "strand_extra_stiffness_Nm2", "strand_slip_curvature_1_m", "yield_stress_MPa", "hardening_ratio",
@@ -231,6 +231,100 @@ class EveryKey(unittest.TestCase):
                     self.assertLessEqual({"push", "fit", "trace"}, set(one["enum"]), line)
                 else:
                     self.assertEqual(set(re.findall(r'"(\w+)"', known)), set(one["enum"]), line)
+
+
+# Texts that may be names or not, all of them in some list of some file.
+TEXTS = ["a", "A_b-c.d", "1", "_x", "a b", "a+(b)", "\u00c4rmel", "\u540d", "", " ", " a", "-a", ".a", "(a", "+", "a<b", "../x", "a/b", "a\\b", "a:b",
+         "a::b", "a,b", "a\"b", "a'b", "a#b", "a;b", "a&b", "a=b", "a\nb", "a\n", "\na", "a\rb", "a\tb", "x" * 40, "x" * 41, "x" * 64, "x" * 65]
+REFUSAL = re.compile(r"must be (1 to \d+ letters|of letters|a letter|a name (without|that|of its own))|must not have \"::\"")
+
+
+def patterns_of(schema, root, where=""):
+    """Every text of an input that has a pattern: the way to it and the pattern."""
+    schema = resolve(schema, root)
+    for key, one in schema.get("properties", {}).items():
+        here = f"{where}.{key}".lstrip(".")
+        one = resolve(one, root)
+        if "pattern" in one:
+            yield here, one["pattern"]
+        if "propertyNames" in one:
+            yield f"{here}.NAME", one["propertyNames"]["pattern"]
+        yield from patterns_of(one["items"] if one.get("type") == "array" and "properties" in one.get("items", {}) else one, root, here)
+
+
+class Names(unittest.TestCase):
+    """What a name may be is the same in the pattern of a schema and in the reader of its files."""
+
+    def setUp(self):
+        self.looked_at = set()
+
+    def compare(self, kind, file, verb, way, pattern, change):
+        """change(document, text): the document with this name, as TOML's own tree."""
+        more = [] if verb == ["arm", "show"] else ["--quiet", "--out", "/dev/null/none"]
+        for text in TEXTS:
+            # Beside the file, for the files that it names.
+            with tempfile.NamedTemporaryFile("w", dir=file.parent, prefix=".names_", suffix=".toml", encoding="utf-8", newline="") as changed:
+                changed.write(toml_of(change(document_of(file), text)))
+                changed.flush()
+                run = subprocess.run([setting.COMMAND, *verb, changed.name, *more], capture_output=True, text=True, timeout=60)
+            refused = [line for line in run.stderr.splitlines() if REFUSAL.search(line)]
+            self.assertEqual(re.search(pattern, text) is None, bool(refused), f"{kind}: {way} = {text!r}: {run.stderr}")
+        self.looked_at.add((kind, way))
+
+    def test_of_tables_and_columns(self):
+        files = [(kind, *READERS[kind]) for kind in READERS]
+        files += [(kind, EVERY_KEY[kind][0], f"tests/data/keys/{name}.toml") for kind in EVERY_KEY for name in EVERY_KEY[kind][1]]
+        wanted = set()
+        for kind, verb, name in files:
+            verb, file, schema = [verb] if isinstance(verb, str) else verb, setting.SOURCE / name, schema_of(kind)
+            for way, pattern in patterns_of(schema, schema):
+                wanted.add((kind, way))
+                steps = way.split(".")
+                if (kind, way) not in self.looked_at and owners(document_of(file), steps):
+                    self.compare(kind, file, verb, way, pattern, lambda document, text, s=steps: renamed(document, s, text))
+        self.assertEqual(wanted - self.looked_at, set())
+        self.assertGreater(len(wanted), 20)
+
+
+def document_of(file):
+    """A file, with the names that it may leave out."""
+    document = tomllib.loads(file.read_text())
+    if document["schema"].startswith("snare-wire/"):
+        document.setdefault("exports", {}).setdefault("name", "law")
+    return document
+
+
+def owners(document, steps):
+    """The first table that holds the last of the steps; None where the document has none."""
+    for step in steps[:-1]:
+        document = document.get(step)
+        if isinstance(document, list):
+            document = next((d for d in document if steps[-1] in d or isinstance(d.get(steps[steps.index(step) + 1]), (dict, list))), None)
+        if not isinstance(document, dict):
+            return None
+    return document if steps[-1] == "NAME" and document or steps[-1] in document else None
+
+
+def renamed(document, steps, text):
+    owner = owners(document, steps)
+    if steps[-1] == "NAME":
+        key = next(iter(owner))
+        owner[text] = owner.pop(key)
+    else:
+        owner[steps[-1]] = text
+    return document
+
+
+def toml_of(value, top=True):
+    """A document as text: tables inline, texts and keys in quotes."""
+    if isinstance(value, dict):
+        items = [f"{toml_of(key, False)} = {toml_of(one, False)}" for key, one in value.items()]
+        return "\n".join(items) + "\n" if top else "{ " + ", ".join(items) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(toml_of(one, False) for one in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return json.dumps(value) if isinstance(value, str) else repr(value)
 
 
 if __name__ == "__main__":

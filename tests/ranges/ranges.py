@@ -2,16 +2,19 @@
 """Every number of every file at the ends of its range and beyond, alone and together.
 
     ranges.py SNARE [--cases N] [--part FIRST EVERY] [--jobs J] [--results FILE] [--journal FILE] [--seconds S] [--seed N] [--list]
+                    [--from FILE] [--time S]
 
 The keys come from the readers themselves: a key that does not exist is answered with those that do, a word in place of a number
 with what is allowed. Each key gets its ends, the numbers just beyond them, zero, the smallest and the largest doubles, not a number
 and infinities (of elements of a list the first only). Then a covering array of strength two: every two ends of every two keys of a
 file stand together in at least one case, ROW keys a case, the others as in the file. Every case must end by itself within 60 s of the
 processor with status 0, 2 or 3, say why where it is not 0, write no number that is none, and leave no half file and no lock. Where a key
-asks for work (a million points or outputs, 20,000 elements, of a push also a tolerance of 1e-100) it may take longer: after 15 s it is
-told to end and must do so, with status 3: "long". Motions have no other exception: one that gets nowhere gives up by itself.
+asks for work (a million points or outputs, 20,000 elements, of a push also a tolerance of 1e-100, a motion that is never to be given up) it
+may take longer: after 15 s it is told to end and must do so, with status 3: "long". Motions have no other exception: one that gets nowhere
+gives up by itself.
 `--part 3 15` runs every fifteenth case from the third on. With `--journal` every case that has ended stands in FILE, a line each, and is not
-run again. Prints what fails and a count; appends the count as a line of JSON to the results; exits 1 where a case fails.
+run again. `--from` runs the cases of a file, a line of JSON each as a journal has them ([[BASE, [KEY=VALUE, ...]], ...]), and no others:
+long.jsonl has those that ever took long. `--time` is the limit in place of 60 s, then of every case, whatever it asks for. Prints what fails and a count; appends the count as a line of JSON to the results; exits 1 where a case fails.
 """
 
 import argparse
@@ -34,9 +37,9 @@ WORK_LIMIT = 15.0  # [s]
 ANSWER = 15.0  # [s]; a second, or to the end of results that are being written, and what a loaded machine adds
 ROW = 6
 WORK = re.compile(r"points|elements|knots|interval|duration|tolerance|max_step|max_order|modes|speeds|travels|window|cases|pulses|every_s|"
-                  r"rate_Hz")
+                  r"rate_Hz|least_advance")
 STIFF = re.compile(r"bending_stiffness|extra_stiffness")  # of a wire in motion: its waves are followed
-ASKED = re.compile(r"elements|points|interval|duration|pulses|every_s|rate_Hz")  # work that a motion cannot give up
+ASKED = re.compile(r"elements|points|interval|duration|pulses|every_s|rate_Hz|least_advance")  # work that a motion cannot give up, or must not: 0
 NUMBER = re.compile(r"(?<![A-Za-z_])[-+]?(nan|inf(inity)?)(?![A-Za-z_])", re.I)
 
 # What is run, made small: the file, the verb, what else is set.
@@ -253,16 +256,16 @@ def said_within(process, seconds):
                 raise
 
 
-def run(snare, case):
+def run(snare, case, limit=None):
     base, sets = case
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         begin = time.monotonic()
-        work = any(may_be_long(base, s) for s in sets)
+        work = limit is None and any(may_be_long(base, s) for s in sets)
         done = subprocess.Popen(command(snare, base, sets, out), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         long = False
         try:
-            said = said_within(done, WORK_LIMIT if work else LIMIT)
+            said = said_within(done, WORK_LIMIT if work else limit or LIMIT)
         except subprocess.TimeoutExpired:
             done.terminate()
             long = True
@@ -275,7 +278,7 @@ def run(snare, case):
         seconds = time.monotonic() - begin
         said = said.decode(errors="replace").strip()
         if long and not work:
-            return case, "time", f"more than {LIMIT:g} s", seconds
+            return case, "time", f"more than {limit or LIMIT:g} s", seconds
         if long and done.returncode not in (0, 3):  # 0: all was computed, and is written now
             return case, done.returncode, f"status {done.returncode} when told to end", seconds
         if done.returncode not in (0, 2, 3):
@@ -301,6 +304,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--results")
     parser.add_argument("--journal")
+    parser.add_argument("--from", dest="cases_of")
+    parser.add_argument("--time", type=float)
     parser.add_argument("--seconds", type=float, default=math.inf)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only")
@@ -308,6 +313,10 @@ def main():
     options = parser.parse_args()
     snare = str(pathlib.Path(options.snare).resolve())
     bases = [b for b in BASES if options.only in (None, b)]
+    if options.cases_of:
+        with open(options.cases_of, encoding="utf-8") as file:
+            listed = [json.loads(line)[0] for line in file]
+        return run_all(snare, options, [(base, sets) for base, sets in listed if base in bases], {"bases": len(bases)})
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         keys = [k for found in pool.map(lambda b: find_keys(snare, b), bases) for k in found]
     if options.list:
@@ -320,6 +329,11 @@ def main():
     cases += rows
     random.Random(0).shuffle(cases)
     print(f"{len(keys)} keys, {alone} cases of one, {len(rows)} of {ROW} that cover {pairs} pairs", flush=True)
+    return run_all(snare, options, cases, {"keys": len(keys), "bases": len(bases), "pairs": pairs})
+
+
+def run_all(snare, options, cases, head):
+    """Runs those of the cases that the options ask for, prints what fails and the count; the status. head: what the count begins with."""
     cases = cases[:options.cases]
     if options.part:
         cases = cases[options.part[0]::options.part[1]]
@@ -332,14 +346,17 @@ def main():
     if journal:
         journal.seek(0)
         for line in journal:
-            entry = json.loads(line)
+            try:
+                entry = json.loads(line)
+            except json.JSONDecodeError:  # was being written when all ended
+                continue
             before[json.dumps(entry[0])] = entry
 
     def one(case):
         known = before.get(json.dumps(case))
         if known and not known[2]:  # what failed is run again
             return known
-        return run(snare, case) if time.monotonic() - begin < options.seconds else None
+        return run(snare, case, options.time) if time.monotonic() - begin < options.seconds else None
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for ended in concurrent.futures.as_completed([pool.submit(one, case) for case in cases]):
@@ -356,7 +373,7 @@ def main():
             if wrong:
                 failures.append({"case": " ".join([case[0], *case[1]]), "wrong": wrong})
                 print(f"{failures[-1]['case']}: {wrong}", flush=True)
-    summary = {"keys": len(keys), "bases": len(bases), "pairs": pairs, "cases": ran, "asked": len(cases), "statuses": dict(sorted(statuses.items())),
+    summary = {**head, "cases": ran, "asked": len(cases), "statuses": dict(sorted(statuses.items())),
                "failures": failures, "slowest_s": round(slowest[0], 1), "slowest": slowest[1],
                "seconds": {b: round(s) for b, s in spent.items()}, "wall_s": round(time.monotonic() - begin)}
     print(json.dumps({k: v for k, v in summary.items() if k != "failures"}), f"{len(failures)} failed")

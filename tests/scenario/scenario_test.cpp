@@ -1,5 +1,6 @@
 #include "scenario/scenario.hpp"
 
+#include "scenario/motion_reader.hpp"
 #include "tests/support/refusal.hpp"
 
 #include <gmock/gmock.h>
@@ -33,6 +34,18 @@ TEST(Scenario, OverridesOfAnotherFileNeedOne) {
   EXPECT_EQ(problem_of("jemrms_capture.toml", {{"contact.solver.elements", "2"}}),
             "--set: solver.elements = 2, must be an integer >= 8 and <= 20000");
   EXPECT_THAT(problem_of("jemrms_capture.toml", {{"arm", "\"\""}}), EndsWith("arm = \"\", must name a file"));
+}
+
+// Arms alone are given up by the same measure as all motions.
+TEST(Scenario, ArmsMustGetOn) {
+  const auto least = [](const std::vector<base::Override>& overrides) {
+    const std::filesystem::path file = std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios" / "jemrms_step.toml";
+    return std::get<ArmMotion>(read_scenario(file, overrides).content).scenario.least_advance;
+  };
+  EXPECT_EQ(least({}), least_advance);
+  EXPECT_EQ(least({{"solver.least_advance_s", "0.5"}}), 0.5);
+  EXPECT_THAT(problem_of("jemrms_step.toml", {{"solver.least_advance_s", "-1"}}),
+              testing::StartsWith("--set: solver.least_advance_s = -1, must be >= 0"));
 }
 
 }  // namespace
