@@ -4,7 +4,7 @@ namespace snare::numerics {
 
 namespace {
 
-constexpr int most = 8;  // iterations
+constexpr int most = 4;  // iterations
 
 struct Newton {
   IdaCallbacks& callbacks;

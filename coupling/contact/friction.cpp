@@ -50,7 +50,7 @@ struct SliderShare {
 };
 
 SliderShare slider_share(double share) {
-  constexpr double sticks_up_to = 0.9;
+  constexpr double sticks_up_to = 0.999;
   constexpr double width = 1.0 - sticks_up_to;
   if (share <= sticks_up_to) return {};
   const double x = (share - sticks_up_to) / width;

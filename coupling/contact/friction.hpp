@@ -50,8 +50,7 @@ struct BristleState {
 /// dz/dt [m/s] of a bristle with its derivatives: w less what the slider runs.
 ///
 ///   dz/dt = w - alpha(|z|/z_m) max(0, w.z/|z|) z/|z|
-/// alpha is 0 up to 9/10 of z_m, 1 at z_m: the bristle sticks below, slides in the direction of w beyond, and creeps nowhere under a load
-/// that rests: between, the slider takes a part of what w is.
+/// alpha is 0 up to 999/1000 of z_m, 1 at z_m: the bristle sticks without creep below, and slides in the direction of w beyond.
 struct BristleRate {
   Eigen::Vector2d rate = Eigen::Vector2d::Zero();
   Eigen::Matrix2d by_sliding = Eigen::Matrix2d::Identity();  ///< [-]

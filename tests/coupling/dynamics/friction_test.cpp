@@ -34,7 +34,7 @@ TEST(MotionFriction, ForceAndRateHaveExactDerivatives) {
   smooth.law = ContactFriction::smooth;
   for (const MotionFriction& friction : {papers_friction(), smooth}) {
     for (const double speed : {0.004, 0.3, 2.0}) {
-      for (const double stretch : {0.5, 0.95, 1.2}) {
+      for (const double stretch : {0.5, 0.9995, 1.2}) {
         // Of order one: z in micrometres, w in units of its size.
         const auto state = [&](const VectorXd& x) {
           return BristleState{1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4]};
@@ -67,7 +67,7 @@ TEST(MotionFriction, CoefficientIsThatOfThePapers) {
 }
 
 // Under a constant load and coefficient what goes in is what the bristle stores and what becomes heat, never negative; below
-// 90 % of its reach it does not give way.
+// 99.9 % of its reach it does not creep.
 TEST(MotionFriction, HeatIsNeverNegative) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -78,10 +78,10 @@ TEST(MotionFriction, HeatIsNeverNegative) {
     BristleState s{f.bristle_displacement * Vector2d(unit(random), unit(random)),
                    std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)), 10.0};
     // Half of them where it slides.
-    if (k % 2 == 0) s.bristle = (1.0 - 5e-2 * (1.0 + unit(random))) * f.bristle_displacement * s.bristle.normalized();
+    if (k % 2 == 0) s.bristle = (1.0 - 5e-4 * (1.0 + unit(random))) * f.bristle_displacement * s.bristle.normalized();
     if (s.bristle.norm() > f.bristle_displacement) continue;
     const Vector2d rate = bristle_rate(f, s).rate;
-    if (s.bristle.norm() < 0.9 * f.bristle_displacement) {
+    if (s.bristle.norm() < 0.999 * f.bristle_displacement) {
       EXPECT_EQ(rate, s.sliding);
     } else {
       ++slides;
@@ -162,7 +162,7 @@ struct Touching {
 };
 
 TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
-  for (const double stretch : {0.3, 0.95}) {
+  for (const double stretch : {0.3, 0.9995}) {
     MotionFriction soft = papers_friction();
     // A bristle as soft as the wire's axial stiffness of 1e3/0.025, so that no row drowns the others.
     soft.bristle_displacement = 1e-4;
@@ -185,7 +185,7 @@ TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
 
 // A superposed rigid rotation, with its velocities, turns the force and leaves the bristle's rate alone.
 TEST(MotionFriction, BristleIsObjective) {
-  for (const double stretch : {0.3, 0.95}) {
+  for (const double stretch : {0.3, 0.9995}) {
     Touching t(papers_friction());
     for (int i = 0; i < t.rod.vertices(); ++i)
       t.y.segment<2>(t.contact.bristle_of(i)) = stretch * 1e-6 * Vector2d(0.6, -0.8);
