@@ -309,26 +309,27 @@ class Finished {
   explicit Finished(const CommonOptions& options) : options_(options) {}
 
   void reached(const Reproduction& result) {
-    Reproduction copy = result;
-    copy.interrupted = true;
-    const std::scoped_lock lock(mutex_);
-    result_ = std::move(copy);
-  }
-  /// Writes it; says what it was.
-  std::string keep() {
-    const std::scoped_lock lock(mutex_);
-    if (!result_) {
-      if (options_.json) print(nlohmann::json{{"schema", "snare-reproduce/1"}, {"interrupted", true}}.dump(1) + "\n");
-      return "nothing was finished, nothing is kept";
+    {
+      Reproduction copy = result;
+      copy.interrupted = true;
+      const std::scoped_lock lock(mutex_);
+      result_ = std::move(copy);
     }
-    write_files(options_, *result_);
-    return partial_words(*result_);
+    if (!keeping_) keeping_.emplace([this] { return keep(); }, "");
   }
 
  private:
+  /// Writes it; says what it was.
+  std::string keep() {
+    const std::scoped_lock lock(mutex_);
+    write_files(options_, result_);
+    return partial_words(result_);
+  }
+
   const CommonOptions& options_;
   std::mutex mutex_;
-  std::optional<Reproduction> result_;
+  Reproduction result_;
+  std::optional<KeepWhenInterrupted> keeping_;
 };
 
 }  // namespace
@@ -346,7 +347,6 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   }
   const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html"});
   Finished finished(options);
-  const KeepWhenInterrupted keeping([&finished] { return finished.keep(); }, "");
   result.assumptions = assumptions(experiment);
   result.models.push_back(declared_model(experiment, console));
   finished.reached(result);

@@ -68,6 +68,12 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return nearest;
 }
 
+std::string nearest_or_all(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_word(word, candidates);
+  return nearest.empty() ? fmt::format(": {}", fmt::join(candidates, ", "))
+                         : fmt::format("; did you mean {}?", nearest);
+}
+
 TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<Override>& overrides)
     : TomlDocument(file.string(), read_text(file, size_limit), overrides) {}
 

@@ -192,4 +192,7 @@ auto read_beside(TomlDocument& document, const Read& read) -> std::optional<decl
 /// neighbours), or empty when none is near: more than a third of the word would have to change.
 [[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
+/// What follows "must be one of these" in a message: "; did you mean X?", or ": " and all of them when none is near.
+[[nodiscard]] std::string nearest_or_all(std::string_view word, const std::vector<std::string>& candidates);
+
 }  // namespace snare::base

@@ -239,11 +239,9 @@ void check_benchmark_case(const BenchmarkFile& benchmark, const BenchmarkCase& c
       throw base::InputError(std::move(problems));
     }
     if (table.missing().empty()) continue;
-    const std::string near = base::nearest_word(table.missing(), table.names());
     throw base::InputError({benchmark.file.string(), 0, fmt::format("cases[{}].quantities", c.name), table.missing(),
                             fmt::format("must be a column of the history of {}{}", model.file.string(),
-                                        near.empty() ? fmt::format(": {}", fmt::join(table.names(), ", "))
-                                                     : fmt::format("; did you mean {}?", near))});
+                                        base::nearest_or_all(table.missing(), table.names()))});
   }
 }
 

@@ -92,7 +92,7 @@ json profiles_json(const MotionTrace& trace) {
                   {"upper", finite(p.upper.limit)},
                   {"lower_end", end_name(p.lower.end)},
                   {"upper_end", end_name(p.upper.end)},
-                  {"fall", finite(p.lower_fall)},
+                  {"fall", finite(p.fall)},
                   {"simulations", p.simulations},
                   {"points", points}};
   }

@@ -31,12 +31,10 @@ void check_histories(const study::SweepFile& sweep, const CaseRunner& runner, co
   for (std::size_t k = 0; k < sweep.histories->columns.size(); ++k) {
     const std::string& asked = sweep.histories->columns[k];
     if (std::ranges::find(names, asked) != names.end()) continue;
-    const std::string near = base::nearest_word(asked, names);
     problems.push_back(
         {sweep.file.string(), 0, fmt::format("histories.columns[{}]", k + 1), asked,
-         fmt::format(
-             "must be a column of {}{}", runner.verb() == "simulate" ? "history.csv" : "curves.csv",
-             near.empty() ? fmt::format(": {}", fmt::join(names, ", ")) : fmt::format("; did you mean {}?", near))});
+         fmt::format("must be a column of {}{}", runner.verb() == "simulate" ? "history.csv" : "curves.csv",
+                     base::nearest_or_all(asked, names))});
   }
   if (!problems.empty()) throw base::InputError(std::move(problems));
 }

@@ -91,8 +91,8 @@ std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
                       fit.jacobian.col(i).norm() > 0.0;
     if (seen) {
       n.stderr_ = std::sqrt(fit.covariance(i, i));
-      n.lower = std::max(s.number.lower, s.value - 1.96 * n.stderr_);
-      n.upper = std::min(s.number.upper, s.value + 1.96 * n.stderr_);
+      n.lower = std::max(s.number.lower, s.value - half_width_95 * n.stderr_);
+      n.upper = std::min(s.number.upper, s.value + half_width_95 * n.stderr_);
     }
     numbers.push_back(n);
   }

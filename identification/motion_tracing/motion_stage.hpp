@@ -6,6 +6,9 @@
 
 namespace snare::identification {
 
+/// Standard errors either way of a 95 % interval of a normal quantity.
+inline constexpr double half_width_95 = 1.96;
+
 /// Everything that is said of one fitted model. heldout: data of the held-out records with their own fits.
 [[nodiscard]] MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
                                        const MotionFit* heldout, const MotionData& heldout_data);

@@ -85,7 +85,7 @@ class Tracer {
     }
     constexpr double worth_a_word = 0.1;  // of a deviate squared: no interval moves by a twentieth of its width
     for (const Profile& p : trace_.profiles) {
-      if (p.lower_fall > worth_a_word)
+      if (p.fall > worth_a_word)
         trace_.warnings.push_back(
             fmt::format("the profile of {} meets a sum of squares that is lower than that of the fit: begin from "
                         "other values",
@@ -117,7 +117,7 @@ class Tracer {
       if (!of_file || !(model_.declared().number(n.key).value_or(0.0) > 0.0)) continue;
       if (!n.lower)
         trace_.warnings.push_back(fmt::format("{} is not identifiable: these records do not change with it", n.key));
-      else if (1.96 * n.stderr_ >= std::abs(n.value))
+      else if (half_width_95 * n.stderr_ >= std::abs(n.value))
         trace_.warnings.push_back(
             fmt::format("{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
                         n.value, n.stderr_, n.unit));
@@ -353,7 +353,7 @@ class Tracer {
         }
         const auto i = static_cast<Eigen::Index>(k);
         const double variance = i < current_.covariance.rows() ? current_.covariance(i, i) : 0.0;
-        null = null && std::abs(s.value - s.number.declared) <= 1.96 * std::sqrt(std::max(0.0, variance));
+        null = null && std::abs(s.value - s.number.declared) <= half_width_95 * std::sqrt(std::max(0.0, variance));
       }
       bool needless = false;
       if (null) {

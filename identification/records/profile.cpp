@@ -169,7 +169,7 @@ Profile profile_of(const MotionModel& model, const MotionData& data, const Motio
     Side side(model, data, fit, number, options, unit, direction);
     (direction < 0.0 ? profile.lower : profile.upper) = side.walk(step);
     profile.points.insert(profile.points.end(), side.points.begin(), side.points.end());
-    profile.lower_fall = std::max(profile.lower_fall, side.fall);
+    profile.fall = std::max(profile.fall, side.fall);
   }
   std::sort(profile.points.begin(), profile.points.end(),
             [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });

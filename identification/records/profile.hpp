@@ -36,8 +36,7 @@ struct Profile {
   double value = 0.0;  ///< of the fit, in the unit of the key
   ProfileSide lower, upper;
   std::vector<ProfilePoint> points;  ///< ascending in their values, that of the fit among them
-  double lower_fall =
-      0.0;  ///< largest fall below the fit that was met on the way, as `rise`: > 0, the fit was not the minimum
+  double fall = 0.0;  ///< largest below the fit that was met on the way, as `rise`: > 0, the fit was not the minimum
   long simulations = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "identification/motion_tracing/trace_records.hpp"
 #include "identification/records/record_file.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/turning_craft.hpp"
 
 #include "base/errors.hpp"
 
@@ -46,16 +47,7 @@ class FreeBodyRecords : public test::FolderFixture {
   }
   /// A craft of 10 kg m^2 with a moment of 0.05 N m about z: w = w0 + M t/J. Declared 8 % heavier to turn.
   std::filesystem::path craft(double first_spin, double second_spin, const std::string& second_declared) const {
-    scenario(10.0, 0.05, R"(mass_kg = 100.0
-inertia_kg_m2 = [10.8, 10.8, 10.8]
-spin_rad_s = [0.0, 0.0, 0.01]
-[[loads]]
-name = "thruster"
-frame = "craft"
-axes = "frame"
-moment_Nm = [0.0, 0.0, 0.05]
-)",
-             "gyro", "rate");
+    scenario(10.0, 0.05, test::turning_craft("10.8, 10.8, 10.8"), "gyro", "rate");
     for (const auto& [name, spin, seed] : {std::tuple{"first", first_spin, 1u}, std::tuple{"second", second_spin, 2u}})
       readings(fmt::format("{}.csv", name), "rate_deg_s", 10.0, 0.1, 0.01, seed,
                [spin = spin](double t) { return (spin + 0.05 * t / 10.0) / degree; });

@@ -3,6 +3,7 @@
 #include "identification/motion_tracing/trace_records.hpp"
 #include "identification/records/record_file.hpp"
 #include "tests/support/folder_fixture.hpp"
+#include "tests/support/turning_craft.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -38,15 +39,8 @@ duration_s = 10.0
 output_interval_s = 0.05
 [[bodies]]
 name = "craft"
-mass_kg = 100.0
-inertia_kg_m2 = [100.0, 100.0, 10.0]
-spin_rad_s = [0.0, 0.0, 0.01]
-[[loads]]
-name = "thruster"
-frame = "craft"
-axes = "frame"
-moment_Nm = [0.0, 0.0, 0.05]
-[[sensors]]
+)" + test::turning_craft("100.0, 100.0, 10.0") +
+                               R"([[sensors]]
 name = "gyro"
 kind = "rate"
 frame = "craft"
