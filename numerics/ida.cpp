@@ -135,6 +135,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
+  check(IDASetDeltaCjLSetup(m, options.matrix_change), "IDASetDeltaCjLSetup");
   if (system.event_count() > 0) {
     check(IDARootInit(m, system.event_count(), snare_ida_events), "IDARootInit");
     check(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");

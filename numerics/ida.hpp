@@ -38,6 +38,8 @@ struct IdaOptions {
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
   NewtonTest newton_test = NewtonTest::mean;
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
+  /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in (0, 1).
+  double matrix_change = 0.25;
 };
 
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as

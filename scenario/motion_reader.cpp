@@ -85,6 +85,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);
   tolerance("body_spin_tolerance_rad_s", o.spin_tolerance, 1.0);
   if (solver.has("max_order")) o.max_order = solver.integer("max_order", 1, 5);
+  if (solver.has("newton_share")) o.newton_share = solver.number("newton_share", Range::from(1e-6, 0.5));
   o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
   o.least_advance = read_least_advance(solver);
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));

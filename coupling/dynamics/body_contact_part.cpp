@@ -87,7 +87,8 @@ std::vector<Wrench> BodyContactPart::wrenches(const VectorView& y) const {
 
 Eigen::MatrixXd BodyContactPart::derivatives(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
-  return derivatives_of(wrenches_of(contact_, points_inside(now), with_derivatives(now)));
+  using Variables = FrameVariables<2>;
+  return derivatives_of<Variables>(wrenches_of(contact_, points_inside(now), with_derivatives<Variables>(now)));
 }
 
 // A ball round some points that the shape is farther from than from the ball's radius has none of them inside.

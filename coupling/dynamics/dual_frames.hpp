@@ -55,26 +55,50 @@ template <std::size_t K>
   return now;
 }
 
-/// With their turn, shift, angular velocity and velocity as variables, 12 a frame [rad, m, rad/s, m/s].
-template <std::size_t K>
+/// Variables of a law between K frames: what it needs to know of how they move. It sees places and velocities relative to each other only, so
+/// that the last frame's shift and velocity follow from all others'; of the first K - Turning it does not see how they turn.
+template <std::size_t K, std::size_t Turning = K>
+struct FrameVariables {
+  enum Kind : int { turn, shift, spin, velocity };  ///< [rad], [m], [rad/s], [m/s]; three of each
+  static constexpr int count = 12 * static_cast<int>(K) - 6 - 3 * static_cast<int>(K - Turning);
+
+  /// Whether frame k has them as variables [-].
+  [[nodiscard]] static constexpr bool has(std::size_t k, Kind kind) {
+    return kind == turn ? k >= K - Turning : kind == spin || k + 1 < K;
+  }
+  /// Index of the first of three that there are.
+  [[nodiscard]] static constexpr int first(std::size_t k, Kind kind) {
+    int before = 0;
+    for (std::size_t of = 0; of <= k; ++of) {
+      for (const Kind other : {turn, shift, spin, velocity})
+        if ((of < k || other < kind) && has(of, other)) before += 3;
+    }
+    return before;
+  }
+};
+
+/// The frames' motions, in SI units, with these as variables.
+template <class Variables, std::size_t K>
 [[nodiscard]] auto with_derivatives(const std::array<FrameMotion<double>, K>& now) {
-  constexpr int n = 12 * static_cast<int>(K);
-  using S = Dual<n>;
+  using S = Dual<Variables::count>;
   std::array<FrameMotion<S>, K> dual;
   for (std::size_t k = 0; k < K; ++k) {
-    const auto variables = [&](const Eigen::Vector3d& value, int first) {
-      Vector3<S> v;
-      for (int i = 0; i < 3; ++i) v[i] = S(value[i], 12 * static_cast<int>(k) + first + i);
+    const auto variables = [&](const Eigen::Vector3d& value, typename Variables::Kind kind) {
+      Vector3<S> v = value.cast<S>();
+      for (int i = 0; Variables::has(k, kind) && i < 3; ++i) v[i] = S(value[i], Variables::first(k, kind) + i);
       return v;
     };
-    const Vector3<S> turn = variables(Eigen::Vector3d::Zero(), 0);
-    for (int j = 0; j < 3; ++j) {
-      const Vector3<S> axis = now[k].R.col(j).template cast<S>();
-      dual[k].R.col(j) = axis + turn.cross(axis);
+    dual[k].R = now[k].R.template cast<S>();
+    if (Variables::has(k, Variables::turn)) {
+      const Vector3<S> turn = variables(Eigen::Vector3d::Zero(), Variables::turn);
+      for (int j = 0; j < 3; ++j) {
+        const Vector3<S> axis = dual[k].R.col(j);
+        dual[k].R.col(j) = axis + turn.cross(axis);
+      }
     }
-    dual[k].p = variables(now[k].p, 3);
-    dual[k].angular = variables(now[k].angular, 6);
-    dual[k].linear = variables(now[k].linear, 9);
+    dual[k].p = variables(now[k].p, Variables::shift);
+    dual[k].angular = variables(now[k].angular, Variables::spin);
+    dual[k].linear = variables(now[k].linear, Variables::velocity);
   }
   return dual;
 }
@@ -88,13 +112,23 @@ template <std::size_t K>
 }
 
 /// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
-template <class S, std::size_t K>
+template <class Variables, class S, std::size_t K>
 [[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
-  Eigen::MatrixXd D(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
+  constexpr auto last = static_cast<Eigen::Index>(K - 1);
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
   Eigen::Index row = 0;
   for (const FrameWrench<S>& w : wrenches) {
     for (const Vector3<S>* part : {&w.moment, &w.force}) {
-      for (int i = 0; i < 3; ++i) D.row(row++) = (*part)[i].v.transpose();
+      for (int i = 0; i < 3; ++i, ++row) {
+        for (std::size_t k = 0; k < K; ++k) {
+          for (const auto kind : {Variables::turn, Variables::shift, Variables::spin, Variables::velocity}) {
+            if (!Variables::has(k, kind)) continue;
+            const Eigen::RowVector3d by = (*part)[i].v.template segment<3>(Variables::first(k, kind)).transpose();
+            D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) = by;
+            if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
+          }
+        }
+      }
     }
   }
   return D;

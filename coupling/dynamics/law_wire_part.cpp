@@ -269,7 +269,8 @@ std::vector<Wrench> LawWirePart::wrenches(const VectorView& y) const {
 }
 
 Eigen::MatrixXd LawWirePart::derivatives(const VectorView& y) const {
-  return derivatives_of(act(with_derivatives(motions<3>(frames(), y))).wrenches);
+  using Variables = FrameVariables<3, 1>;  // mounts are points
+  return derivatives_of<Variables>(act(with_derivatives<Variables>(motions<3>(frames(), y))).wrenches);
 }
 
 double LawWirePart::depth(const VectorView& y) const {

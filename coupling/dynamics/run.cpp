@@ -22,6 +22,8 @@ namespace {
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
 constexpr double share_of_rods = 2e-5;
 constexpr double share_of_bodies = 1e-3;
+// Without wires in motion Newton's method forgives a matrix of another step: a third of the matrices less, as many iterations.
+constexpr double matrix_change_of_bodies = 0.5;
 
 }  // namespace
 
@@ -70,6 +72,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.max_step = options.max_step;
   ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share.value_or(rods_.empty() ? share_of_bodies : share_of_rods);
+  if (rods_.empty()) ida.matrix_change = matrix_change_of_bodies;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
@@ -102,7 +105,7 @@ int MotionRun::default_order() const {
   return springs_.empty() && presses_.empty() ? of_bodies : of_laws;
 }
 
-// A wire that is inside a shape has no side to which it belongs.
+// A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but what is pressed into it is thrown out.
 void MotionRun::require_apart() {
   std::vector<base::InputProblem> problems;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -121,6 +124,16 @@ void MotionRun::require_apart() {
                           fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0],
                                       n.coordinates[1]),
                           "must be >= 0 m at the start"});
+    }
+  }
+  for (std::size_t k = 0; k < body_contacts_.size(); ++k) {
+    const BodyContact& b = motion_.body_contacts[k];
+    constexpr double of_radius = 0.1;
+    const double depth = b.radius > 0.0 ? body_contacts_[k].depth(y_) : 0.0;
+    if (depth > of_radius * b.radius) {
+      problems.push_back({"", 0, b.name + ".gap", fmt::format("{:.6g} m", -depth),
+                          fmt::format("must be >= {:.6g} m at the start, a tenth of the radius of what touches",
+                                      -of_radius * b.radius)});
     }
   }
   if (!problems.empty()) throw base::InputError(problems);

@@ -351,6 +351,7 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"capture.hold_s=-1", "capture.hold_s = -1, must be >= 0"},
       {"gravity.vector_m_s2=[0.0]", "gravity.vector_m_s2 = [0.0], must be an array of 3 numbers"},
       {"solver.max_order=9", "solver.max_order = 9"},
+      {"solver.newton_share=0.6", "solver.newton_share = 0.6"},
       {"output.modes=1", "output.modes = 1"},
       {"bushing=1", "bushing = 1, unknown key"},
   };

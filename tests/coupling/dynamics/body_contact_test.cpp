@@ -4,6 +4,7 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/motion_bodies.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,18 @@ TEST(BodyContact, FrictionTakesMuTimesTheImpulse) {
   EXPECT_NEAR(velocity.x(), 1.0 - 0.2 * normal / 2.0, 1e-6);
   EXPECT_NEAR(spin.y(), 0.2 * normal * 0.05 / 0.1, 2e-3 * 0.04);  // the lever is shorter by the depth
   EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);
+}
+
+// What is pressed into the other at the start would be thrown out by the law.
+TEST(BodyContact, ABallMayRestButNotBeginInside) {
+  Motion motion = ball_on_plane(spring_dashpot(2e4, 0.0));
+  const auto begun_at = [&](double depth) {
+    motion.bodies[0].start.position.z() = 0.05 - depth;
+    motion.body_contacts[0].X_WP.p = motion.bodies[0].start.position;
+    return test::refusal([&] { return simulate(motion, fine(1e-4), {}); });
+  };
+  EXPECT_EQ(begun_at(0.004), "accepted");
+  EXPECT_THAT(begun_at(0.006), testing::HasSubstr("contact.gap = -0.006 m, must be >= -0.005 m at the start"));
 }
 
 TEST(BodyContact, JacobianMatchesDifferences) {
