@@ -13,7 +13,7 @@ bool DaeSolver::factorize(const SparseMatrix& matrix) {
   if (!condensation_.update(matrix)) return false;
   // Systems without rates are small, and dense where there is an arm: nothing is gained by rows without pivots.
   if (no_rates_) return pivot();
-  tried_ = by_klu_ = false;
+  tried_ = by_klu_ = refined_ = false;
   if (!lu_) lu_.emplace(condensation_.matrix());
   return lu_->factorize(condensation_.matrix()) || pivot();
 }
@@ -28,18 +28,29 @@ bool DaeSolver::pivot() {
 bool DaeSolver::solve(const SparseMatrix& matrix, Eigen::Ref<Eigen::VectorXd> b) {
   condensation_.reduce(matrix, b, right_);
   solution_ = right_;
-  if (!by_klu_) {
-    lu_->solve(solution_);
-    constexpr double most = 1e-8;
-    if (!tried_ && !(backward_error(solution_, right_) <= most)) {
-      if (!pivot()) return false;
-      solution_ = right_;
-    }
-    tried_ = true;
+  if (!by_klu_ && !solve_without_pivots()) {
+    if (!pivot()) return false;
+    solution_ = right_;
   }
   if (by_klu_) klu_->solve(solution_);
   condensation_.expand(solution_, b);
   return true;
+}
+
+// The first solution is put into the equations, and where that shows lost digits what is left is solved for, there and in all later ones.
+bool DaeSolver::solve_without_pivots() {
+  constexpr double most = 1e-8;
+  lu_->solve(solution_);
+  if (tried_ && !refined_) return true;
+  const double error = backward_error(solution_, right_);
+  if (!tried_) refined_ = !(error <= most);
+  if (refined_) {
+    lu_->solve(rest_);
+    solution_ += rest_;
+  }
+  const bool accurate = tried_ || !refined_ || backward_error(solution_, right_) <= most;
+  tried_ = true;
+  return accurate;
 }
 
 // max_i |b - A x|_i/(|A| |x| + |b|)_i: the least relative change of A and b that makes x a solution (Oettli and Prager 1964).

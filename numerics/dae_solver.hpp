@@ -13,8 +13,8 @@
 
 namespace snare::numerics {
 
-/// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting, (N.7), and by KLU
-/// where a solution shows that digits are lost: the first one after each factorisation is put into the equations. Of any unit.
+/// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting, (N.7), refined
+/// where the first solution after a factorisation shows that digits are lost, and by KLU where that does not help. Of any unit.
 class DaeSolver {
  public:
   /// pairs: see Condensation.
@@ -31,6 +31,8 @@ class DaeSolver {
 
  private:
   [[nodiscard]] bool pivot();
+  /// False where digits are lost even so.
+  [[nodiscard]] bool solve_without_pivots();
   [[nodiscard]] double backward_error(const Eigen::VectorXd& x, const Eigen::VectorXd& b);
 
   Condensation condensation_;
@@ -38,7 +40,8 @@ class DaeSolver {
   std::optional<StaticLu> lu_;  // made with the first values
   std::optional<Klu> klu_;
   bool by_klu_ = false;
-  bool tried_ = false;  // a solution of the last factorisation has been looked at
+  bool tried_ = false;    // a solution of the last factorisation has been looked at
+  bool refined_ = false;  // its solutions need what is left of the equations solved for
   long pivoted_ = 0;
   Eigen::VectorXd right_, solution_, rest_, size_;
 };
