@@ -40,6 +40,9 @@ struct IdaOptions {
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
   /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in (0, 1).
   double matrix_change = 0.25;
+  /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with that of its first guess;
+  /// as many iterations are added. With NewtonTest::every_unknown.                            theory.md (M.12)
+  int renewals = 0;
 };
 
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as

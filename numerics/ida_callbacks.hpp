@@ -35,8 +35,9 @@ struct IdaCallbacks {
   std::unique_ptr<DaeSolver> solver;
   int analysed_pattern = 0;
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
-  // Of the Newton iteration: the last correction of this step, and what the last rate of convergence leaves after one.
+  // Of the Newton iteration: the last correction of this step, and what a rate of convergence leaves after one.
   double last_correction = 0.0;
+  double rate = 0.0;                     ///< the last correction over the one before [-]
   double remainder = unknown_remainder;  ///< factor on the last correction [-]
   int stubborn = -1;                     // the unknown with the largest correction where it did not converge
 

@@ -4,11 +4,13 @@ namespace snare::numerics {
 
 namespace {
 
-constexpr int most = 4;  // iterations
+constexpr int most = 4;        // iterations, but for those after a renewal
+constexpr double slow = 0.25;  // rate of convergence beyond which a new matrix pays
 
 struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
+  int renewals;   // at most, of the matrix within a step
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -41,6 +43,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       ++self.failures;
       return code;
     }
+    int renewals = 0;
     for (int k = 0; code == SUN_NLS_SUCCESS; ++k) {
       ++self.iterations;
       auto step = map(self.step);
@@ -48,14 +51,21 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = self.solve(self.step, memory);
       if (code != SUN_NLS_SUCCESS) break;
       map(correction) += step;
-      code = callbacks.converged(k, {share, most, current != SUNFALSE}, step, map(weight));
+      const int last = current != SUNFALSE ? most + self.renewals : most;
+      code = callbacks.converged(k, {share, last, current != SUNFALSE}, step, map(weight));
       if (code == SUN_NLS_SUCCESS) return SUN_NLS_SUCCESS;
       if (code != SUN_NLS_CONTINUE) break;
-      if (k + 1 >= most) {
+      if (k + 1 >= last) {
         code = SUN_NLS_CONV_RECVR;
         break;
       }
       code = self.system(correction, self.step, memory);
+      // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
+      if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
+          renewals < self.renewals) {
+        code = self.setup(SUNTRUE, &current, memory);
+        ++renewals;
+      }
     }
     ++self.failures;
     if (code <= 0 || current != SUNFALSE) return code;
@@ -103,7 +113,7 @@ int snare_newton_failures(SUNNonlinearSolver solver, long* count) {
 
 }  // namespace
 
-SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, SUNContext context) {
+SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals, SUNContext context) {
   SunNonlinearSolver solver(made(SUNNonlinSolNewEmpty(context), "SUNNonlinSolNewEmpty"));
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;
@@ -113,7 +123,7 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, SU
   solver->ops->setlsolvefn = snare_newton_set_solve;
   solver->ops->getnumiters = snare_newton_iterations;
   solver->ops->getnumconvfails = snare_newton_failures;
-  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone")};
+  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), renewals};
   return solver;
 }
 

@@ -3,6 +3,7 @@
 #include "coupling/contact/curve.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace snare::coupling {
 
@@ -22,6 +23,11 @@ Vector4d bernstein_slope(double u) {
 Vector4d bernstein_bend(double u) {
   const double v = 1.0 - u;
   return {6.0 * v, 6.0 * (u - 2.0 * v), 6.0 * (v - 2.0 * u), 6.0 * u};
+}
+
+double largest_bend(const BezierWire::Control& c) {
+  return 6.0 * std::sqrt(std::max((c.col(0) - 2.0 * c.col(1) + c.col(2)).squaredNorm(),
+                                  (c.col(1) - 2.0 * c.col(2) + c.col(3)).squaredNorm()));
 }
 
 BezierWire::BezierWire(const wire::RodPart& rod) : rod_(rod) {

@@ -55,5 +55,7 @@ class BezierWire {
 [[nodiscard]] Eigen::Vector4d bernstein(double u);
 [[nodiscard]] Eigen::Vector4d bernstein_slope(double u);
 [[nodiscard]] Eigen::Vector4d bernstein_bend(double u);
+/// The largest |d2X/du2| of a cubic [m], which is at one of its ends.
+[[nodiscard]] double largest_bend(const BezierWire::Control& control);
 
 }  // namespace snare::coupling

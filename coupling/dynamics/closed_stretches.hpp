@@ -6,11 +6,13 @@
 
 namespace snare::coupling {
 
-/// A place on an element: u from 0 to 1, the gap there [m] and its derivative by the material coordinate [-].
+/// A place on an element: u from 0 to 1, the gap there [m], its derivative by the material coordinate [-], and by how much the
+/// surface itself bends it down, max(0, -X'.H X') [1/m].
 struct GapPlace {
   double u = 0.0;
   double gap = 0.0;
   double slope = 0.0;
+  double hollow = 0.0;
 };
 
 /// A stretch of an element on which the gap is negative, and its deepest place.
@@ -21,46 +23,98 @@ struct ClosedStretch {
 
 /// Where the gap along an element is negative.                                                theory.md (G.7)
 ///
-/// Between two places the gap cannot fall by more than the way there and back, so that far parts are left out; what is left
-/// is halved until no minimum can hide in it. gap: u -> GapPlace.
+/// Between two places the gap cannot fall by more than the way there and back, so that far parts are left out; what is left is
+/// halved until its second derivative bounds it to one sign. gap: u -> GapPlace.
 class ClosedStretches {
  public:
-  /// length: of the element [m]; way: a bound of the length of its curve [m]; resolution: on a shorter way the gap has one
-  /// minimum at most [m].
-  ClosedStretches(double length, double way, double resolution) : length_(length), way_(way), resolution_(resolution) {}
+  /// length: of the element [m]; way: a bound of the length of its curve [m]; bend: of |X''| [1/m]; resolution: on a shorter way
+  /// zeros and minima are looked for [m].
+  ClosedStretches(double length, double way, double bend, double resolution)
+      : length_(length), way_(way), bend_(bend), resolution_(resolution) {}
 
   /// Appends the stretches in their order, and the local minima with negative gap.
   template <class Gap>
   void find(const Gap& gap, const GapPlace& begin, const GapPlace& end, std::vector<ClosedStretch>& stretches,
             std::vector<GapPlace>& minima) const {
-    divide(gap, begin, end, stretches, minima);
+    divide(gap, begin, end, {stretches, minima});
   }
 
  private:
+  // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved.
+  static constexpr double least_dip = 1e-10, least_way = 1e-6;
+
+  struct Found {
+    std::vector<ClosedStretch>& stretches;
+    std::vector<GapPlace>& minima;
+  };
+
   template <class Gap>
-  void divide(const Gap& gap, const GapPlace& a, const GapPlace& b, std::vector<ClosedStretch>& stretches,
-              std::vector<GapPlace>& minima) const {
+  void divide(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
     const double way = way_ * (b.u - a.u);
     if (a.gap + b.gap >= way) return;
-    if (way > resolution_) {
-      const GapPlace middle = gap(0.5 * (a.u + b.u));
-      divide(gap, a, middle, stretches, minima);
-      divide(gap, middle, b, stretches, minima);
-      return;
+    if (way <= resolution_) {
+      if (lowest(a, b) >= -least_dip * resolution_) return;
+      const bool shortest = way <= least_way * resolution_;
+      const bool closed = shortest ? a.gap + b.gap < 0.0 : a.gap <= 0.0 && b.gap <= 0.0 && is_closed(a, b);
+      if (closed) add(gap, a, b, found);
+      if (closed || shortest) return;
+      if (a.slope < 0.0 && b.slope > 0.0) {
+        GapPlace bottom = minimum(gap, a, b);
+        bottom.slope = 0.0;
+        divide(gap, a, bottom, found);
+        divide(gap, bottom, b, found);
+        return;
+      }
+      if (a.gap * b.gap < 0.0) {
+        GapPlace edge = gap(a.gap < 0.0 ? zero(gap, a, b) : zero(gap, b, a));
+        edge.gap = 0.0;
+        divide(gap, a, edge, found);
+        divide(gap, edge, b, found);
+        return;
+      }
     }
+    const GapPlace middle = gap(0.5 * (a.u + b.u));
+    divide(gap, a, middle, found);
+    divide(gap, middle, b, found);
+  }
+
+  /// g'' >= -this on a piece [1/m].
+  [[nodiscard]] double fall(const GapPlace& a, const GapPlace& b) const {
+    return bend_ + 2.0 * std::max(a.hollow, b.hollow);
+  }
+
+  /// No gap between two places is below this [m]: of g_a + g_a' s - B s^2/2 and the same from b the larger one holds, and its least
+  /// is at an end or where the two meet.
+  [[nodiscard]] double lowest(const GapPlace& a, const GapPlace& b) const {
+    const double w = length_ * (b.u - a.u), bend = fall(a, b);
+    const double least = std::min(a.gap, b.gap);
+    const double turn = b.slope - a.slope + bend * w;  // of their difference, which is linear in s
+    if (turn <= 0.0) return least;
+    const double s = std::clamp((a.gap - b.gap + b.slope * w + 0.5 * bend * w * w) / turn, 0.0, w);
+    return std::min(least, a.gap + s * (a.slope - 0.5 * bend * s));
+  }
+
+  /// Whether the chord between two places with g <= 0, and the arch B s (w - s)/2 over it, are below zero.
+  [[nodiscard]] bool is_closed(const GapPlace& a, const GapPlace& b) const {
+    const double w = length_ * (b.u - a.u), bend = fall(a, b);
+    if (bend * w == 0.0) return true;
+    const double s = std::clamp(0.5 * w + (b.gap - a.gap) / (bend * w), 0.0, w);
+    return a.gap + (b.gap - a.gap) * s / w + 0.5 * bend * s * (w - s) <= 0.0;
+  }
+
+  /// A closed piece, which goes on with the stretch before it or begins another.
+  template <class Gap>
+  void add(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
     GapPlace deepest = a.gap <= b.gap ? a : b;
     if (a.slope < 0.0 && b.slope >= 0.0) {
-      deepest = minimum(gap, a, b);
-      if (deepest.gap < 0.0) minima.push_back(deepest);
+      deepest = b.slope == 0.0 ? b : minimum(gap, a, b);
+      if (deepest.gap < 0.0) found.minima.push_back(deepest);
     }
-    if (deepest.gap >= 0.0) return;
-    const double from = a.gap < 0.0 ? a.u : zero(gap, deepest, a);
-    const double to = b.gap < 0.0 ? b.u : zero(gap, deepest, b);
-    if (!stretches.empty() && a.gap < 0.0 && stretches.back().to == from) {
-      stretches.back().to = to;
-      if (deepest.gap < stretches.back().deepest.gap) stretches.back().deepest = deepest;
+    if (!found.stretches.empty() && found.stretches.back().to == a.u) {
+      found.stretches.back().to = b.u;
+      if (deepest.gap < found.stretches.back().deepest.gap) found.stretches.back().deepest = deepest;
     } else {
-      stretches.push_back({from, to, deepest});
+      found.stretches.push_back({a.u, b.u, deepest});
     }
   }
 
@@ -111,7 +165,7 @@ class ClosedStretches {
     return u;
   }
 
-  double length_, way_, resolution_;
+  double length_, way_, bend_, resolution_;
 };
 
 }  // namespace snare::coupling

@@ -149,13 +149,16 @@ void ContactPart::find(const VectorView& y, Found& found) const {
     const double length = curve.length(e);
     const auto gap = [&](double u) {
       const DistanceField field = search_.shape().at(c * bernstein(u));
-      return GapPlace{u, field.distance - contact_.wire_radius, field.normal.dot(c * bernstein_slope(u)) / length};
+      const Vector3d slope = c * bernstein_slope(u) / length;
+      return GapPlace{u, field.distance - contact_.wire_radius, field.normal.dot(slope),
+                      std::max(0.0, -slope.dot(field.hessian * slope))};
     };
     const double way = (c.rightCols<3>() - c.leftCols<3>()).colwise().norm().sum();
     found.minima.clear();
     const std::size_t before = found.stretches.size();
     const GapPlace begin = gap(0.0), end = gap(1.0);
-    ClosedStretches(length, way, search_.resolution()).find(gap, begin, end, found.stretches, found.minima);
+    ClosedStretches(length, way, largest_bend(c) / (length * length), search_.resolution())
+        .find(gap, begin, end, found.stretches, found.minima);
     found.elements.resize(found.stretches.size(), e);
     if (has_law()) {
       if (e == 0 && begin.gap < 0.0 && begin.slope >= 0.0) found.minima.push_back(begin);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <vector>
 
 namespace snare::coupling {
@@ -22,6 +23,10 @@ class CubicPieces {
   [[nodiscard]] Eigen::Vector3d value(int element, double u) const;
   [[nodiscard]] Eigen::Vector3d slope(int element, double u) const;  ///< dX/du [m]
   [[nodiscard]] Eigen::Vector3d bend(int element, double u) const;   ///< d2X/du2 [m]
+  /// The largest |d2X/du2| on an element [m], which is at one of its ends.
+  [[nodiscard]] double largest_bend(int element) const {
+    return std::max(bend(element, 0.0).norm(), bend(element, 1.0).norm());
+  }
   /// A bound of an element's length [m].
   [[nodiscard]] double way(int element) const { return ways_[static_cast<std::size_t>(element)]; }
 

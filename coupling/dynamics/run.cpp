@@ -24,6 +24,8 @@ constexpr double share_of_rods = 2e-5;
 constexpr double share_of_bodies = 1e-3;
 // Without wires in motion Newton's method forgives a matrix of another step: a third of the matrices less, as many iterations.
 constexpr double matrix_change_of_bodies = 0.5;
+// Where no wave follows, a step may go through a whole touch.
+constexpr int renewals_without_waves = 4;
 
 }  // namespace
 
@@ -73,6 +75,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.newton_test = numerics::NewtonTest::every_unknown;
   ida.newton_share = options.newton_share.value_or(rods_.empty() ? share_of_bodies : share_of_rods);
   if (rods_.empty()) ida.matrix_change = matrix_change_of_bodies;
+  if (!rods_.empty() && std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; }))
+    ida.renewals = renewals_without_waves;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,

@@ -156,12 +156,18 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
     const FootPoint foot = foot_point(across, near.first, near.last, x);
     const Vector3d apart = x - across.value(foot.element, foot.u);
     const double distance = apart.norm();
-    return GapPlace{u, distance - thickness, apart.dot(along.slope(near.element, u)) / (distance * length)};
+    const Vector3d slope = along.slope(near.element, u) / length;
+    // Where the other wire bends towards this one, by its part along the other's tangent.
+    const Vector3d tangent = across.slope(foot.element, foot.u);
+    const double over = slope.dot(tangent) / tangent.squaredNorm();
+    const double towards = apart.dot(across.bend(foot.element, foot.u)) / distance;
+    return GapPlace{u, distance - thickness, apart.dot(slope) / distance, std::max(0.0, towards * over * over)};
   };
   found.closed.clear();
   found.minima.clear();
-  const double way = along.way(near.element);
-  ClosedStretches(length, way, search_.resolution(own)).find(gap, gap(0.0), gap(1.0), found.closed, found.minima);
+  ClosedStretches(length, along.way(near.element), along.largest_bend(near.element) / (length * length),
+                  search_.resolution(own))
+      .find(gap, gap(0.0), gap(1.0), found.closed, found.minima);
   for (const ClosedStretch& s : found.closed) {
     const double begin = curve.begin(near.element);
     found.stretches.push_back({own, begin + s.from * length, begin + s.to * length, s.deepest.gap});
