@@ -94,7 +94,7 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
   constexpr double best_rate = 0.1;
   constexpr double worst_rate = 0.9;
   constexpr double converged_at_once = 1e-4;  // of the share
-  constexpr double of_round_off = 1e-2;       // of the tolerance
+  constexpr double of_round_off = 1e-4;       // of the tolerance
   const double size = step.cwiseProduct(weight).lpNorm<Eigen::Infinity>();
   const auto give_up = [&] {
     step.cwiseProduct(weight).cwiseAbs().maxCoeff(&stubborn);

@@ -19,7 +19,7 @@ struct MotionOptions {
   double body_velocity_tolerance = 1e-6;  ///< [m/s]
   double angle_tolerance = 1e-7;          ///< of bodies' quaternions [rad]
   double spin_tolerance = 1e-5;           ///< of bodies [rad/s]
-  double force_tolerance = 1e-2;          ///< [N], of multipliers: for the Newton iteration only
+  double force_tolerance = 1.0;           ///< [N], of multipliers: for the Newton iteration only  theory.md (M.12)
   std::optional<int> max_order;           ///< of IDA, 1 to 5; none: by what moves, theory.md (M.2)
   /// Of these tolerances that Newton's method may leave at a step, in (0, 1); none: by what moves, theory.md (M.12).
   std::optional<double> newton_share;
