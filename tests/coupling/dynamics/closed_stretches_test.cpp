@@ -102,7 +102,9 @@ TEST(ClosedStretches, NoStepWhereAMaximumPassesAVertex) {
     ASSERT_EQ(found.size(), 1U) << "maximum at " << top;
     EXPECT_LT(found[0].deepest.gap, -1e-8);
     const double now = found[0].to - found[0].from;
-    if (k > -200) EXPECT_NEAR(now, before, 1e-6) << "maximum at " << top;
+    if (k > -200) {
+      EXPECT_NEAR(now, before, 1e-6) << "maximum at " << top;
+    }
     before = now;
   }
 }
