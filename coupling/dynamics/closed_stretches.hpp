@@ -126,7 +126,7 @@ class ClosedStretches {
     GapPlace best = low.gap < high.gap ? low : high;
     double f_low = low.slope, f_high = high.slope;
     for (int k = 0; k < 40 && high.u - low.u > 1e-12 && f_high > f_low; ++k) {
-      const GapPlace p = gap((low.u * f_high - high.u * f_low) / (f_high - f_low));
+      const GapPlace p = gap(std::clamp((low.u * f_high - high.u * f_low) / (f_high - f_low), low.u, high.u));
       if (p.gap < best.gap || std::abs(p.slope) < level) best = p;
       if (std::abs(p.slope) < level) break;
       if (p.slope < 0.0) {
@@ -152,7 +152,8 @@ class ClosedStretches {
     const double rise = std::copysign(1.0, s) * inside.slope;
     const double root = std::sqrt(std::max(0.0, rise * rise - 2.0 * curvature * inside.gap));
     const double first = rise + root > 0.0 ? -2.0 * inside.gap / (rise + root) : std::abs(s);
-    double u = in + std::copysign(std::min(first, std::abs(s)), s) / length_;
+    const double least = std::min(in, out), most = std::max(in, out);
+    double u = std::clamp(in + std::copysign(std::min(first, std::abs(s)), s) / length_, least, most);
     for (int k = 0; k < 40; ++k) {
       const GapPlace p = gap(u);
       (p.gap < 0.0 ? in : out) = u;
