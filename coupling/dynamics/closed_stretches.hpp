@@ -36,7 +36,7 @@ class ClosedStretches {
   template <class Gap>
   void find(const Gap& gap, const GapPlace& begin, const GapPlace& end, std::vector<ClosedStretch>& stretches,
             std::vector<GapPlace>& minima) const {
-    divide(gap, begin, end, {stretches, minima});
+    if (std::isfinite(way_)) divide(gap, begin, end, {stretches, minima});
   }
 
  private:
@@ -51,7 +51,7 @@ class ClosedStretches {
   template <class Gap>
   void divide(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
     const double way = way_ * (b.u - a.u);
-    if (a.gap + b.gap >= way) return;
+    if (!(a.gap + b.gap < way)) return;  // nor is there anything to find where one of them is no number
     if (way <= resolution_) {
       if (lowest(a, b) >= -least_dip * resolution_) return;
       const bool shortest = way <= least_way * resolution_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -80,6 +81,21 @@ TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
   }
   EXPECT_GT(closed, 1000);
   EXPECT_GT(several, 300);
+}
+
+// A step that has run away: nothing is found, and that at once.
+TEST(ClosedStretches, WhatIsNoNumberEndsTheSearch) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  for (const double value : {none, endless, -endless}) {
+    for (const double way : {length, none, endless}) {
+      if (std::isfinite(value + way)) continue;
+      const auto gap = [value](double u) { return GapPlace{u, value, value, value}; };
+      std::vector<ClosedStretch> found;
+      std::vector<GapPlace> minima;
+      ClosedStretches(length, way, value, resolution).find(gap, gap(0.0), gap(1.0), found, minima);
+      EXPECT_TRUE(minima.empty());
+    }
+  }
 }
 
 // Dips side by side with a maximum between them, here above zero, that passes the beginning of the element: what is closed there
