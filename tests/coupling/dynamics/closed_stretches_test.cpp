@@ -83,7 +83,7 @@ TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
   EXPECT_GT(several, 300);
 }
 
-// A step that has run away: nothing is found, and that at once.
+// A step that has run away: no minimum is found, and the search ends.
 TEST(ClosedStretches, WhatIsNoNumberEndsTheSearch) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
   for (const double value : {none, endless, -endless}) {
