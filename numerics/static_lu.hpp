@@ -34,7 +34,10 @@ class StaticLu {
     int row = 0;        // by which
     int first_run = 0;  // up to that of the next elimination
   };
-  static void subtract(const Run& run, double factor, double* values);
+  /// The rows one after another; false as `factorize`.
+  [[nodiscard]] bool eliminate(bool by_four);
+  [[nodiscard]] bool eliminate_by_four();
+  [[nodiscard]] bool eliminate_by_two();
 
   int order_ = 0;
   std::vector<int> unknown_;               // at every place of the order

@@ -44,18 +44,19 @@ SmoothLaw smooth_law(const MotionFriction& f, double s) {
   return {slip.coefficient / s, slip.slope / s - slip.coefficient / (s * s * s)};
 }
 
-/// How much of the speed along the bristle its slider takes, and the derivative by the share |z|/z_m.
-struct SliderShare {
-  double value = 0.0, slope = 0.0;
+/// What a slider lets a spring and its dashpot carry together: e = z + tau w, brought back into the circle of radius z_m.
+struct Carried {
+  Vector2d reach;     ///< m [m]
+  Matrix2d by_total;  ///< dm/de [-]
+  bool slides;
 };
 
-SliderShare slider_share(double share) {
-  constexpr double sticks_up_to = 0.999;
-  constexpr double width = 1.0 - sticks_up_to;
-  if (share <= sticks_up_to) return {};
-  const double x = (share - sticks_up_to) / width;
-  // Beyond 1 straight on: what has been stretched too far comes back.
-  return x < 1.0 ? SliderShare{x * x, 2.0 * x / width} : SliderShare{2.0 * x - 1.0, 2.0 / width};
+Carried carried(const MotionFriction& friction, const BristleState& at) {
+  const Vector2d total = at.bristle + friction.bristle_time * at.sliding;
+  const double size = total.norm(), most = friction.bristle_displacement;
+  if (size <= most) return {total, Matrix2d::Identity(), false};
+  const Vector2d direction = total / size;
+  return {most * direction, most / size * (Matrix2d::Identity() - direction * direction.transpose()), true};
 }
 
 }  // namespace
@@ -65,21 +66,10 @@ double slip_coefficient(const MotionFriction& friction, double speed) {
 }
 
 BristleRate bristle_rate(const MotionFriction& friction, const BristleState& at) {
-  BristleRate r;
-  r.rate = at.sliding;
-  const double size = at.bristle.norm();
-  const SliderShare share = slider_share(size / friction.bristle_displacement);
-  if (share.value == 0.0) return r;
-  const Vector2d direction = at.bristle / size;
-  const double along = at.sliding.dot(direction);
-  if (along <= 0.0) return r;
-  r.rate -= share.value * along * direction;
-  const Matrix2d axis = direction * direction.transpose();
-  const Matrix2d across = (Matrix2d::Identity() - axis) / size;
-  r.by_sliding -= share.value * axis;
-  r.by_bristle = -(share.slope / friction.bristle_displacement * along * axis +
-                   share.value * (direction * at.sliding.transpose() * across + along * across));
-  return r;
+  const Carried m = carried(friction, at);
+  if (!m.slides) return {at.sliding, Matrix2d::Identity(), Matrix2d::Zero()};
+  return {(m.reach - at.bristle) / friction.bristle_time, m.by_total,
+          (m.by_total - Matrix2d::Identity()) / friction.bristle_time};
 }
 
 TangentForce tangent_force(const MotionFriction& friction, const BristleState& at) {
@@ -95,14 +85,12 @@ TangentForce tangent_force(const MotionFriction& friction, const BristleState& a
     return t;
   }
   const SlipLaw law = slip_law(friction, speed);
-  const BristleRate rate = bristle_rate(friction, at);
-  const Vector2d reach = (at.bristle + friction.bristle_time * rate.rate) / friction.bristle_displacement;
-  t.by_normal = law.coefficient * reach;
+  const Carried m = carried(friction, at);
+  t.by_normal = law.coefficient / friction.bristle_displacement * m.reach;
   t.force = at.normal * t.by_normal;
-  const double stiffness = at.normal * law.coefficient / friction.bristle_displacement;
-  t.by_bristle = stiffness * (Matrix2d::Identity() + friction.bristle_time * rate.by_bristle);
-  t.by_sliding =
-      stiffness * friction.bristle_time * rate.by_sliding + at.normal * law.slope * reach * at.sliding.transpose();
+  t.by_bristle = at.normal * law.coefficient / friction.bristle_displacement * m.by_total;
+  t.by_sliding = friction.bristle_time * t.by_bristle +
+                 at.normal * law.slope / friction.bristle_displacement * m.reach * at.sliding.transpose();
   return t;
 }
 

@@ -47,10 +47,12 @@ struct BristleState {
   double normal = 0.0;
 };
 
-/// dz/dt [m/s] of a bristle with its derivatives: w less what the slider runs.
+/// dz/dt [m/s] of a bristle with its derivatives: a spring and a dashpot side by side, in series with a slider that carries up
+/// to z_m.                                                                                     theory.md (M.9)
 ///
-///   dz/dt = w - alpha(|z|/z_m) max(0, w.z/|z|) z/|z|
-/// alpha is 0 up to 999/1000 of z_m, 1 at z_m: the bristle sticks without creep below, and slides in the direction of w beyond.
+///   e = z + tau w,   m = e min(1, z_m/|e|),   dz/dt = (m - z)/tau
+/// Below z_m this is w: the bristle sticks without creep. Beyond, |m| = z_m along the sliding, and z follows within tau. m is the
+/// nearest point of a circle, so that its derivative by e is never negative.
 struct BristleRate {
   Eigen::Vector2d rate = Eigen::Vector2d::Zero();
   Eigen::Matrix2d by_sliding = Eigen::Matrix2d::Identity();  ///< [-]
@@ -64,7 +66,7 @@ struct BristleRate {
 
 /// Friction by the law that `friction` names.
 ///   smooth:      f = mu(s)/s lambda w
-///   stick_slip:  f = mu(s) lambda (z + tau dz/dt)/z_m
+///   stick_slip:  f = mu(s) lambda m/z_m, m as with BristleRate
 [[nodiscard]] TangentForce tangent_force(const MotionFriction& friction, const BristleState& at);
 
 }  // namespace snare::coupling

@@ -21,7 +21,7 @@ namespace {
 
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
 constexpr double share_of_rods = 2e-5;
-constexpr double share_of_bodies = 1e-3;
+constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 // Without wires in motion Newton's method forgives a matrix of another step: a third of the matrices less, as many iterations.
 constexpr double matrix_change_of_bodies = 0.5;
 // Where no wave follows, a step may go through a whole touch.
@@ -42,7 +42,10 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
         w.name, rod,
         wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
   }
-  for (const MotionBody& b : motion.bodies) bodies_.emplace_back(b, motion.gravity, options);
+  for (int b = 0; b < static_cast<int>(motion.bodies.size()); ++b) {
+    const bool welded = std::ranges::any_of(motion.welds, [b](const MotionWeld& w) { return w.body == b; });
+    bodies_.emplace_back(motion.bodies[base::at(b)], motion.gravity, options, welded);
+  }
   for (const MotionContact& c : motion.contacts) {
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }
@@ -73,10 +76,10 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.max_order = options.max_order.value_or(default_order());
   ida.max_step = options.max_step;
   ida.newton_test = numerics::NewtonTest::every_unknown;
-  ida.newton_share = options.newton_share.value_or(rods_.empty() ? share_of_bodies : share_of_rods);
+  const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
+  ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (rods_.empty()) ida.matrix_change = matrix_change_of_bodies;
-  if (!rods_.empty() && std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; }))
-    ida.renewals = renewals_without_waves;
+  if (!rods_.empty() && !waves) ida.renewals = renewals_without_waves;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,

@@ -2,6 +2,8 @@
 
 #include "base/index.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <boost/math/tools/minima.hpp>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 
 namespace snare::coupling {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using numerics::VectorView;
 
@@ -25,7 +28,7 @@ WirePairSearch::WirePairSearch(const WirePair& pair, const wire::RodPart& a, con
     : thickness_(pair.radii[0] + pair.radii[1]), rods_{&a, &b}, curves_{BezierWire(a), BezierWire(b)} {
   // The gap's curvature along a straight wire that touches is at most one over the sum of the radii: see ContactSearch.
   constexpr double share = 0.25, most_pieces = 64.0;
-  margin_ = 0.5 * thickness_;
+  margin_ = thickness_;
   for (std::size_t w = 0; w < 2; ++w) {
     const double shortest = curves_[w].shortest();
     resolutions_[w] = std::max(share * std::min(thickness_, std::max(pair.radii[w], shortest)), shortest / most_pieces);
@@ -39,31 +42,49 @@ void WirePairSearch::place(std::array<ElementBoxes, 2>& boxes, const VectorView&
   for (std::size_t w = 0; w < 2; ++w) boxes[w].place(curves_[w], y);
 }
 
-// What two wires have gone against each other is at most what each has gone against the mean of all vertices.
+// What two wires have gone against each other is at most what each has gone against a rigid body: the one that moves most as both
+// together do.
 void WirePairSearch::update(const VectorView& y) {
   const bool first = last_[0].cols() == 0;
-  Vector3d mean_way = Vector3d::Zero(), mean_velocity = Vector3d::Zero();
-  for (std::size_t w = 0; w < 2; ++w) {
-    const wire::RodPart& rod = *rods_[w];
-    if (first) last_[w] = Eigen::Matrix3Xd::Zero(3, rod.vertices());
-    for (int i = 0; i < rod.vertices(); ++i) {
-      mean_way += (y.segment<3>(rod.position_of(i)) - last_[w].col(i)) / (2.0 * rod.vertices());
-      mean_velocity += y.segment<3>(rod.velocity_of(i)) / (2.0 * rod.vertices());
+  Vector3d centre = Vector3d::Zero(), way = Vector3d::Zero(), velocity = Vector3d::Zero();
+  const double count = rods_[0]->vertices() + rods_[1]->vertices();
+  const auto each = [&](const auto& use) {
+    for (std::size_t w = 0; w < 2; ++w) {
+      for (int i = 0; i < rods_[w]->vertices(); ++i)
+        use(w, i, Vector3d(y.segment<3>(rods_[w]->position_of(i))), Vector3d(y.segment<3>(rods_[w]->velocity_of(i))));
     }
-  }
-  double speed = 0.0;
-  for (std::size_t w = 0; w < 2; ++w) {
-    const wire::RodPart& rod = *rods_[w];
-    double way = 0.0;
-    for (int i = 0; i < rod.vertices(); ++i) {
-      const Vector3d x = y.segment<3>(rod.position_of(i));
-      way = std::max(way, (x - last_[w].col(i) - mean_way).norm());
-      last_[w].col(i) = x;
-      speeds_[w][i] = (y.segment<3>(rod.velocity_of(i)) - mean_velocity).norm();
-    }
-    if (!first) passed_ += weight_sum_ * way;
-    speed += speeds_[w].maxCoeff();
-  }
+  };
+  for (std::size_t w = 0; w < 2 && first; ++w) last_[w] = Eigen::Matrix3Xd::Zero(3, rods_[w]->vertices());
+  each([&](std::size_t w, int i, const Vector3d& x, const Vector3d& v) {
+    centre += x / count;
+    way += (x - last_[w].col(i)) / count;
+    velocity += v / count;
+  });
+  const Vector3d before = centre - way;
+  // Turn and spin of least squares about the centre, by the second moments there; round-off decides about an axis without any.
+  Matrix3d moments = Matrix3d::Zero();
+  Vector3d turn = Vector3d::Zero(), spin = Vector3d::Zero();
+  each([&](std::size_t w, int i, const Vector3d& x, const Vector3d& v) {
+    const Vector3d arm = x - centre;
+    moments += arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose();
+    turn += arm.cross(x - last_[w].col(i) - way);
+    spin += arm.cross(v - velocity);
+  });
+  constexpr double round_off = 1e-9;
+  moments.diagonal().array() += round_off * moments.trace();
+  const Eigen::LDLT<Matrix3d> solver(moments);
+  turn = solver.solve(turn);
+  spin = solver.solve(spin);
+  const double angle = turn.norm();
+  const Matrix3d R = angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
+  std::array<double, 2> ways{0.0, 0.0};
+  each([&](std::size_t w, int i, const Vector3d& x, const Vector3d& v) {
+    ways[w] = std::max(ways[w], (x - centre - R * (last_[w].col(i) - before)).norm());
+    last_[w].col(i) = x;
+    speeds_[w][i] = (v - velocity - spin.cross(x - centre)).norm();
+  });
+  if (!first) passed_ += weight_sum_ * (ways[0] + ways[1]);
+  const double speed = speeds_[0].maxCoeff() + speeds_[1].maxCoeff();
   // The boxes are looked through again when half of what was free has been used up.
   if (first || free_until_ - passed_ < 0.5 * clear_) {
     place(boxes_, y);
