@@ -71,7 +71,9 @@ MotionComparison with_every_model(const std::filesystem::path& file, const std::
         {file.string(), 0, "wires", "", "must have at least one, here or in [[snares]], to compare"});
   MotionComparison comparison{motions, {}};
   comparison.motions.runs.clear();
-  for (const char* model : {"full", "quasi_static", "stretched", "rod", "rod_linear"}) {
+  std::vector<std::string> models{"full", "quasi_static", "stretched", "rod", "rod_linear"};
+  models.insert(models.end(), motions.law_models.begin(), motions.law_models.end());
+  for (const std::string& model : models) {
     std::vector<base::Override> with_model = overrides;
     for (const std::string& key : motions.model_keys) with_model.push_back({key, fmt::format("\"{}\"", model)});
     try {

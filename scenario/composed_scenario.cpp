@@ -8,6 +8,7 @@
 #include "scenario/capture_reader.hpp"
 #include "scenario/composition.hpp"
 #include "scenario/drive_reader.hpp"
+#include "scenario/law_wire_reader.hpp"
 #include "scenario/load_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/phase_reader.hpp"
@@ -66,8 +67,9 @@ void read_frames(Composition& c) {
 
 void read_wires(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("wires")) {
-    c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping));
+    c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping, c.folder, c.input));
     c.model_keys.push_back(table.address() + ".model");
+    for (std::string& model : models_with_numbers(table)) c.law_models.insert(std::move(model));
   }
 }
 
@@ -205,6 +207,23 @@ void add_mounts(Composition& c) {
         "mass_rate_1_s", "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
 }
 
+/// Laws of pushes know their wire at rest. One may be without force over the first part of its travel: steps are limited to a tenth of a
+/// millimetre at the speed of the start, so that none leaps over the rest.
+void complete_pushes(Composition& c, coupling::MotionOptions& options) {
+  std::size_t next = 0;
+  for (const DeclaredWire& w : c.wires) {
+    if (!w.law) continue;
+    coupling::LawWire& law = c.motion.law_wires[next++];
+    if (!w.push) continue;
+    set_push_law(*w.push, w.wire.rod, law);
+    if (law.shaft.carrier.kind != MotionCarrier::Kind::body) continue;
+    const multibody::RigidBodyState& start = c.motion.bodies[at(law.shaft.carrier.index)].start;
+    const double speed = start.velocity.norm() + start.spin.norm() * (law.shaft.X_WS.p - start.position).norm();
+    constexpr double resolved_travel = 1e-4;  // [m]
+    if (w.push->law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
+  }
+}
+
 }  // namespace
 
 ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides) {
@@ -274,9 +293,11 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.input = c.input + document.canonical(least_advance_key);
   motions.duration = run.options.duration;
   document.finish();
+  complete_pushes(c, run.options);
   for (DeclaredWire& w : c.wires)
     if (!w.law) c.motion.wires.push_back(at_rest(std::move(w)));
   motions.model_keys = std::move(c.model_keys);
+  motions.law_models.assign(c.law_models.begin(), c.law_models.end());
   motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
   if (motions.output.modes) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,7 @@ struct Composition {
   std::map<std::string, SnareWires> snares = {};
   std::map<std::string, PlacedShape> shapes = {};
   std::vector<std::string> model_keys = {};  ///< of the wires
+  std::set<std::string> law_models = {};     ///< of which a wire has the numbers
   std::vector<DrawnLines> drawn = {};
 
   /// The joint under a key, reported when there is none.

@@ -51,7 +51,8 @@ multibody::Pose read_pose_in_frame(const TomlTable& table) {
   return X;
 }
 
-DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount) {
+DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount,
+                            const std::filesystem::path& folder, std::string& input) {
   DeclaredWire w;
   w.specification = read_wire(table);
   for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
@@ -62,9 +63,10 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
   w.wire.rod.elements = table.integer_or("elements", 60, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
-  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping);
+  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, folder, input);
   w.wire.rod.quasi_static = stand_in.quasi_static;
   w.law = stand_in.law;
+  w.push = stand_in.push;
   // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
   // without a force: it has no equilibrium that could be followed.
   constexpr double least_share = 1e-3;
@@ -97,12 +99,20 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   rod.properties.left.kind = w.wire.rod.properties.left.kind;
   rod.properties.right.kind = w.wire.rod.properties.right.kind;
   w.wire.rod = rod;
+  if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
+  if (w.from_carrier != w.to_carrier)
+    table.fail("model", fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
+                                    "between mounts that stand still",
+                                    table.text("model")));
+  else if (w.push && w.span > 0.0)
+    check_push_model(*w.push, rod, w.span, table);
 }
 
 DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placement& placement,
-                              const wire::RodDamping& damping) {
+                              const wire::RodDamping& damping, const std::filesystem::path& folder,
+                              std::string& input) {
   const std::string name = names.take(table);
-  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp);
+  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, folder, input);
   w.wire.name = name;
   const auto place = [&](std::string_view frame_key, std::string_view key, Vector3d& point,
                          coupling::MotionCarrier& carrier) {

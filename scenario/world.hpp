@@ -53,6 +53,7 @@ struct WireMotions {
   std::vector<Sensor> sensors;
   std::optional<CaptureTest> capture;
   std::vector<std::string> model_keys;  ///< of the models of a composed scenario's wires, as for `--set`
+  std::vector<std::string> law_models;  ///< words of laws of which a wire has the numbers
   std::vector<DrawnLines> drawn;        ///< of a composed scenario
   std::vector<NamedMotion> runs;
 };
