@@ -4,6 +4,8 @@
 #include "scenario/contact_law_reader.hpp"
 
 #include <cmath>
+#include <iterator>
+#include <span>
 
 namespace snare::scenario {
 
@@ -34,8 +36,7 @@ std::optional<LawWire> read_rod(const TomlTable& table, bool linear) {
 }  // namespace
 
 WireStandIn read_wire_stand_in(const TomlTable& table, const wire::WireSpecification& specification,
-                               const wire::RodDamping& damping, const std::filesystem::path& folder,
-                               std::string& input) {
+                               const wire::RodDamping& damping, const std::optional<BesideScenario>& beside) {
   static constexpr Choice<Model> models[] = {{"full", Model::full},
                                              {"quasi_static", Model::quasi_static},
                                              {"stretched", Model::stretched},
@@ -48,14 +49,17 @@ WireStandIn read_wire_stand_in(const TomlTable& table, const wire::WireSpecifica
                                              {"step_damped", Model::push},
                                              {"stretched_wire", Model::push},
                                              {"stretched_wire_linear", Model::push}};
+  constexpr std::size_t of_snares = 5;  // the first, which know no place
+  const std::span<const Choice<Model>> known = std::span(models).first(beside ? std::size(models) : of_snares);
   WireStandIn result;
-  const Model model = table.has("model") ? table.choice("model", models).value_or(Model::full) : Model::full;
+  const Model model = table.has("model") ? table.choice("model", known).value_or(Model::full) : Model::full;
   std::optional<LawWire> rod;
   if (table.has("rod")) rod = read_rod(table.table("rod"), model == Model::rod_linear);
   const std::string name = table.text_or("model", "full");
   for (const PushModelName& push : push_models()) {
+    if (!beside) break;
     if (push.model == name)
-      result.push = read_push_model(table, push.model, folder, input);
+      result.push = read_push_model(table, push.model, *beside);
     else if (table.has(push.table))
       read_numbers(table, push.model);
   }

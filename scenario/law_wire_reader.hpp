@@ -6,7 +6,6 @@
 #include "wire/rod_damping.hpp"
 #include "wire/specification.hpp"
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -20,11 +19,10 @@ struct WireStandIn {
   std::optional<PushModel> push = {};  ///< of a law of pushes, which its place and shaft complete
 };
 
-/// Of a wire's table; the tables of laws' numbers are read whatever the model is. folder: where files are. input: what stands for their content
-/// is added.
+/// Of a wire's table; the tables of laws' numbers are read whatever the model is. beside: of a wire that laws of pushes may stand for.
 [[nodiscard]] WireStandIn read_wire_stand_in(const base::TomlTable& table, const wire::WireSpecification& specification,
-                                             const wire::RodDamping& damping, const std::filesystem::path& folder,
-                                             std::string& input);
+                                             const wire::RodDamping& damping,
+                                             const std::optional<BesideScenario>& beside);
 /// The models of which a wire's table has the numbers, beside those that need none.
 [[nodiscard]] std::vector<std::string> models_with_numbers(const base::TomlTable& table);
 

@@ -52,10 +52,10 @@ multibody::Pose read_pose_in_frame(const TomlTable& table) {
 }
 
 DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount,
-                            const std::filesystem::path& folder, std::string& input) {
+                            const std::optional<BesideScenario>& beside) {
   DeclaredWire w;
   w.specification = read_wire(table);
-  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
+  for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
     if (table.has(key)) table.fail(key, "the wire is elastic and naturally straight in motion");
   }
   static constexpr Choice<wire::SpatialEnd::Kind> mounts[] = {{"clamped", wire::SpatialEnd::Kind::clamp},
@@ -63,7 +63,7 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
   w.wire.rod.elements = table.integer_or("elements", 60, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
-  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, folder, input);
+  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, beside);
   w.wire.rod.quasi_static = stand_in.quasi_static;
   w.law = stand_in.law;
   w.push = stand_in.push;
@@ -96,6 +96,7 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   rod.formulation = w.wire.rod.formulation;
   rod.quasi_static = w.wire.rod.quasi_static;
   rod.damping = w.wire.rod.damping;
+  rod.strands.time = w.wire.rod.strands.time;
   rod.properties.left.kind = w.wire.rod.properties.left.kind;
   rod.properties.right.kind = w.wire.rod.properties.right.kind;
   w.wire.rod = rod;
@@ -109,10 +110,9 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
 }
 
 DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placement& placement,
-                              const wire::RodDamping& damping, const std::filesystem::path& folder,
-                              std::string& input) {
+                              const wire::RodDamping& damping, const BesideScenario& beside) {
   const std::string name = names.take(table);
-  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, folder, input);
+  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, beside);
   w.wire.name = name;
   const auto place = [&](std::string_view frame_key, std::string_view key, Vector3d& point,
                          coupling::MotionCarrier& carrier) {

@@ -42,19 +42,18 @@ constexpr Kind kinds[] = {{"table", "table", {}},
                           {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
 
 /// The law of one case of a law.json.
-std::shared_ptr<const DistilledLaw> read_table(const TomlTable& table, const std::filesystem::path& folder,
-                                               std::string& input) {
+std::shared_ptr<const DistilledLaw> read_table(const TomlTable& table, const BesideScenario& beside) {
   const std::string name = table.text("file");
   const int number = table.integer_or("case", 1, 1, 100000);
   if (name.empty()) return nullptr;
   try {
-    std::vector<DistilledLaw> laws = read_law_file(folder / name);
+    std::vector<DistilledLaw> laws = read_law_file(beside.folder / name);
     if (static_cast<std::size_t>(number) > laws.size()) {
       table.fail("case", fmt::format("must be at most {}: {} has no more", laws.size(), name));
       return nullptr;
     }
     constexpr std::size_t largest = 1u << 30u;  // [byte]
-    input += fmt::format("{:x};", base::fingerprint(base::read_text(folder / name, largest)));
+    beside.input += fmt::format("{:x};", base::fingerprint(base::read_text(beside.folder / name, largest)));
     return std::make_shared<const DistilledLaw>(std::move(laws[static_cast<std::size_t>(number - 1)]));
   } catch (const base::InputError& error) {
     for (const base::InputProblem& problem : error.problems()) table.fail("file", problem.message());
@@ -73,15 +72,14 @@ const std::vector<PushModelName>& push_models() {
   return names;
 }
 
-std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view model,
-                                         const std::filesystem::path& folder, std::string& input) {
+std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view model, const BesideScenario& beside) {
   const Kind& kind = *std::ranges::find(kinds, model, &Kind::model);
   const TomlTable table = wire.table(kind.table);
   PushModel push;
   static constexpr Choice<double> sides[] = {{"outward", 1.0}, {"inward", -1.0}};
   if (table.has("direction")) push.side = table.choice("direction", sides).value_or(1.0);
   if (!kind.law) {
-    push.table = read_table(table, folder, input);
+    push.table = read_table(table, beside);
     return push.table ? std::optional(push) : std::nullopt;
   }
   push.position = table.number("position_mm", Range::above(0.0, 1e5), mm);

@@ -31,10 +31,15 @@ struct PushModelName {
 };
 [[nodiscard]] const std::vector<PushModelName>& push_models();
 
-/// Of the model of this name, from the table of its numbers in a wire's table; nothing after a problem, which is reported. input: what stands
-/// for the content of its file is added.
+/// Where files beside the scenario are, and what stands for the content of those that are read.
+struct BesideScenario {
+  const std::filesystem::path& folder;
+  std::string& input;
+};
+
+/// Of the model of this name, from the table of its numbers in a wire's table; nothing after a problem, which is reported.
 [[nodiscard]] std::optional<PushModel> read_push_model(const base::TomlTable& wire, std::string_view model,
-                                                       const std::filesystem::path& folder, std::string& input);
+                                                       const BesideScenario& beside);
 /// Reports what is wrong in a table of such numbers that stands beside another model.
 void read_numbers(const base::TomlTable& wire, std::string_view model);
 /// Reports what does not fit a wire: its span [m], which it is between mounts that stand still to each other.

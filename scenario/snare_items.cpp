@@ -113,8 +113,7 @@ Snares::Snares(Composition& composition) : c_(composition) {
     const int count = table.integer_or("wires", 3, 0, 12);
     double step = 0.0;
     if (count > 0) {
-      item.wire = read_wire_item(table.table("wire"), c_.damping, wire::SpatialEnd::Kind::twisting_pin,
-                                 c_.folder, c_.input);
+      item.wire = read_wire_item(table.table("wire"), c_.damping, wire::SpatialEnd::Kind::twisting_pin);
       step = 2.0 * item.wire->specification.diameter;
     } else {
       for (const char* key : {"wire", "wire_contact", "wall", "heights_mm"}) {
