@@ -4,8 +4,6 @@
 #include "scenario/contact_law_reader.hpp"
 
 #include <cmath>
-#include <iterator>
-#include <span>
 
 namespace snare::scenario {
 
@@ -37,22 +35,27 @@ std::optional<LawWire> read_rod(const TomlTable& table, bool linear) {
 
 WireStandIn read_wire_stand_in(const TomlTable& table, const wire::WireSpecification& specification,
                                const wire::RodDamping& damping, const std::optional<BesideScenario>& beside) {
-  static constexpr Choice<Model> models[] = {{"full", Model::full},
+  static constexpr Choice<Model> of_any[] = {{"full", Model::full},
                                              {"quasi_static", Model::quasi_static},
                                              {"stretched", Model::stretched},
                                              {"rod", Model::rod},
-                                             {"rod_linear", Model::rod_linear},
-                                             {"table", Model::push},
-                                             {"quadratic", Model::push},
-                                             {"spring_dashpot", Model::push},
-                                             {"power", Model::push},
-                                             {"step_damped", Model::push},
-                                             {"stretched_wire", Model::push},
-                                             {"stretched_wire_linear", Model::push}};
-  constexpr std::size_t of_snares = 5;  // the first, which know no place
-  const std::span<const Choice<Model>> known = std::span(models).first(beside ? std::size(models) : of_snares);
+                                             {"rod_linear", Model::rod_linear}};
+  static constexpr Choice<Model> of_listed[] = {{"full", Model::full},
+                                                {"quasi_static", Model::quasi_static},
+                                                {"stretched", Model::stretched},
+                                                {"rod", Model::rod},
+                                                {"rod_linear", Model::rod_linear},
+                                                {"table", Model::push},
+                                                {"quadratic", Model::push},
+                                                {"spring_dashpot", Model::push},
+                                                {"power", Model::push},
+                                                {"step_damped", Model::push},
+                                                {"stretched_wire", Model::push},
+                                                {"stretched_wire_linear", Model::push}};
   WireStandIn result;
-  const Model model = table.has("model") ? table.choice("model", known).value_or(Model::full) : Model::full;
+  Model model = Model::full;
+  if (table.has("model"))
+    model = (beside ? table.choice("model", of_listed) : table.choice("model", of_any)).value_or(Model::full);
   std::optional<LawWire> rod;
   if (table.has("rod")) rod = read_rod(table.table("rod"), model == Model::rod_linear);
   const std::string name = table.text_or("model", "full");

@@ -41,10 +41,19 @@ constexpr Kind kinds[] = {{"table", "table", {}},
                           {"stretched_wire", "stretched_wire", LawModel::stretched_wire},
                           {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
 
+double read_side(const TomlTable& table) {
+  static constexpr Choice<double> sides[] = {{"outward", 1.0}, {"inward", -1.0}};
+  return table.has("direction") ? table.choice("direction", sides).value_or(1.0) : 1.0;
+}
+
+int read_case(const TomlTable& table) {
+  return table.integer_or("case", 1, 1, 100000);
+}
+
 /// The law of one case of a law.json.
 std::shared_ptr<const DistilledLaw> read_table(const TomlTable& table, const BesideScenario& beside) {
   const std::string name = table.text("file");
-  const int number = table.integer_or("case", 1, 1, 100000);
+  const int number = read_case(table);
   if (name.empty()) return nullptr;
   try {
     std::vector<DistilledLaw> laws = read_law_file(beside.folder / name);
@@ -76,8 +85,7 @@ std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view
   const Kind& kind = *std::ranges::find(kinds, model, &Kind::model);
   const TomlTable table = wire.table(kind.table);
   PushModel push;
-  static constexpr Choice<double> sides[] = {{"outward", 1.0}, {"inward", -1.0}};
-  if (table.has("direction")) push.side = table.choice("direction", sides).value_or(1.0);
+  push.side = read_side(table);
   if (!kind.law) {
     push.table = read_table(table, beside);
     return push.table ? std::optional(push) : std::nullopt;
@@ -90,10 +98,10 @@ std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view
 void read_numbers(const TomlTable& wire, std::string_view model) {
   const Kind& kind = *std::ranges::find(kinds, model, &Kind::model);
   const TomlTable table = wire.table(kind.table);
-  static_cast<void>(table.has("direction"));
+  static_cast<void>(read_side(table));
   if (!kind.law) {
     static_cast<void>(table.text("file"));
-    static_cast<void>(table.has("case"));
+    static_cast<void>(read_case(table));
     return;
   }
   static_cast<void>(table.number("position_mm", Range::above(0.0, 1e5), mm));

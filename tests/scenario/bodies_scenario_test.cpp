@@ -196,7 +196,7 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"kind=\"push\"", "belongs to older files: take the line out"},
       {"duration_s=-1", "duration_s = -1, must be > 0"},
       {"output_interval_s=1e-9", "gives more than 1e+06 lines"},
-      {"body.mass_kg=1", "body = {...}, unknown key"},
+      {"body.mass_kg=1", "body, unknown key"},
       {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
       {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be where the wire begins"},
