@@ -30,7 +30,8 @@ void tell(const FinishedMotion& run, Console& console) {
     console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time", contacts[k],
                             touches_of(run.result, k).count, run.result.peak_force[k], most_points(run, k)));
   }
-  console.say(fmt::format("{} steps, {:.3g} times real time", run.result.statistics.steps, real_time_factor(run.result)));
+  console.say(
+      fmt::format("{} steps, {:.3g} times real time", run.result.statistics.steps, real_time_factor(run.result)));
 }
 
 ExitStatus simulate(const scenario::Scenario& asked, const CommonOptions& options, Console& console) {

@@ -99,8 +99,7 @@ coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings
   rod.damping = settings.damping;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
   const double wire_radius = 0.5 * test.wire.diameter;
-  const double touch =
-      scenario::first_touch(rest, test.pusher.radius + wire_radius, side).value(test.contact_position);
+  const double touch = scenario::first_touch(rest, test.pusher.radius + wire_radius, side).value(test.contact_position);
   coupling::Motion motion;
   motion.gravity = {test.gravity[0], test.gravity[1], test.gravity[2]};
   motion.wires.push_back({"wire", rod, rest, {}, {}});

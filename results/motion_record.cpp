@@ -50,8 +50,7 @@ std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions, con
   std::vector<scenario::SwingSample> samples;
   for (const coupling::MotionSample& s : run.samples) {
     const multibody::ArmState& state = s.arms[base::at(a)].state;
-    samples.push_back(
-        {s.time, multibody::deflection(arm, state, joint), state.v[velocity] - state.motor_rate[joint]});
+    samples.push_back({s.time, multibody::deflection(arm, state, joint), state.v[velocity] - state.motor_rate[joint]});
   }
   return scenario::swings(samples);
 }

@@ -45,7 +45,8 @@ void check_pusher(const DeclaredWire& wire, const ShaftSize& size, const TomlTab
   constexpr double same = 1e-6;
   const double radius = wire.push->table->wire.radius;
   if (std::abs(size.radius - radius) > same * std::max(radius, 1e-3))
-    shape.fail("radius_mm", fmt::format("must be {:.6g}, with which the law of {} was distilled", radius / base::mm, wire.wire.name));
+    shape.fail("radius_mm", fmt::format("must be {:.6g}, with which the law of {} was distilled", radius / base::mm,
+                                        wire.wire.name));
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ struct Composition {
   Placement placement = {};
   wire::RodDamping damping = {};
   double strand_time = wire::RodStrands{}.time;  ///< [s]
-  std::vector<DeclaredWire> wires = {};  ///< those of the motion, before they are at rest
-  std::string input = {};                ///< fingerprints of other files
+  std::vector<DeclaredWire> wires = {};          ///< those of the motion, before they are at rest
+  std::string input = {};                        ///< fingerprints of other files
   Names wire_names{"wire"}, body_names{"body"}, arm_names{"arm"}, shape_names{"shape"}, pair_names{"contact"};
   std::map<std::string, MotorJoint> joints = {};  ///< "ARM::JOINT", "SNARE::ring", "SNARE::carriage"
   std::map<std::string, SnareWires> snares = {};

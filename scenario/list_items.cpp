@@ -102,9 +102,10 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   w.wire.rod = rod;
   if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
   if (w.from_carrier != w.to_carrier)
-    table.fail("model", fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
-                                    "between mounts that stand still",
-                                    table.text("model")));
+    table.fail("model",
+               fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
+                           "between mounts that stand still",
+                           table.text("model")));
   else if (w.push && w.span > 0.0)
     check_push_model(*w.push, rod, w.span, table);
 }

@@ -124,15 +124,16 @@ void check_push_model(const PushModel& push, const wire::RodInMotion& rod, doubl
   same("axial stiffness", rod.properties.axial_stiffness, law.wire.axial_stiffness, 1.0, "N");
   const double slack = rod.length - span, margin = same_wire * span;
   if (slack < law.slack[0] - margin || slack > law.slack[1] + margin)
-    wire.fail("table", fmt::format("must have this wire's slack of {:.6g} mm in its range, {:.6g} to {:.6g} mm", slack / mm,
-                                   law.slack[0] / mm, law.slack[1] / mm));
+    wire.fail("table", fmt::format("must have this wire's slack of {:.6g} mm in its range, {:.6g} to {:.6g} mm",
+                                   slack / mm, law.slack[0] / mm, law.slack[1] / mm));
 }
 
 numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, double side) {
   std::vector<double> x, height;
   for (Eigen::Index k = 0; k < rest.cols(); ++k) {
     if (k > 0 && !(rest(0, k) > x.back()))
-      throw base::InputError({"", 0, "wire", "", "must lie over its chord at rest for a law to stand for it: it has too much slack"});
+      throw base::InputError(
+          {"", 0, "wire", "", "must lie over its chord at rest for a law to stand for it: it has too much slack"});
     x.push_back(rest(0, k));
     height.push_back(side * rest(1, k));
   }
@@ -188,7 +189,8 @@ void set_push_law(const PushModel& push, const wire::RodInMotion& rod, coupling:
     const coupling::PushEnergy::Value u = energy->at(p.depth, s);
     p.energy = u.energy;
     p.force = {u.by_position - u.by_travel * slope, u.by_travel};
-    p.by_place(0, 0) = u.by_positions - (2.0 * u.by_both - u.by_travels * slope) * slope - u.by_travel * touch.curvature(s);
+    p.by_place(0, 0) =
+        u.by_positions - (2.0 * u.by_both - u.by_travels * slope) * slope - u.by_travel * touch.curvature(s);
     p.by_place(0, 1) = p.by_place(1, 0) = u.by_both - u.by_travels * slope;
     p.by_place(1, 1) = u.by_travels;
     return p;

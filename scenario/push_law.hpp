@@ -19,7 +19,7 @@ namespace snare::scenario {
 /// What stands for a wire whose mounts stand still to each other, and that a shaft pushes across its chord: a table that was distilled
 /// from it, or a law of one place.                                                                      theory.md (M.27)
 struct PushModel {
-  double side = 1.0;         ///< of the push: 1 with the bulge, -1 against it
+  double side = 1.0;         ///< of the push: 1 with the bulge, -1 against it [-]
   coupling::ContactLaw law;  ///< of one place; empty: the table
   double position = 0.0;     ///< of that place along the chord, from the first mount [m]
   std::shared_ptr<const DistilledLaw> table;

@@ -41,10 +41,10 @@ MotionResult meeting(const std::filesystem::path& data, const std::string& model
 std::vector<Row> quadratic_law_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   for (const double speed : {0.05, 0.1, 0.2}) {
-    const MotionResult r = meeting(
-        data, "quadratic", speed, 0.0,
-        {"duration_s=1.0", "output_interval_s=1.0", "solver.relative_tolerance=1e-8",
-         "solver.body_position_tolerance_m=1e-11", "solver.body_velocity_tolerance_m_s=1e-8", "solver.max_step_s=1e-3"});
+    const MotionResult r = meeting(data, "quadratic", speed, 0.0,
+                                   {"duration_s=1.0", "output_interval_s=1.0", "solver.relative_tolerance=1e-8",
+                                    "solver.body_position_tolerance_m=1e-11", "solver.body_velocity_tolerance_m_s=1e-8",
+                                    "solver.max_step_s=1e-3"});
     double low = 0.0;
     double high = 50.0 * mm;
     for (int k = 0; k < 60; ++k) {
@@ -68,10 +68,9 @@ std::vector<Row> law_beside_wire_rows(const std::filesystem::path& data) {
   for (const double speed : {0.05, 0.1, 0.2}) {
     for (const double offset : {0.0, 50.0 * mm, 100.0 * mm}) {
       // A slow body has little energy: of 0.05 m/s a share of 1e-3.
-      const std::vector<std::string> settings{"duration_s=0.6", "output_interval_s=0.6",
-                                              "solver.body_position_tolerance_m=1e-9",
-                                              "solver.body_velocity_tolerance_m_s=1e-7",
-                                              fmt::format("solver.max_step_s={}", 0.2 * 6.75 * mm / speed)};
+      const std::vector<std::string> settings{
+          "duration_s=0.6", "output_interval_s=0.6", "solver.body_position_tolerance_m=1e-9",
+          "solver.body_velocity_tolerance_m_s=1e-7", fmt::format("solver.max_step_s={}", 0.2 * 6.75 * mm / speed)};
       const MotionResult wire = meeting(data, "full", speed, offset, settings);
       const MotionResult law = meeting(data, "quadratic", speed, offset, settings);
       const std::string at = fmt::format("{:g} m/s, probe {:g} mm off the centre of mass", speed, offset / mm);

@@ -18,10 +18,10 @@ class PushEnergy {
 
   /// U [J] and its derivatives by travel d and position s.
   struct Value {
-    double energy = 0.0;                            ///< [J]
-    double by_travel = 0.0, by_position = 0.0;      ///< [N]
-    double by_travels = 0.0, by_positions = 0.0;    ///< second ones, [N/m]
-    double by_both = 0.0;                           ///< [N/m]
+    double energy = 0.0;                          ///< [J]
+    double by_travel = 0.0, by_position = 0.0;    ///< [N]
+    double by_travels = 0.0, by_positions = 0.0;  ///< second ones, [N/m]
+    double by_both = 0.0;                         ///< [N/m]
   };
   /// travel [m], position from the first mount [m]. Without contact (travel < 0) nothing.
   [[nodiscard]] Value at(double travel, double position) const;

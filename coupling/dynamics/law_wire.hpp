@@ -16,12 +16,12 @@ namespace snare::coupling {
 
 /// What a wire between mounts that stand still to each other does to a shaft that pushes it, as a law of the shaft's place says.
 struct WirePush {
-  double depth = -1.0;                                       ///< travel from first touch [m]; > 0: they touch
-  Eigen::Vector2d force = Eigen::Vector2d::Zero();           ///< on the wire, along chord and push [N]
-  Eigen::Matrix2d by_place = Eigen::Matrix2d::Zero();        ///< its derivatives by the place [N/m]
-  Eigen::Vector2d by_rate = Eigen::Vector2d::Zero();         ///< and by the rate [N s/m]
-  double energy = 0.0;                                       ///< stored [J]
-  double lost = 0.0;                                         ///< [W], with all of what a law takes that does not say what it stores
+  double depth = -1.0;                                 ///< travel from first touch [m]; > 0: they touch
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();     ///< on the wire, along chord and push [N]
+  Eigen::Matrix2d by_place = Eigen::Matrix2d::Zero();  ///< its derivatives by the place [N/m]
+  Eigen::Vector2d by_rate = Eigen::Vector2d::Zero();   ///< and by the rate [N s/m]
+  double energy = 0.0;                                 ///< stored [J]
+  double lost = 0.0;  ///< [W], with all of what a law takes that does not say what it stores
 };
 
 /// Of the place where the shaft's axis goes through the plane of the wire, along chord and push from the first mount [m], and of its
@@ -64,7 +64,7 @@ struct LawWire {
   bool push_jumps = false;  ///< whether its force jumps where they touch
   /// Whether a push was made for a travel and a position along the chord [m]; none: for all.
   std::function<bool(double travel, double position)> covers;
-  double side = 1.0;        ///< of a push: 1 with the bulge, -1 against it
+  double side = 1.0;        ///< of a push: 1 with the bulge, -1 against it [-]
   MotionFriction friction;  ///< smooth; acts where the shaft slides along wire and axis; of a push: none
   WireStrength strength = {};
   WireTightness tightness = {};

@@ -308,8 +308,7 @@ LawWirePart::Action<S> LawWirePart::push(const std::array<FrameMotion<S>, 3>& fr
   add_friction(a.wrenches, frames, a.point, Vector3<S>(-force), a.share);
   const double h = std::abs(value_of(height)), s = value_of(on.along_chord), span = value_of(on.span);
   constexpr double flat = 1e-3;  // of the span: two straight pieces that say nothing of a tension
-  if (h > flat * span)
-    a.tension = a.normal / S(h / std::hypot(s, h) + h / std::hypot(span - s, h));
+  if (h > flat * span) a.tension = a.normal / S(h / std::hypot(s, h) + h / std::hypot(span - s, h));
   a.slide = v - force * (force.dot(v) / force.squaredNorm());
   return a;
 }

@@ -102,8 +102,9 @@ TEST_F(SimulateCommand, TellsWhatItSwingsByAtTheEnd) {
 
 TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
-    ASSERT_EQ(run(name, "--set duration_s=0.04 --set wires[wire].elements=24 --set 'bodies[payload].position_mm=[-10.0, "
-                        "-487.96, 0.0]'"),
+    ASSERT_EQ(run(name,
+                  "--set duration_s=0.04 --set wires[wire].elements=24 --set 'bodies[payload].position_mm=[-10.0, "
+                  "-487.96, 0.0]'"),
               0)
         << contents("log.txt");
     const json s = summary();

@@ -250,11 +250,10 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
 const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";
 
 TEST(WirePairScenarios, ContactsNameTheirWires) {
-  const WireMotions read =
-      read_scenario(net, {{"contacts[middle on lower].foundation.modulus_N_m2", "5e9"},
-                                                {"contacts[middle on lower].static_friction", "0.4"},
-                                                {"wires[lower].diameter_mm", "1.0"}})
-                                .motions;
+  const WireMotions read = read_scenario(net, {{"contacts[middle on lower].foundation.modulus_N_m2", "5e9"},
+                                               {"contacts[middle on lower].static_friction", "0.4"},
+                                               {"wires[lower].diameter_mm", "1.0"}})
+                               .motions;
   const coupling::Motion& motion = read.runs.at(0).motion;
   ASSERT_EQ(motion.wire_pairs.size(), 3u);
   const coupling::WirePair& pair = motion.wire_pairs[2];

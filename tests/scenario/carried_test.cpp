@@ -61,8 +61,8 @@ TEST(Carried, ADragAgainstTheWorldNeedsAWireThatStands) {
 // Short runs, begun just before the touch.
 TEST(Carried, CaptureKeepsItsBalances) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
-    const NamedMotion asked =
-        run_of(name, {"wires[wire].elements=24", "bodies[payload].position_mm=[-10.0, -487.96, 0.0]", "duration_s=0.05"});
+    const NamedMotion asked = run_of(
+        name, {"wires[wire].elements=24", "bodies[payload].position_mm=[-10.0, -487.96, 0.0]", "duration_s=0.05"});
     const Eigen::VectorXd start = asked.motion.arms[0].start.v;
     double arm_moved = 0.0;
     const coupling::MotionResult result =

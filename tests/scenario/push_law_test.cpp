@@ -123,8 +123,12 @@ nlohmann::json law_json(double span, double slack) {
                              {"mirrored", true},
                              {"nodes", nodes},
                              {"error", {{"bound_N", 0.1}, {"force_range_N", 10.0}}}};
-  const nlohmann::json wire{{"bending_stiffness_Nm2", bending}, {"axial_stiffness_N", axial}, {"length_mm", 1e3 * (span + slack)},
-                            {"span_mm", 1e3 * span},            {"radius_mm", 6.0},           {"friction", 0.0}};
+  const nlohmann::json wire{{"bending_stiffness_Nm2", bending},
+                            {"axial_stiffness_N", axial},
+                            {"length_mm", 1e3 * (span + slack)},
+                            {"span_mm", 1e3 * span},
+                            {"radius_mm", 6.0},
+                            {"friction", 0.0}};
   const nlohmann::json ranges{{"travel_mm", {0.0, 50.0 * span}},
                               {"position_mm", {100.0 * span, 500.0 * span}},
                               {"slack_mm", {1e3 * slack - 1.0, 1e3 * slack + 1.0}}};
@@ -137,7 +141,8 @@ class TablesOfPushes : public test::FolderFixture {
  protected:
   [[nodiscard]] NamedMotion read(const nlohmann::json& law, const std::vector<std::string>& settings) const {
     write("law.json", law.dump());
-    std::vector<std::string> all{"wires[wire].model=\"table\"", "wires[wire].table.file=\"" + path("law.json").string() + "\""};
+    std::vector<std::string> all{"wires[wire].model=\"table\"",
+                                 "wires[wire].table.file=\"" + path("law.json").string() + "\""};
     all.insert(all.end(), settings.begin(), settings.end());
     return air_table_with(all);
   }
@@ -164,14 +169,16 @@ TEST_F(TablesOfPushes, HaveAnEnergy) {
 }
 
 TEST_F(TablesOfPushes, KeepTheEnergyOfAnImpactBesideTheMiddle) {
-  const NamedMotion run = read(law_json(0.175, 0.005), {"bodies[target].position_mm=[10.0, -93.0, 0.0]", "duration_s=0.3", "solver.relative_tolerance=1e-9",
-                                 "solver.body_position_tolerance_m=1e-12", "solver.body_velocity_tolerance_m_s=1e-9",
-                                 "solver.body_angle_tolerance_rad=1e-11", "solver.body_spin_tolerance_rad_s=1e-8"});
+  const NamedMotion run =
+      read(law_json(0.175, 0.005),
+           {"bodies[target].position_mm=[10.0, -93.0, 0.0]", "duration_s=0.3", "solver.relative_tolerance=1e-9",
+            "solver.body_position_tolerance_m=1e-12", "solver.body_velocity_tolerance_m_s=1e-9",
+            "solver.body_angle_tolerance_rad=1e-11", "solver.body_spin_tolerance_rad_s=1e-8"});
   const coupling::MotionResult r = coupling::simulate(run.motion, run.options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   ASSERT_EQ(r.events.size(), 2u);
   EXPECT_EQ(r.energy.dissipated, 0.0);
-  EXPECT_NEAR(r.energy.kinetic, 0.0445, 1e-6 * 0.0445);  // falls with the tolerances
+  EXPECT_NEAR(r.energy.kinetic, 0.0445, 1e-6 * 0.0445);            // falls with the tolerances
   EXPECT_GT(std::abs(r.impulse[0].x()), 0.01 * r.impulse[0].y());  // along the chord
 }
 
@@ -180,10 +187,13 @@ TEST_F(TablesOfPushes, AreOfTheirWireAlone) {
   const auto told = [&](const nlohmann::json& of, const std::vector<std::string>& settings) {
     return test::refusal([&] { return read(of, settings); });
   };
-  EXPECT_THAT(told(law_json(0.17, 0.005), {}), HasSubstr("must have been distilled from this wire: its span is 170 mm, here 175 mm"));
+  EXPECT_THAT(told(law_json(0.17, 0.005), {}),
+              HasSubstr("must have been distilled from this wire: its span is 170 mm, here 175 mm"));
   EXPECT_THAT(told(law, {"wires[wire].youngs_modulus_GPa=190.0"}), HasSubstr("its bending stiffness is"));
-  EXPECT_THAT(told(law, {"wires[wire].length_mm=182.0"}), HasSubstr("must have this wire's slack of 7 mm in its range, 4 to 6 mm"));
-  EXPECT_THAT(told(law, {"shapes[probe].radius_mm=5.0"}), HasSubstr("must be 6, with which the law of wire was distilled"));
+  EXPECT_THAT(told(law, {"wires[wire].length_mm=182.0"}),
+              HasSubstr("must have this wire's slack of 7 mm in its range, 4 to 6 mm"));
+  EXPECT_THAT(told(law, {"shapes[probe].radius_mm=5.0"}),
+              HasSubstr("must be 6, with which the law of wire was distilled"));
   EXPECT_THAT(told(law, {"wires[wire].table.case=2"}), HasSubstr("wires[wire].table.case = 2, must be at most 1"));
   EXPECT_THAT(told(nlohmann::json::object(), {}), HasSubstr("law.json: schema, missing"));
 }
