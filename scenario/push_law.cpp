@@ -29,17 +29,17 @@ namespace {
 
 constexpr double same_wire = 1e-6;  // of a number of the wire of which a table was distilled
 
-struct Kind {
+struct NamedLaw {
   std::string_view model, table;
   std::optional<LawModel> law;
 };
-constexpr Kind kinds[] = {{"table", "table", {}},
-                          {"quadratic", "quadratic", LawModel::quadratic},
-                          {"spring_dashpot", "spring_dashpot", LawModel::spring_dashpot},
-                          {"power", "power", LawModel::power},
-                          {"step_damped", "step_damped", LawModel::step_damped},
-                          {"stretched_wire", "stretched_wire", LawModel::stretched_wire},
-                          {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
+constexpr NamedLaw named_laws[] = {{"table", "table", {}},
+                                   {"quadratic", "quadratic", LawModel::quadratic},
+                                   {"spring_dashpot", "spring_dashpot", LawModel::spring_dashpot},
+                                   {"power", "power", LawModel::power},
+                                   {"step_damped", "step_damped", LawModel::step_damped},
+                                   {"stretched_wire", "stretched_wire", LawModel::stretched_wire},
+                                   {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
 
 double read_side(const TomlTable& table) {
   static constexpr Choice<double> sides[] = {{"outward", 1.0}, {"inward", -1.0}};
@@ -75,14 +75,14 @@ std::shared_ptr<const DistilledLaw> read_table(const TomlTable& table, const Bes
 const std::vector<PushModelName>& push_models() {
   static const std::vector<PushModelName> names = [] {
     std::vector<PushModelName> list;
-    for (const Kind& kind : kinds) list.push_back({kind.model, kind.table});
+    for (const NamedLaw& kind : named_laws) list.push_back({kind.model, kind.table});
     return list;
   }();
   return names;
 }
 
 std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view model, const BesideScenario& beside) {
-  const Kind& kind = *std::ranges::find(kinds, model, &Kind::model);
+  const NamedLaw& kind = *std::ranges::find(named_laws, model, &NamedLaw::model);
   const TomlTable table = wire.table(kind.table);
   PushModel push;
   push.side = read_side(table);
@@ -96,7 +96,7 @@ std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view
 }
 
 void read_numbers(const TomlTable& wire, std::string_view model) {
-  const Kind& kind = *std::ranges::find(kinds, model, &Kind::model);
+  const NamedLaw& kind = *std::ranges::find(named_laws, model, &NamedLaw::model);
   const TomlTable table = wire.table(kind.table);
   static_cast<void>(read_side(table));
   if (!kind.law) {
