@@ -57,7 +57,7 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
 
 ExitStatus compare_motions(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
-  const scenario::WireMotions& motions = composed_motions(file, asked);
+  const scenario::WireMotions& motions = asked.motions;
   const ResultFolder folder(options, {"compare.json", "report.html", "checkpoint.bin"});
   const MotionComparison comparison = with_every_model(file, overrides_of(options), motions);
   const std::vector<MotionRecord> records = run_motions(

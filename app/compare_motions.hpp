@@ -4,7 +4,7 @@
 
 namespace snare::app {
 
-/// A composed scenario with every model of its wires, the full one first: compare.json, report.html.
+/// A scenario with every model of its wires, the full one first: compare.json, report.html.
 [[nodiscard]] ExitStatus compare_motions(const std::filesystem::path& file, const CommonOptions& options,
                                          Console& console);
 

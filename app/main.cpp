@@ -74,7 +74,7 @@ const Verb verbs[] = {
      "experiment, wire or scenario file", true,
      "snare compare data/experiments/published_static.toml --out out/compare", snare::app::run_compare,
      "snare-comparison/1"},
-    {"simulate", "a dynamic scenario: a body that meets a wire, a joint step, an arm that is pushed", "SCENARIO.toml",
+    {"simulate", "a dynamic scenario: wires, bodies, arms and snares in one system of equations", "SCENARIO.toml",
      "scenario file", true, "snare simulate data/scenarios/air_table.toml --out out/air_table",
      snare::app::run_simulate, "snare-summary/1"},
     {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,

@@ -162,26 +162,17 @@ py::tuple distil(const Path& file, const Pairs& set, int threads, const py::obje
 py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
   const auto asked = std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
   ColumnSink history, telemetry;
-  json document;
-  if (const auto* motions = std::get_if<scenario::WireMotions>(&asked->content)) {
-    const auto records =
-        made([asked, motions](const results::Watch& watch) { return results::simulate_all(motions->runs, watch); },
-             threads, progress);
-    const std::vector<results::FinishedMotion> finished = results::finished_motions(*motions, *records);
-    document = results::motion_summary(*asked, *motions, finished);
-    document["interrupted"] = results::left_undone(motions->runs, *records);
-    document["warnings"] = results::motion_warnings(finished);
-    results::give_history(history, *motions, finished);
-    if (!motions->sensors.empty()) results::give_telemetry(telemetry, *motions, finished.front().samples);
-  } else {
-    const auto& motion = std::get<scenario::ArmMotion>(asked->content);
-    const auto record =
-        made([asked, &motion](const results::Watch& watch) { return results::simulate_arm(motion, watch); }, threads,
-             progress);
-    document = results::arm_summary(*asked, motion, *record);
-    document["interrupted"] = record->history.report.termination == numerics::Termination::interrupted;
-    results::give_history(history, motion.scenario.arm, record->history);
-  }
+  const scenario::WireMotions& motions = asked->motions;
+  const auto records =
+      made([asked](const results::Watch& watch) { return results::simulate_all(asked->motions.runs, watch); }, threads,
+           progress);
+  const std::vector<results::FinishedMotion> finished = results::finished_motions(motions, *records);
+  const results::FinishedMotion& run = finished.front();
+  json document = results::motion_summary(*asked, run);
+  document["interrupted"] = results::left_undone(motions.runs, *records);
+  document["warnings"] = results::motion_warnings(finished);
+  results::give_history(history, run.asked.motion, run.samples);
+  if (!motions.sensors.empty()) results::give_telemetry(telemetry, motions, run.samples);
   return py::make_tuple(to_python(document), history.take(), telemetry.take());
 }
 
@@ -211,7 +202,7 @@ json compared_pushes(const Path& file, const Pairs& set, int threads, const py::
 json compared_motions(const Path& file, const Pairs& set, int threads, const py::object& progress) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(set));
   const auto comparison = std::make_shared<const results::MotionComparison>(
-      results::with_every_model(file, overrides_of(set), results::composed_motions(file, asked)));
+      results::with_every_model(file, overrides_of(set), asked.motions));
   const auto records =
       made([comparison](const results::Watch& watch) { return results::simulate_all(comparison->motions.runs, watch); },
            threads, progress);

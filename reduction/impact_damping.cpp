@@ -1,9 +1,13 @@
 #include "reduction/impact_damping.hpp"
 
-#include "scenario/contact_scenario.hpp"
+#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/start.hpp"
+#include "scenario/push_law.hpp"
+#include "wire/rod_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace snare::reduction {
@@ -86,6 +90,34 @@ double damping_of_restitution(const numerics::HermiteCurve& law, double restitut
 
 namespace {
 
+/// A body whose centre of mass is on the pusher's axis moves along the push towards the wire at rest.
+coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings& settings, double speed, double side) {
+  wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, settings.elements);
+  const auto end = test.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
+                                                               : wire::SpatialEnd::Kind::twisting_pin;
+  rod.properties.left.kind = rod.properties.right.kind = end;
+  rod.damping = settings.damping;
+  const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
+  const double wire_radius = 0.5 * test.wire.diameter;
+  const double touch = scenario::first_touch(rest, test.pusher.radius + wire_radius, side).value(test.contact_position);
+  coupling::Motion motion;
+  motion.gravity = {test.gravity[0], test.gravity[1], test.gravity[2]};
+  motion.wires.push_back({"wire", rod, rest, {}, {}});
+  coupling::MotionBody body;
+  body.properties.mass = 2.0 * settings.mass;
+  body.properties.inertia = settings.mass * Eigen::Matrix3d::Identity();
+  body.start.position = {test.contact_position, side * (touch - start_distance), 0.0};
+  body.start.velocity = {0.0, side * speed, 0.0};
+  motion.bodies.push_back(body);
+  coupling::MotionContact contact;
+  contact.name = "wire";
+  contact.shape = std::make_shared<coupling::EndlessCylinder>(test.pusher.radius);
+  contact.wire_radius = wire_radius;
+  contact.friction = {test.pusher.friction, test.pusher.friction, 0.01, 1.0};
+  motion.contacts.push_back(contact);
+  return motion;
+}
+
 /// Adds the mirror image of the only wire, about the plane x = `position`, with a contact of its own: the body then feels
 /// no force across the push, as on a slide. Its mass has to be twice that on one wire.
 void add_mirror_image(coupling::Motion& motion, double position) {
@@ -110,15 +142,6 @@ void add_mirror_image(coupling::Motion& motion, double position) {
 ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
                             const numerics::HermiteCurve& loading, numerics::SolveReport& report) {
   const double side = test.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
-  scenario::ContactScenario scenario;
-  scenario.push = test;
-  scenario.damping = settings.damping;
-  scenario.elements = settings.elements;
-  scenario.body.properties.mass = 2.0 * settings.mass;
-  scenario.body.properties.inertia = settings.mass * Eigen::Matrix3d::Identity();
-  scenario.body.start.velocity = {0.0, side * speed, 0.0};
-  scenario.body.start.position.y() = -start_distance;
-  scenario.friction = {test.pusher.friction, test.pusher.friction, 0.01, 1.0};
   const double half = half_period(loading, settings.mass, speed);
   coupling::MotionOptions options;
   options.duration = most_periods * half + 4.0 * start_distance / speed;
@@ -129,7 +152,7 @@ ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSetti
   options.velocity_tolerance = 1e-6;
   options.max_step = 0.2 * (test.pusher.radius + 0.5 * test.wire.diameter) / speed;
 
-  coupling::Motion motion = scenario::motion_of(scenario, {"wire", "wire", {}});
+  coupling::Motion motion = meeting(test, settings, speed, side);
   add_mirror_image(motion, test.contact_position);
   const double start = motion.bodies.front().start.position.y();
   ImpactDamping result;

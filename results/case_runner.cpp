@@ -22,7 +22,6 @@
 #include <set>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 namespace snare::results {
 
@@ -45,39 +44,19 @@ bool keeps_history(const CaseEnd& end) {
   return end.status == Status::done || end.status == Status::failed;
 }
 
-CaseEnd simulate(const scenario::Scenario& asked, const scenario::WireMotions& motions, const Stop& stop, json& result,
-                 TableSink* history) {
-  std::vector<MotionRecord> records;
-  CaseEnd end;
-  for (const scenario::NamedMotion& one : motions.runs) {
-    coupling::MotionOptions options = one.options;
-    options.stop = stop;
-    MotionRecord record;
-    record.result = coupling::simulate(one.motion, options, [&](const coupling::MotionSample& sample) {
-      record.samples.push_back(sample);
-      return false;
-    });
-    end = ending(record.result.report.usable(), record.result.report.termination, record.result.report.message);
-    records.push_back(std::move(record));
-    if (end.status != Status::done) break;
-  }
-  if (history != nullptr && keeps_history(end)) give_history(*history, motions, finished_motions(motions, records));
-  if (end.status != Status::done) return end;
-  result = motion_summary(asked, motions, finished_motions(motions, records));
-  return end;
-}
-
-CaseEnd simulate(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const Stop& stop, json& result,
-                 TableSink* history) {
-  multibody::ArmScenario arm = motion.scenario;
-  arm.stop = stop;
-  ArmRecord record;
-  record.history = multibody::simulate(arm);
-  if (motion.joint >= 0) record.swings = scenario::swings(record.history, arm.arm, motion.joint);
-  const auto& report = record.history.report;
+CaseEnd simulate(const scenario::Scenario& asked, const Stop& stop, json& result, TableSink* history) {
+  const scenario::NamedMotion& one = asked.motions.runs.front();
+  coupling::MotionOptions options = one.options;
+  options.stop = stop;
+  MotionRecord record;
+  record.result = coupling::simulate(one.motion, options, [&](const coupling::MotionSample& sample) {
+    record.samples.push_back(sample);
+    return false;
+  });
+  const auto& report = record.result.report;
   CaseEnd end = ending(report.usable(), report.termination, report.message);
-  if (history != nullptr && keeps_history(end)) give_history(*history, motion.scenario.arm, record.history);
-  if (end.status == Status::done) result = arm_summary(asked, motion, record);
+  if (history != nullptr && keeps_history(end)) give_history(*history, one.motion, record.samples);
+  if (end.status == Status::done) result = motion_summary(asked, {one, record.samples, record.result});
   return end;
 }
 
@@ -187,10 +166,7 @@ void CaseRunner::check(const Overrides& overrides, TableSink* names) const {
   if (verb_ == "simulate") {
     const scenario::Scenario asked = scenario::read_scenario(file_, overrides);
     if (names == nullptr) return;
-    if (const auto* arm = std::get_if<scenario::ArmMotion>(&asked.content))
-      give_history(*names, arm->scenario.arm, {});
-    else
-      give_history(*names, std::get<scenario::WireMotions>(asked.content), {});
+    give_history(*names, asked.motions.runs.front().motion, {});
   } else if (verb_ == "distil") {
     static_cast<void>(reduction::read_wire_file(file_, overrides));
   } else {
@@ -205,9 +181,7 @@ void CaseRunner::check(const Overrides& overrides, TableSink* names) const {
 CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& result, TableSink* history) const {
   try {
     if (verb_ == "simulate") {
-      const scenario::Scenario asked = scenario::read_scenario(file_, overrides);
-      return std::visit([&](const auto& content) { return simulate(asked, content, stop, result, history); },
-                        asked.content);
+      return simulate(scenario::read_scenario(file_, overrides), stop, result, history);
     }
     if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), stop, result);
     const identification::Experiment experiment =

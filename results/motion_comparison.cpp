@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace snare::results {
 
@@ -56,14 +55,6 @@ json differences(const json& outcome, const json& reference) {
 
 }  // namespace
 
-const scenario::WireMotions& composed_motions(const std::filesystem::path& file, const scenario::Scenario& asked) {
-  const auto* motions = std::get_if<scenario::WireMotions>(&asked.content);
-  if (motions == nullptr || !motions->composed)
-    throw base::InputError(
-        {file.string(), 0, "schema", asked.kind, "must be \"snare-scenario/2\": a scenario that lists what there is"});
-  return *motions;
-}
-
 MotionComparison with_every_model(const std::filesystem::path& file, const std::vector<base::Override>& overrides,
                                   const scenario::WireMotions& motions) {
   if (motions.model_keys.empty())
@@ -71,12 +62,13 @@ MotionComparison with_every_model(const std::filesystem::path& file, const std::
         {file.string(), 0, "wires", "", "must have at least one, here or in [[snares]], to compare"});
   MotionComparison comparison{motions, {}};
   comparison.motions.runs.clear();
-  for (const char* model : {"full", "quasi_static", "stretched", "rod", "rod_linear"}) {
+  std::vector<std::string> models{"full", "quasi_static", "stretched", "rod", "rod_linear"};
+  models.insert(models.end(), motions.law_models.begin(), motions.law_models.end());
+  for (const std::string& model : models) {
     std::vector<base::Override> with_model = overrides;
     for (const std::string& key : motions.model_keys) with_model.push_back({key, fmt::format("\"{}\"", model)});
     try {
-      const scenario::Scenario asked = scenario::read_scenario(file, with_model);
-      scenario::NamedMotion one = std::get<scenario::WireMotions>(asked.content).runs.front();
+      scenario::NamedMotion one = scenario::read_scenario(file, with_model).motions.runs.front();
       one.name = one.model = model;
       comparison.motions.runs.push_back(std::move(one));
     } catch (const base::InputError& error) {

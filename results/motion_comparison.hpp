@@ -12,16 +12,12 @@
 
 namespace snare::results {
 
-/// The motions of a scenario that lists what there is; throws base::InputError for another one. `file` stands in the message.
-[[nodiscard]] const scenario::WireMotions& composed_motions(const std::filesystem::path& file,
-                                                            const scenario::Scenario& asked);
-
 /// A scenario once for each model of its wires, the full one first.
 struct MotionComparison {
   scenario::WireMotions motions;
   std::vector<std::pair<std::string, std::string>> left_out;  ///< models that it cannot have, with the reason
 };
-/// Of a composed scenario, read from its file anew for each model. Throws base::InputError where it has no wires.
+/// Of a scenario, read from its file anew for each model. Throws base::InputError where it has no wires.
 [[nodiscard]] MotionComparison with_every_model(const std::filesystem::path& file,
                                                 const std::vector<base::Override>& overrides,
                                                 const scenario::WireMotions& motions);

@@ -13,7 +13,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace snare::results {
@@ -25,27 +24,22 @@ using base::degree;
 using base::mm;
 using coupling::MotionSample;
 using Eigen::Vector3d;
-using multibody::ArmSample;
-using multibody::RigidBodyState;
 
 /// Columns of a history, each a number of every sample: in SI, written in a unit of so many SI units.
-template <class Sample>
 class Columns {
  public:
-  using Number = std::function<double(const Sample&)>;
+  using Number = std::function<double(const MotionSample&)>;
 
   void add(std::string name, Number number, double unit = 1.0) {
-    columns_.push_back({std::move(name), std::move(number), unit, false});
+    columns_.push_back({std::move(name), std::move(number), unit});
   }
-  void add_count(std::string name, Number number) {
-    columns_.push_back({std::move(name), std::move(number), 1.0, true});
-  }
-  /// Columns BEFORExAFTER, BEFOREyAFTER and, of three, BEFOREzAFTER.
+  /// Columns BEFORExAFTER, BEFOREyAFTER, BEFOREzAFTER.
   void add_vector(const std::string& before, const std::string& after,
-                  const std::function<Vector3d(const Sample&)>& vector, double unit = 1.0, int count = 3) {
-    for (int k = 0; k < count; ++k)
+                  const std::function<Vector3d(const MotionSample&)>& vector, double unit = 1.0) {
+    for (int k = 0; k < 3; ++k)
       add(
-          fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const Sample& s) { return vector(s)[k]; }, unit);
+          fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const MotionSample& s) { return vector(s)[k]; },
+          unit);
   }
 
   [[nodiscard]] std::vector<std::string> names() const {
@@ -53,7 +47,7 @@ class Columns {
     for (const Column& column : columns_) names.push_back(column.name);
     return names;
   }
-  void append(const Sample& sample, std::vector<base::CsvCell>& row) const {
+  void append(const MotionSample& sample, std::vector<base::CsvCell>& row) const {
     for (const Column& column : columns_) row.push_back(column.cell(sample));
   }
 
@@ -62,100 +56,23 @@ class Columns {
     std::string name;
     Number number;
     double unit;
-    bool count;  // written as a whole number
 
-    [[nodiscard]] base::CsvCell cell(const Sample& sample) const {
+    [[nodiscard]] base::CsvCell cell(const MotionSample& sample) const {
       const double value = number(sample);
-      if (count) return static_cast<long long>(value);
       return unit == 1.0 ? value : base::in_unit(value, unit);
     }
   };
   std::vector<Column> columns_;
 };
 
-void add_energies(Columns<MotionSample>& columns) {
+void add_energies(Columns& columns) {
   for (const auto& [name, energy] : energies)
     columns.add(fmt::format("{}_J", name), [energy = energy](const MotionSample& s) { return s.energy.*energy; });
 }
 
-const RigidBodyState& body(const MotionSample& s) {
-  return s.bodies.front();
-}
-
-/// Angle about z [rad] of a body that turns mainly about it.
-double angle(const RigidBodyState& s) {
-  const Eigen::Quaterniond& q = s.orientation;
-  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
-}
-
-void add_only_contact(Columns<MotionSample>& columns) {
-  columns.add("force_N", [](const MotionSample& s) { return s.contacts.front().normal_force; });
-  columns.add(
-      "penetration_mm", [](const MotionSample& s) { return -s.contacts.front().gap; }, mm);
-  columns.add(
-      "contact_arc_mm", [](const MotionSample& s) { return s.contacts.front().arc; }, mm);
-}
-
-/// Force on the left or the right mount's end of the first wire [N]; zero where a law stands for it.
-Vector3d mount_force(const MotionSample& s, std::size_t mount) {
-  return s.mount_forces.empty() ? Vector3d::Zero() : s.mount_forces[mount];
-}
-
-/// One body that meets one wire: what happens in the plane of the push.
-Columns<MotionSample> body_on_wire() {
-  Columns<MotionSample> columns;
-  add_only_contact(columns);
-  columns.add_vector(
-      "body_", "_mm", [](const MotionSample& s) { return body(s).position; }, mm, 2);
-  columns.add(
-      "body_angle_deg", [](const MotionSample& s) { return angle(body(s)); }, degree);
-  columns.add_vector(
-      "body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; }, 1.0, 2);
-  columns.add("body_spin_rad_s", [](const MotionSample& s) { return body(s).spin.z(); });
-  columns.add_vector(
-      "mount_left_", "_N", [](const MotionSample& s) { return mount_force(s, 0); }, 1.0, 2);
-  columns.add_vector(
-      "mount_right_", "_N", [](const MotionSample& s) { return mount_force(s, 1); }, 1.0, 2);
-  add_energies(columns);
-  columns.add("slip_speed_m_s", [](const MotionSample& s) { return s.contacts.front().slip_speed; });
-  columns.add_count("sticking", [](const MotionSample& s) { return s.contacts.front().sticking ? 1.0 : 0.0; });
-  return columns;
-}
-
-/// Force of the arm on what it carries, world axes [N].
-Vector3d carried_force(const coupling::Motion& motion, const MotionSample& s) {
-  if (!s.welds.empty()) return s.welds.front().force;
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t k = 0; k < motion.mounts.size(); ++k) sum += s.mount_forces[k];
-  return sum;
-}
-
-/// The same with an arm.
-Columns<MotionSample> body_on_wire_with_arm(const coupling::Motion& motion) {
-  Columns<MotionSample> columns;
-  add_only_contact(columns);
-  columns.add_vector(
-      "body_", "_mm", [](const MotionSample& s) { return body(s).position; }, mm);
-  columns.add_vector("body_v", "_m_s", [](const MotionSample& s) { return body(s).velocity; });
-  columns.add_vector("body_spin_", "_rad_s", [](const MotionSample& s) { return body(s).spin; });
-  columns.add_vector("carried_", "_N", [&motion](const MotionSample& s) { return carried_force(motion, s); });
-  const multibody::ElasticArm& arm = motion.arms.front().arm;
-  for (int j = 0; j < arm.motors(); ++j) {
-    const std::string& name = arm.joints[at(j)].name;
-    columns.add(
-        name + "_motor_deg", [j](const MotionSample& s) { return s.arms.front().state.motor[j]; }, degree);
-    columns.add(
-        name + "_deflection_deg", [&motion, j](const MotionSample& s) { return joint_deflection(motion, s, j); },
-        degree);
-    columns.add(name + "_torque_Nm", [j](const MotionSample& s) { return s.arms.front().joint_torque[j]; });
-  }
-  add_energies(columns);
-  return columns;
-}
-
 /// Lists of bodies and contacts.
-Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
-  Columns<MotionSample> columns;
+Columns of_bodies_and_contacts(const coupling::Motion& motion) {
+  Columns columns;
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const std::string name = motion.bodies[k].name + " ";
     columns.add_vector(
@@ -181,7 +98,7 @@ Columns<MotionSample> bodies_among_wires(const coupling::Motion& motion) {
 }
 
 /// Joints of arms and snares, wires on mounts, bushings.
-void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns) {
+void add_what_carries(const coupling::Motion& motion, Columns& columns) {
   for (std::size_t a = 0; a < motion.arms.size(); ++a) {
     const multibody::ElasticArm& arm = motion.arms[a].arm;
     for (int j = 0; j < arm.motors(); ++j) {
@@ -215,63 +132,6 @@ void add_composed(const coupling::Motion& motion, Columns<MotionSample>& columns
   }
 }
 
-Columns<MotionSample> columns_of(const scenario::WireMotions& motions) {
-  if (!motions.probe) {
-    Columns<MotionSample> columns = bodies_among_wires(motions.runs.front().motion);
-    if (motions.composed) add_composed(motions.runs.front().motion, columns);
-    add_energies(columns);
-    return columns;
-  }
-  const bool with_arm = !motions.runs.empty() && !motions.runs.front().motion.arms.empty();
-  return with_arm ? body_on_wire_with_arm(motions.runs.front().motion) : body_on_wire();
-}
-
-Columns<ArmSample> columns_of(const multibody::ElasticArm& arm) {
-  Columns<ArmSample> columns;
-  for (int j = 0; j < arm.motors(); ++j) {
-    const std::string& name = arm.joints[at(j)].name;
-    columns.add(
-        name + "_motor_deg", [j](const ArmSample& s) { return s.state.motor[j]; }, degree);
-    columns.add(
-        name + "_deflection_deg", [j](const ArmSample& s) { return s.deflection[j]; }, degree);
-    columns.add(name + "_joint_torque_Nm", [j](const ArmSample& s) { return s.joint_torque[j]; });
-    columns.add(name + "_drive_torque_Nm", [j](const ArmSample& s) { return s.drive_torque[j]; });
-  }
-  columns.add("energy_J", [](const ArmSample& s) { return s.energy; });
-  columns.add("work_drives_J", [](const ArmSample& s) { return s.work.motors; });
-  columns.add("work_loads_J", [](const ArmSample& s) { return s.work.loads; });
-  columns.add("lost_J", [](const ArmSample& s) { return s.work.lost; });
-  columns.add_vector("momentum_", "_Ns", [](const ArmSample& s) { return s.momentum.force; });
-  return columns;
-}
-
-/// Samples of one run; unnamed: the only one.
-template <class Sample>
-struct Run {
-  std::string_view name;
-  const std::vector<Sample>& samples;
-};
-
-enum class Runs { named, only };
-
-template <class Sample>
-void give(TableSink& sink, const Columns<Sample>& columns, const std::vector<Run<Sample>>& runs, Runs kind) {
-  std::vector<std::string> names;
-  if (kind == Runs::named) names.emplace_back("model");
-  names.emplace_back("time_s");
-  for (std::string& name : columns.names()) names.push_back(std::move(name));
-  sink.begin(std::move(names));
-  for (const Run<Sample>& run : runs) {
-    for (const Sample& s : run.samples) {
-      std::vector<base::CsvCell> row;
-      if (kind == Runs::named) row.emplace_back(run.name);
-      row.emplace_back(s.time);
-      columns.append(s, row);
-      sink.row(row);
-    }
-  }
-}
-
 /// A reading, in the unit of its column: one without noise has no tail of the conversion either.
 double as_read(const scenario::Sensor& sensor, double reading) {
   const double unit = sensor.unit();
@@ -280,11 +140,18 @@ double as_read(const scenario::Sensor& sensor, double reading) {
 
 }  // namespace
 
-void give_history(TableSink& sink, const scenario::WireMotions& motions, const std::vector<FinishedMotion>& finished) {
-  std::vector<Run<MotionSample>> runs;
-  runs.reserve(finished.size());
-  for (const FinishedMotion& run : finished) runs.push_back({run.asked.name, run.samples});
-  give(sink, columns_of(motions), runs, motions.probe ? Runs::named : Runs::only);
+void give_history(TableSink& sink, const coupling::Motion& motion, const std::vector<MotionSample>& samples) {
+  Columns columns = of_bodies_and_contacts(motion);
+  add_what_carries(motion, columns);
+  add_energies(columns);
+  std::vector<std::string> names{"time_s"};
+  for (std::string& name : columns.names()) names.push_back(std::move(name));
+  sink.begin(std::move(names));
+  for (const MotionSample& s : samples) {
+    std::vector<base::CsvCell> row{s.time};
+    columns.append(s, row);
+    sink.row(row);
+  }
 }
 
 void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
@@ -318,21 +185,10 @@ void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
   }
 }
 
-void give_history(TableSink& sink, const multibody::ElasticArm& arm, const multibody::ArmHistory& history) {
-  give<ArmSample>(sink, columns_of(arm), {{"", history.samples}}, Runs::only);
-}
-
-void write_history(const std::filesystem::path& file, const scenario::WireMotions& motions,
-                   const std::vector<FinishedMotion>& finished) {
+void write_history(const std::filesystem::path& file, const coupling::Motion& motion,
+                   const std::vector<MotionSample>& samples) {
   CsvSink csv(file);
-  give_history(csv, motions, finished);
-  csv.commit();
-}
-
-void write_history(const std::filesystem::path& file, const multibody::ElasticArm& arm,
-                   const multibody::ArmHistory& history) {
-  CsvSink csv(file);
-  give_history(csv, arm, history);
+  give_history(csv, motion, samples);
   csv.commit();
 }
 

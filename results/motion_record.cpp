@@ -1,5 +1,7 @@
 #include "results/motion_record.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 
 namespace snare::results {
@@ -40,16 +42,17 @@ double real_time_factor(const coupling::MotionResult& result) {
   return result.wall_seconds > 0.0 ? result.report.time / result.wall_seconds : 0.0;
 }
 
-double joint_deflection(const coupling::Motion& motion, const coupling::MotionSample& sample, int joint) {
-  return multibody::deflection(motion.arms.front().arm, sample.arms.front().state, joint);
-}
-
-double ArmRecord::time() const {
-  return history.samples.empty() ? 0.0 : history.samples.back().time;
-}
-
-double ArmRecord::real_time_factor() const {
-  return wall_seconds > 0.0 ? time() / wall_seconds : 0.0;
+std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions, const FinishedMotion& run) {
+  if (!motions.swinging) return {};
+  const auto [a, joint] = *motions.swinging;
+  const multibody::ElasticArm& arm = run.asked.motion.arms[base::at(a)].arm;
+  const int velocity = arm.tree.body(arm.joints[base::at(joint)].body).v_index;
+  std::vector<scenario::SwingSample> samples;
+  for (const coupling::MotionSample& s : run.samples) {
+    const multibody::ArmState& state = s.arms[base::at(a)].state;
+    samples.push_back({s.time, multibody::deflection(arm, state, joint), state.v[velocity] - state.motor_rate[joint]});
+  }
+  return scenario::swings(samples);
 }
 
 }  // namespace snare::results

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "multibody/arm/arm_run.hpp"
-#include "scenario/arm_scenarios.hpp"
+#include "scenario/swings.hpp"
 #include "scenario/world.hpp"
 
 #include <cstddef>
@@ -49,20 +48,10 @@ struct Touches {
 /// Most points of a contact that were closed at a sample.
 [[nodiscard]] std::size_t most_points(const FinishedMotion& run, std::size_t contact);
 
+/// Of the joint whose swings are told; none where nobody asks.
+[[nodiscard]] std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions, const FinishedMotion& run);
+
 /// Simulated over wall time [-]; 0 where no time has passed.
 [[nodiscard]] double real_time_factor(const coupling::MotionResult& result);
-
-/// Deflection of a joint of the motion's first arm [rad].
-[[nodiscard]] double joint_deflection(const coupling::Motion& motion, const coupling::MotionSample& sample, int joint);
-
-/// What an arm alone has given.
-struct ArmRecord {
-  multibody::ArmHistory history;
-  std::vector<scenario::Swing> swings;  ///< of the joint of a step
-  double wall_seconds = 0.0;
-
-  [[nodiscard]] double time() const;  ///< that was reached [s]
-  [[nodiscard]] double real_time_factor() const;
-};
 
 }  // namespace snare::results

@@ -35,27 +35,24 @@ json time_json(const std::optional<double>& time) {
   return time ? json(*time) : json();
 }
 
-json ending(const numerics::IdaReport& report, const numerics::IdaStatistics& n) {
-  return {{"finished", report.usable()},
-          {"message", report.usable() ? json() : json(report.message)},
-          {"steps", n.steps},
-          {"residuals", n.residuals},
-          {"jacobians", n.jacobians},
-          {"factorizations", n.factorizations},
-          {"restarts", n.restarts}};
-}
-
 /// Ending, energies, errors of the balances, drifts and cost of a motion.
 json result_json(const MotionResult& r) {
-  json object = ending(r.report, r.statistics);
-  object.update({{"time_s", r.report.time},
-                 {"momentum_error_Ns", vector_json(r.momentum_error)},
-                 {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
-                 {"largest_penetration_m", r.largest_penetration},
-                 {"largest_drift", r.largest_drift},
-                 {"analyses", r.statistics.analyses},
-                 {"wall_s", r.wall_seconds},
-                 {"real_time_factor", real_time_factor(r)}});
+  const numerics::IdaStatistics& n = r.statistics;
+  json object{{"finished", r.report.usable()},
+              {"message", r.report.usable() ? json() : json(r.report.message)},
+              {"steps", n.steps},
+              {"residuals", n.residuals},
+              {"jacobians", n.jacobians},
+              {"factorizations", n.factorizations},
+              {"analyses", n.analyses},
+              {"restarts", n.restarts},
+              {"time_s", r.report.time},
+              {"momentum_error_Ns", vector_json(r.momentum_error)},
+              {"angular_momentum_error_Nms", vector_json(r.angular_momentum_error)},
+              {"largest_penetration_m", r.largest_penetration},
+              {"largest_drift", r.largest_drift},
+              {"wall_s", r.wall_seconds},
+              {"real_time_factor", real_time_factor(r)}};
   for (const auto& [name, energy] : energies) object["energy_J"][name] = r.energy.*energy;
   return object;
 }
@@ -100,69 +97,17 @@ json velocities_json(const RigidBodyState& before, const RigidBodyState& after) 
           {"spin_after_rad_s", vector_json(after.spin)}};
 }
 
-/// What a contact has seen, whatever the kind of scenario.
-json contact_json(const FinishedMotion& run, std::size_t contact) {
-  return {{"peak_force_N", run.result.peak_force[contact]},
-          {"impulse_Ns", vector_json(run.result.impulse[contact])},
-          {"touches", touches_of(run.result, contact).count},
-          {"in_contact_at_the_end", run.samples.back().contacts[contact].closed}};
-}
-
-json contact_times_json(const FinishedMotion& run, std::size_t contact) {
-  const Touches touches = touches_of(run.result, contact);
-  return {{"first_touch_s", time_json(touches.first)}, {"last_lift_off_s", time_json(touches.last_lift_off)}};
-}
-
-/// Largest travel of the probe from where it would touch [m].
-double deepest(const FinishedMotion& run, const scenario::Probe& probe) {
-  const auto y = [&probe](const MotionSample& s) {
-    const RigidBodyState& b = s.bodies.front();
-    return (b.position + b.orientation * probe.place).y();
-  };
-  const double touch = y(run.samples.front()) + probe.side * probe.distance;
-  double deepest = 0.0;
-  for (const MotionSample& s : run.samples) deepest = std::max(deepest, probe.side * (y(s) - touch));
-  return deepest;
-}
-
-json largest_deflections(const FinishedMotion& run) {
-  const multibody::ElasticArm& arm = run.asked.motion.arms.front().arm;
-  json deflections = json::object();
-  for (int j = 0; j < arm.motors(); ++j) {
-    double largest = 0.0;
-    for (const MotionSample& s : run.samples)
-      largest = std::max(largest, std::abs(joint_deflection(run.asked.motion, s, j)));
-    deflections[arm.joints[at(j)].name] = in_degrees(largest);
-  }
-  return deflections;
-}
-
-/// One body that meets one wire, with one of the wire's models.
-json model_json(const FinishedMotion& run, const scenario::Probe& probe) {
-  json summary{{"model", run.asked.name}, {"events", json::array()}};
-  for (const MotionEvent& e : run.result.events)
-    summary["events"].push_back({{"time_s", e.time}, {"what", coupling::to_string(e.kind)}});
-  summary.update(contact_json(run, 0));
-  summary.update(velocities_json(run.samples.front().bodies.front(), run.samples.back().bodies.front()));
-  summary.update(result_json(run.result));
-  summary.update(strength_json(run));
-  summary.update(left_out_json(run));
-  if (!run.asked.motion.arms.empty()) {
-    summary["largest_deflection_deg"] = largest_deflections(run);
-    return summary;
-  }
-  summary["kind"] = run.asked.model;
-  summary["deepest_mm"] = in_mm(deepest(run, probe));
-  summary.update(contact_times_json(run, 0));
-  return summary;
-}
-
 /// contact: index as results count; with what is said of it beside.
 json listed_contact_json(const FinishedMotion& run, std::size_t contact, const json& parts) {
-  json object = contact_json(run, contact);
-  object.update(contact_times_json(run, contact));
-  object["contact"] = run.asked.motion.contact_names()[contact];
-  object["most_points"] = most_points(run, contact);
+  const Touches touches = touches_of(run.result, contact);
+  json object{{"contact", run.asked.motion.contact_names()[contact]},
+              {"peak_force_N", run.result.peak_force[contact]},
+              {"impulse_Ns", vector_json(run.result.impulse[contact])},
+              {"touches", touches.count},
+              {"in_contact_at_the_end", run.samples.back().contacts[contact].closed},
+              {"first_touch_s", time_json(touches.first)},
+              {"last_lift_off_s", time_json(touches.last_lift_off)},
+              {"most_points", most_points(run, contact)}};
   object.update(parts);
   return object;
 }
@@ -286,12 +231,12 @@ json modes_json(const FinishedMotion& run) {
           {"largest_explicit_step_s", small.fastest > 0.0 ? json(small.largest_explicit_step()) : json()}};
 }
 
-json head(const scenario::Scenario& asked) {
-  return {{"schema", "snare-summary/1"},
-          {"kind", asked.kind},
-          {"title", asked.title},
-          {"source", asked.source},
-          {"version", version()}};
+json swings_json(const std::vector<scenario::Swing>& swings) {
+  json list = json::array();
+  for (const scenario::Swing& s : swings)
+    list.push_back(
+        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", in_degrees(s.peak)}, {"frequency_Hz", s.frequency()}});
+  return list;
 }
 
 }  // namespace
@@ -328,40 +273,18 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   return outcome;
 }
 
-json motion_summary(const scenario::Scenario& asked, const scenario::WireMotions& motions,
-                    const std::vector<FinishedMotion>& finished) {
-  json summary = head(asked);
-  summary["duration_s"] = motions.duration;
-  if (!motions.probe) {
-    summary.update(lists_json(finished.front()));
-    if (motions.composed) summary["outcome"] = outcome_json(motions, finished.front());
-    if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished.front());
-    if (motions.output.modes && finished.front().result.report.usable()) summary.update(modes_json(finished.front()));
-    return summary;
-  }
-  summary["models"] = json::array();
-  for (const FinishedMotion& run : finished) summary["models"].push_back(model_json(run, *motions.probe));
-  return summary;
-}
-
-json arm_summary(const scenario::Scenario& asked, const scenario::ArmMotion& motion, const ArmRecord& record) {
-  const multibody::ArmHistory& history = record.history;
-  json summary = head(asked);
-  summary.update(ending(history.report, history.statistics));
-  summary.update({{"time_s", record.time()},
-                  {"energy_error", history.energy_error},
-                  {"wall_s", record.wall_seconds},
-                  {"real_time_factor", record.real_time_factor()},
-                  {"events", json::array()},
-                  {"swings", json::array()}});
-  for (const multibody::ArmEvent& e : history.events) {
-    const json joint = e.joint < 0 ? json() : json(motion.scenario.arm.joints[at(e.joint)].name);
-    summary["events"].push_back({{"time_s", e.time}, {"joint", joint}, {"what", e.what}});
-  }
-  for (const scenario::Swing& s : record.swings) {
-    summary["swings"].push_back(
-        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", in_degrees(s.peak)}, {"frequency_Hz", s.frequency()}});
-  }
+json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finished) {
+  const scenario::WireMotions& motions = asked.motions;
+  json summary{{"schema", "snare-summary/1"},
+               {"title", asked.title},
+               {"source", asked.source},
+               {"version", version()},
+               {"duration_s", motions.duration}};
+  summary.update(lists_json(finished));
+  summary["outcome"] = outcome_json(motions, finished);
+  if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished);
+  if (motions.swinging) summary["swings"] = swings_json(swings_of(motions, finished));
+  if (motions.output.modes && finished.result.report.usable()) summary.update(modes_json(finished));
   return summary;
 }
 

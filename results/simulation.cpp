@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 namespace snare::results {
@@ -23,20 +22,6 @@ std::vector<MotionRecord> simulate_all(const std::vector<scenario::NamedMotion>&
     if (stopped) break;
   }
   return records;
-}
-
-ArmRecord simulate_arm(const scenario::ArmMotion& motion, const Watch& watch) {
-  multibody::ArmScenario scenario = motion.scenario;
-  scenario.progress = [&watch, end = scenario.end](double time) {
-    watch.say(fmt::format("{:.2f} of {:.2f} s", time, end));
-  };
-  scenario.stop = watch.stop;
-  ArmRecord record;
-  const auto begin = std::chrono::steady_clock::now();
-  record.history = multibody::simulate(scenario);
-  record.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (motion.joint >= 0) record.swings = scenario::swings(record.history, scenario.arm, motion.joint);
-  return record;
 }
 
 }  // namespace snare::results

@@ -11,7 +11,4 @@ namespace snare::results {
 [[nodiscard]] std::vector<MotionRecord> simulate_all(const std::vector<scenario::NamedMotion>& motions,
                                                      const Watch& watch = {});
 
-/// Runs a motion of an arm alone.
-[[nodiscard]] ArmRecord simulate_arm(const scenario::ArmMotion& motion, const Watch& watch = {});
-
 }  // namespace snare::results

@@ -114,6 +114,21 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
         break;
       }
     }
+    const std::size_t first = motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size();
+    for (std::size_t k = 0; k < motion.law_wires.size(); ++k) {
+      const coupling::LawWire& wire = motion.law_wires[k];
+      if (!wire.covers) continue;
+      const double span = (wire.p_to - wire.p_from).norm();
+      const auto left = std::ranges::find_if(run.samples, [&](const coupling::MotionSample& s) {
+        const coupling::ContactSample& c = s.contacts[first + k];
+        return c.closed && !wire.covers(-c.gap, c.arc / wire.length * span);
+      });
+      if (left == run.samples.end()) continue;
+      const coupling::ContactSample& c = left->contacts[first + k];
+      sentences.add(of + wire.name,
+                    {fmt::format("its law was made for less: from {:.4g} s on it is pushed by {:.4g} mm at {:.4g} mm",
+                                 left->time, -1e3 * c.gap, 1e3 * c.arc / wire.length * span)});
+    }
   }
   return sentences.take();
 }

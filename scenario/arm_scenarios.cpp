@@ -2,9 +2,7 @@
 
 #include "base/index.hpp"
 
-#include <cmath>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 
 namespace snare::scenario {
@@ -79,37 +77,11 @@ multibody::ArmScenario joint_motion(const multibody::ArmDescription& description
 
 std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm, int joint) {
   const int velocity = arm.tree.body(arm.joints[at(joint)].body).v_index;
-  std::vector<Swing> found;
-  std::optional<double> last_zero;
-  double peak = 0.0;
-  for (std::size_t i = 0; i + 1 < history.samples.size(); ++i) {
-    const multibody::ArmSample& a = history.samples[i];
-    const multibody::ArmSample& b = history.samples[i + 1];
-    const double h = b.time - a.time;
-    const double da = a.deflection[joint], db = b.deflection[joint];
-    const double va = h * (a.state.v[velocity] - a.state.motor_rate[joint]);
-    const double vb = h * (b.state.v[velocity] - b.state.motor_rate[joint]);
-    const auto cubic = [&](double s) {
-      return (1 + 2 * s) * (1 - s) * (1 - s) * da + s * (1 - s) * (1 - s) * va + s * s * (3 - 2 * s) * db -
-             s * s * (1 - s) * vb;
-    };
-    if (std::abs(da) > std::abs(peak)) peak = da;
-    if (va * vb < 0.0 && da * va > 0.0) {  // an extreme between the samples
-      double s = va / (va - vb);
-      if (std::abs(cubic(s)) > std::abs(peak)) peak = cubic(s);
-    }
-    if (!((da < 0.0) != (db < 0.0))) continue;
-    double low = 0.0, high = 1.0;
-    for (int k = 0; k < 50; ++k) {
-      const double middle = 0.5 * (low + high);
-      ((cubic(middle) < 0.0) == (da < 0.0) ? low : high) = middle;
-    }
-    const double zero = a.time + h * low;
-    if (last_zero) found.push_back({*last_zero, zero, peak});
-    last_zero = zero;
-    peak = 0.0;
-  }
-  return found;
+  std::vector<SwingSample> samples;
+  samples.reserve(history.samples.size());
+  for (const multibody::ArmSample& s : history.samples)
+    samples.push_back({s.time, s.deflection[joint], s.state.v[velocity] - s.state.motor_rate[joint]});
+  return swings(samples);
 }
 
 }  // namespace snare::scenario

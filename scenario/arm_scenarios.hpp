@@ -3,6 +3,7 @@
 #include "multibody/arm/arm_file.hpp"
 #include "multibody/arm/arm_run.hpp"
 #include "scenario/hold.hpp"
+#include "scenario/swings.hpp"
 
 #include <vector>
 
@@ -32,15 +33,7 @@ namespace snare::scenario {
                                                   const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                                                   double duration, double end);
 
-/// One swing of a joint's deflection from zero to zero.
-struct Swing {
-  double begin = 0.0, end = 0.0;  ///< zeros of the deflection [s]
-  double peak = 0.0;              ///< largest deflection between them, with its sign [rad]
-  /// Of the vibration of which this is one half [Hz].
-  [[nodiscard]] double frequency() const { return 0.5 / (end - begin); }
-};
-
-/// The swings of a joint, by Hermite's cubics between the samples; what comes before the first zero is none.
+/// The swings of a joint in a history.
 [[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm,
                                         int joint);
 

@@ -1,13 +1,16 @@
 #include "scenario/body_contact_reader.hpp"
 
 #include "base/index.hpp"
+#include "base/units.hpp"
 #include "scenario/contact_law_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/shape_reader.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace snare::scenario {
 
@@ -36,6 +39,16 @@ const PlacedShape* shape_under(const Composition& c, const TomlTable& table, std
   return nullptr;
 }
 
+/// A table was distilled with a pusher of one radius.
+void check_pusher(const DeclaredWire& wire, const ShaftSize& size, const TomlTable& shape) {
+  if (!wire.push || !wire.push->table) return;
+  constexpr double same = 1e-6;
+  const double radius = wire.push->table->wire.radius;
+  if (std::abs(size.radius - radius) > same * std::max(radius, 1e-3))
+    shape.fail("radius_mm", fmt::format("must be {:.6g}, with which the law of {} was distilled", radius / base::mm,
+                                        wire.wire.name));
+}
+
 }  // namespace
 
 void set_shaft(Composition& c, const std::string& name, const PlacedShape& shape,
@@ -59,6 +72,10 @@ void set_shaft(Composition& c, const std::string& name, const PlacedShape& shape
     }
     law->shaft = {name, shape.on.carrier, shape.on.X_WF, size->radius, size->half_length};
     law->shaft.X_WS.p += shape.on.X_WF.R.col(2) * size->height;
+    if (law->kind == coupling::LawWire::Kind::push) {
+      check_pusher(c.wires[at(wire)], *size, shape.table);
+      continue;
+    }
     law->friction = smooth(friction);
   }
 }

@@ -1,5 +1,6 @@
 #include "scenario/composed_scenario.hpp"
 
+#include "base/errors.hpp"
 #include "base/index.hpp"
 #include "base/units.hpp"
 #include "coupling/dynamics/modes.hpp"
@@ -8,6 +9,7 @@
 #include "scenario/capture_reader.hpp"
 #include "scenario/composition.hpp"
 #include "scenario/drive_reader.hpp"
+#include "scenario/law_wire_reader.hpp"
 #include "scenario/load_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/phase_reader.hpp"
@@ -17,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -66,8 +69,9 @@ void read_frames(Composition& c) {
 
 void read_wires(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("wires")) {
-    c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping));
+    c.wires.push_back(read_listed_wire(table, c.wire_names, c.placement, c.damping, {c.folder, c.input}));
     c.model_keys.push_back(table.address() + ".model");
+    for (std::string& model : models_with_numbers(table)) c.law_models.insert(std::move(model));
   }
 }
 
@@ -205,6 +209,39 @@ void add_mounts(Composition& c) {
         "mass_rate_1_s", "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
 }
 
+/// Refuses a shaft that has pushed the wire at the start: it has no side to which it belongs.
+void require_before(const coupling::LawWire& wire) {
+  const Vector3d chord = (wire.p_to - wire.p_from).normalized(), push = wire.side * wire.bulge;
+  const Vector3d across = chord.cross(push), axis = wire.shaft.X_WS.R.col(2);
+  const double along = across.dot(wire.p_from - wire.shaft.X_WS.p) / across.dot(axis);
+  if (!(std::abs(along) <= wire.shaft.half_length)) return;  // it does not go through the plane of the wire
+  const Vector3d place = wire.shaft.X_WS.p + along * axis - wire.p_from;
+  const double depth = wire.push({chord.dot(place), push.dot(place)}, 0.0).depth;
+  const bool beside = chord.dot(place) <= 0.0 || chord.dot(place) >= (wire.p_to - wire.p_from).norm();
+  constexpr double rounding = 1e-6;  // of places in a file [m]
+  if (!beside && depth > rounding)
+    throw base::InputError({"", 0, fmt::format("{} on {}.gap", wire.shaft.name, wire.name), fmt::format("{}", -depth),
+                            "must be >= 0 m at the start"});
+}
+
+/// Laws of pushes know their wire at rest. One may be without force over the first part of its travel: steps are limited to a tenth of a
+/// millimetre at the speed of the start, so that none leaps over the rest.
+void complete_pushes(Composition& c, coupling::MotionOptions& options) {
+  std::size_t next = 0;
+  for (const DeclaredWire& w : c.wires) {
+    if (!w.law) continue;
+    coupling::LawWire& law = c.motion.law_wires[next++];
+    if (!w.push) continue;
+    set_push_law(*w.push, w.wire.rod, law);
+    require_before(law);
+    if (law.shaft.carrier.kind != MotionCarrier::Kind::body) continue;
+    const multibody::RigidBodyState& start = c.motion.bodies[at(law.shaft.carrier.index)].start;
+    const double speed = start.velocity.norm() + start.spin.norm() * (law.shaft.X_WS.p - start.position).norm();
+    constexpr double resolved_travel = 1e-4;  // [m]
+    if (w.push->law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
+  }
+}
+
 }  // namespace
 
 ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides) {
@@ -237,6 +274,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   read_motion_options(root, run.options);
   c.motion.gravity = read_vector_or_zero(root.table("gravity"), "vector_m_s2", Range::from(-1e3, 1e3), 1.0);
   c.damping = read_damping(root.table("damping"));
+  c.strand_time = root.table("damping").number_or("strand_time_s", c.strand_time, Range::from(1e-9, 1.0));
   // What stands somewhere, then what is between.
   read_arms(c);
   for (const auto& [name, of_file] : arms) {
@@ -268,15 +306,20 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   const TomlTable output = root.table("output");
   motions.output = read_motion_output(output, run.options);
   motions.output.modes = output.boolean_or("modes", false);
-  motions.composed = true;
+  if (output.has("swings")) {
+    if (const MotorJoint* joint = c.joint(output, "swings")) motions.swinging.emplace(joint->arm, joint->joint);
+  }
   motions.sensors = read_sensors(c, run.options.output_interval);
   motions.capture = read_capture(c);
   motions.input = c.input + document.canonical(least_advance_key);
   motions.duration = run.options.duration;
   document.finish();
+  complete_pushes(c, run.options);
+  for (DeclaredWire& w : c.wires) w.wire.rod.strands.time = c.strand_time;
   for (DeclaredWire& w : c.wires)
     if (!w.law) c.motion.wires.push_back(at_rest(std::move(w)));
   motions.model_keys = std::move(c.model_keys);
+  motions.law_models.assign(c.law_models.begin(), c.law_models.end());
   motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
   if (motions.output.modes) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,13 +45,15 @@ struct Composition {
   coupling::Motion motion = {};
   Placement placement = {};
   wire::RodDamping damping = {};
-  std::vector<DeclaredWire> wires = {};  ///< those of the motion, before they are at rest
-  std::string input = {};                ///< fingerprints of other files
+  double strand_time = wire::RodStrands{}.time;  ///< [s]
+  std::vector<DeclaredWire> wires = {};          ///< those of the motion, before they are at rest
+  std::string input = {};                        ///< fingerprints of other files
   Names wire_names{"wire"}, body_names{"body"}, arm_names{"arm"}, shape_names{"shape"}, pair_names{"contact"};
   std::map<std::string, MotorJoint> joints = {};  ///< "ARM::JOINT", "SNARE::ring", "SNARE::carriage"
   std::map<std::string, SnareWires> snares = {};
   std::map<std::string, PlacedShape> shapes = {};
   std::vector<std::string> model_keys = {};  ///< of the wires
+  std::set<std::string> law_models = {};     ///< of which a wire has the numbers
   std::vector<DrawnLines> drawn = {};
 
   /// The joint under a key, reported when there is none.

@@ -140,6 +140,8 @@ DistilledLaw law_of(const Field& entry, const std::string& title) {
   place.length = wire["length_mm"].positive() * mm;
   place.bending_stiffness = wire["bending_stiffness_Nm2"].positive();
   law.nominal_slack = place.length - place.span;
+  law.wire = {place.bending_stiffness, wire["axial_stiffness_N"].positive(), place.span,
+              wire["radius_mm"].number() * mm};
   for (const Field& at : entry["positions"].items()) {
     place.position = at["position_mm"].number() * mm;
     for (const Field& one : at["laws"].items()) law.simple.push_back(simple_law(one, place));

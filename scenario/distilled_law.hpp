@@ -24,6 +24,14 @@ struct SimpleLaw {
   coupling::SpringLawPointer law;
 };
 
+/// The wire of which a law was distilled, and what pushed it. SI units.
+struct DistilledWire {
+  double bending_stiffness = 0.0;  ///< EI [N m^2]
+  double axial_stiffness = 0.0;    ///< EA [N]
+  double span = 0.0;               ///< [m]
+  double radius = 0.0;             ///< of the pusher [m]
+};
+
 /// What a law.json says of one wire, ready to be evaluated. Lengths in m, forces in N.
 struct DistilledLaw {
   std::string title;
@@ -34,6 +42,7 @@ struct DistilledLaw {
   std::array<double, 2> travel{}, position{}, slack{};    ///< from, to [m]
   double nominal_slack = 0.0;                             ///< length less span [m]
   std::vector<SimpleLaw> simple;
+  DistilledWire wire;
 
   /// Whether the range of the table has travel d, position s and slack e [m]; slack counts as met to 1e-9 of the span.
   [[nodiscard]] bool in_range(double d, double s, double e) const noexcept;

@@ -51,10 +51,11 @@ multibody::Pose read_pose_in_frame(const TomlTable& table) {
   return X;
 }
 
-DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount) {
+DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount,
+                            const std::optional<BesideScenario>& beside) {
   DeclaredWire w;
   w.specification = read_wire(table);
-  for (const char* key : {"strand_extra_stiffness_Nm2", "yield_stress_MPa", "natural_curvature_1_m"}) {
+  for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
     if (table.has(key)) table.fail(key, "the wire is elastic and naturally straight in motion");
   }
   static constexpr Choice<wire::SpatialEnd::Kind> mounts[] = {{"clamped", wire::SpatialEnd::Kind::clamp},
@@ -62,9 +63,10 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
   w.wire.rod.elements = table.integer_or("elements", 60, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
-  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping);
+  const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, beside);
   w.wire.rod.quasi_static = stand_in.quasi_static;
   w.law = stand_in.law;
+  w.push = stand_in.push;
   // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
   // without a force: it has no equilibrium that could be followed.
   constexpr double least_share = 1e-3;
@@ -94,15 +96,24 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   rod.formulation = w.wire.rod.formulation;
   rod.quasi_static = w.wire.rod.quasi_static;
   rod.damping = w.wire.rod.damping;
+  rod.strands.time = w.wire.rod.strands.time;
   rod.properties.left.kind = w.wire.rod.properties.left.kind;
   rod.properties.right.kind = w.wire.rod.properties.right.kind;
   w.wire.rod = rod;
+  if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
+  if (w.from_carrier != w.to_carrier)
+    table.fail("model",
+               fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
+                           "between mounts that stand still",
+                           table.text("model")));
+  else if (w.push && w.span > 0.0)
+    check_push_model(*w.push, rod, w.span, table);
 }
 
 DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placement& placement,
-                              const wire::RodDamping& damping) {
+                              const wire::RodDamping& damping, const BesideScenario& beside) {
   const std::string name = names.take(table);
-  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp);
+  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, beside);
   w.wire.name = name;
   const auto place = [&](std::string_view frame_key, std::string_view key, Vector3d& point,
                          coupling::MotionCarrier& carrier) {

@@ -4,6 +4,7 @@
 #include "coupling/dynamics/model.hpp"
 #include "scenario/names.hpp"
 #include "scenario/placement.hpp"
+#include "scenario/push_law.hpp"
 #include "wire/specification.hpp"
 
 #include <Eigen/Core>
@@ -26,6 +27,7 @@ struct DeclaredWire {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(), bulge = Eigen::Vector3d::UnitY();
   double span = 0.0;                     ///< [m]
   std::optional<coupling::LawWire> law;  ///< stands for it
+  std::optional<PushModel> push;         ///< of a law of pushes
   /// What carries the ends; the world: they stand still.
   coupling::MotionCarrier from_carrier, to_carrier;
 };
@@ -33,15 +35,17 @@ struct DeclaredWire {
 /// The wire for which a law stands, in its place but without a shaft.
 [[nodiscard]] coupling::LawWire law_in_place(const DeclaredWire& wire);
 
-/// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires.
+/// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires. beside: of a wire that
+/// laws of pushes may stand for.
 [[nodiscard]] DeclaredWire read_wire_item(const base::TomlTable& table, const wire::RodDamping& damping,
-                                          wire::SpatialEnd::Kind mount);
+                                          wire::SpatialEnd::Kind mount,
+                                          const std::optional<BesideScenario>& beside = {});
 /// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys: those of the file
 /// that give the far end and the direction.
 void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key, const std::string& bulge_key);
 /// A wire of the list, with its ends on frames.
 [[nodiscard]] DeclaredWire read_listed_wire(const base::TomlTable& table, Names& names, const Placement& placement,
-                                            const wire::RodDamping& damping);
+                                            const wire::RodDamping& damping, const BesideScenario& beside);
 /// The wire at rest where its mounts are. Throws InputError when it finds no rest.
 [[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire);
 

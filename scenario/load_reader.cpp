@@ -41,8 +41,16 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
   double every = duration;
   if (count > 1) every = table.number("every_s", durations);
   if (every < duration) table.fail("every_s", "must be at least duration_s");
+  static constexpr base::Choice<bool> shapes[] = {{"flat", false}, {"half_sine", true}};
+  if (table.has("shape")) load.half_sines = table.choice("shape", shapes).value_or(false);
+  if (load.half_sines && table.has("ramp_s")) table.fail("ramp_s", "cannot stand beside shape = \"half_sine\"");
   const Vector3d none = Vector3d::Zero();
   for (int k = 0; k < count; ++k) {
+    if (load.half_sines) {  // between the first two times; none up to the next pulse
+      add(load, begin + k * every, force, moment);
+      add(load, begin + k * every + duration, none, none);
+      continue;
+    }
     const double from = begin + k * every, to = from + duration;
     if (k > 0 || ramp > 0.0) add(load, from, none, none);
     add(load, from + ramp, force, moment);
@@ -53,7 +61,7 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
 
 /// Straight between the lines of a CSV file.
 void read_course(Composition& c, const TomlTable& table, FrameLoad& load) {
-  for (const char* key : {"force_N", "moment_Nm", "begin_s", "duration_s", "ramp_s", "pulses", "every_s"}) {
+  for (const char* key : {"force_N", "moment_Nm", "begin_s", "duration_s", "ramp_s", "pulses", "every_s", "shape"}) {
     if (table.has(key)) table.fail(key, "cannot stand beside file, which says all");
   }
   const std::string name = table.text("file");

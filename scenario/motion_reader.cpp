@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace snare::scenario {
 
@@ -53,26 +52,11 @@ multibody::RigidBodyProperties read_body_properties(const TomlTable& table) {
   return properties;
 }
 
-void finish_without(base::TomlDocument& document, std::string_view key) {
-  document.finish();  // says why, but for an empty name
-  document.root().fail(key, "must name a file");
-  document.finish();
-  throw std::logic_error("a problem that was reported has vanished");
-}
-
-void check_output_interval(const TomlTable& root, double duration, double interval) {
-  if (duration / interval > most_outputs)
-    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
-}
-
-double read_least_advance(const TomlTable& solver) {
-  return solver.number_or("least_advance_s", least_advance, Range::from(0.0, 1e6));
-}
-
 void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   o.duration = root.number("duration_s", durations);
   o.output_interval = root.number_or("output_interval_s", 1e-3, durations);
-  check_output_interval(root, o.duration, o.output_interval);
+  if (o.duration / o.output_interval > most_outputs)
+    root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
   const TomlTable solver = root.table("solver");
   const auto tolerance = [&solver](std::string_view key, double& value, double most) {
     value = solver.number_or(key, value, Range::above(0.0, most));
@@ -87,18 +71,15 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   if (solver.has("max_order")) o.max_order = solver.integer("max_order", 1, 5);
   if (solver.has("newton_share")) o.newton_share = solver.number("newton_share", Range::from(1e-6, 0.5));
   o.peak_window = solver.number_or("peak_window_s", o.peak_window, Range::from(0.0, 1.0));
-  o.least_advance = read_least_advance(solver);
+  o.least_advance = solver.number_or("least_advance_s", least_advance, Range::from(0.0, 1e6));
   o.max_step = solver.number_or("max_step_s", 1e9, Range::above(0.0, 1e9));
-}
-
-double default_checkpoint_interval(double duration) {
-  return std::min(1.0, duration / 10.0);
 }
 
 MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions& o) {
   MotionOutput output;
   output.paraview = table.boolean_or("paraview", output.paraview);
-  o.checkpoint_interval = table.number_or("checkpoint_interval_s", default_checkpoint_interval(o.duration), durations);
+  // Where nobody asks for another: a tenth of the duration, at most a second.
+  o.checkpoint_interval = table.number_or("checkpoint_interval_s", std::min(1.0, o.duration / 10.0), durations);
   if (o.duration / o.checkpoint_interval > most_outputs)
     table.fail("checkpoint_interval_s", fmt::format("gives more than {:g} checkpoints", most_outputs));
   output.checkpoint_wall_time =

@@ -13,9 +13,6 @@ namespace snare::scenario {
 /// What all scenarios with wires in motion have in common: keys, units and ranges in docs/scenario_file.md. What is wrong is
 /// reported to the tables' document.
 
-/// What the first line of every scenario says.
-inline constexpr std::string_view scenario_schema = "snare-scenario/1";
-
 inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts [s]
 inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
 /// What a window of work must bring a motion on by [s]: see docs/decisions/0038.
@@ -39,26 +36,14 @@ inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
 /// `mass_kg` and `inertia_kg_m2`, about the principal axes.
 [[nodiscard]] multibody::RigidBodyProperties read_body_properties(const base::TomlTable& table);
 
-/// Finishes a document that has not given the file it must name under a key: throws InputError.
-[[noreturn]] void finish_without(base::TomlDocument& document, std::string_view key);
-
-/// Reports an interval of output [s] that gives too many lines in a duration [s].
-void check_output_interval(const base::TomlTable& root, double duration, double interval);
-
 /// What `[output]` says beside the interval.
 struct MotionOutput {
   bool paraview = false;               ///< shapes of the wires are written
-  bool modes = false;                  ///< small oscillations about the end; of a scenario that lists what there is
+  bool modes = false;                  ///< small oscillations about the end
   double checkpoint_wall_time = 10.0;  ///< least wall time between two checkpoints that are written [s], >= 0
 };
 /// Also sets the options' interval of checkpoints; their duration must be known.
 [[nodiscard]] MotionOutput read_motion_output(const base::TomlTable& table, coupling::MotionOptions& options);
-
-/// Simulated time between two checkpoints where nobody asks for another: a tenth of a duration, at most a second [s].
-[[nodiscard]] double default_checkpoint_interval(double duration);
-
-/// `least_advance_s` of a table `[solver]` [s].
-[[nodiscard]] double read_least_advance(const base::TomlTable& solver);
 
 /// `duration_s`, `output_interval_s` and the tolerances of `[solver]`.
 void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& options);

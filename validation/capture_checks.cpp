@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <variant>
 
 namespace snare::validation {
 
@@ -37,7 +36,7 @@ Run run_of(const std::filesystem::path& file, const std::vector<std::string>& se
   std::vector<base::Override> overrides;
   for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
   Run run;
-  run.asked = std::get<scenario::WireMotions>(scenario::read_scenario(file, overrides).content).runs.front();
+  run.asked = scenario::read_scenario(file, overrides).motions.runs.front();
   run.result = coupling::simulate(run.asked.motion, run.asked.options, [&run](const MotionSample& s) {
     run.last = s;
     return false;

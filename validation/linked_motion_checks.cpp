@@ -133,7 +133,7 @@ std::vector<Row> capture_rows(const std::filesystem::path& data) {
   constexpr double energy = 0.5 * 500.0 * 0.01 * 0.01;
   for (const char* name : {"jemrms_capture", "jemrms_payload_on_wire"}) {
     const scenario::Scenario asked = scenario::read_scenario(data / "scenarios" / (std::string(name) + ".toml"));
-    const scenario::NamedMotion& run = std::get<scenario::WireMotions>(asked.content).runs.front();
+    const scenario::NamedMotion& run = asked.motions.runs.front();
     MotionOptions options = run.options;
     options.duration = 1.0;
     const MotionResult result = coupling::simulate(run.motion, options);

@@ -35,14 +35,6 @@ std::string label_of(const MotionSample& s) {
   return fmt::format("t = {:.4f} s, {:.3g} N", s.time, force);
 }
 
-/// Seen along z.
-AnimationFrame::Line polyline(const Eigen::Matrix3Xd& points) {
-  AnimationFrame::Line line;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    line.insert(line.end(), {mm_per_m * points(0, i), mm_per_m * points(1, i)});
-  return line;
-}
-
 /// From the base to the outermost body of every chain, and on to its frames.
 std::vector<Eigen::Matrix3Xd> skeleton(const multibody::Tree& tree, const multibody::Kinematics& kinematics) {
   const auto pose = [&](int body) { return kinematics.X_WB[at(body)]; };
@@ -90,30 +82,6 @@ std::vector<scenario::DrawnLines> shapes_of(const coupling::Motion& motion) {
 }
 
 }  // namespace
-
-AnimationSpecification animation_of(const scenario::Probe& probe, const std::string& model,
-                                    const std::vector<MotionSample>& samples) {
-  AnimationSpecification animation{
-      "Wire and probe: " + model,
-      {"wire", "probe", "arm to the centre of mass"},
-      {},
-      "To scale; the probe is the circle, the line from it leads to the body's centre of mass."};
-  constexpr int corners = 36;
-  const Eigen::Matrix3Xd circle = coupling::circle_drawing(probe.radius, 0.0, corners);
-  for (std::size_t k = 0; k < samples.size(); k += stride(samples)) {
-    const MotionSample& s = samples[k];
-    AnimationFrame frame{label_of(s), {{}, {}, {}}};
-    for (const Eigen::Matrix3Xd& w : s.wires) frame.outlines[0].push_back(polyline(w));
-    const multibody::RigidBodyState& b = s.bodies.front();
-    const Vector3d axis = b.position + b.orientation * probe.place;
-    frame.outlines[1].push_back(polyline(circle.colwise() + axis));
-    Eigen::Matrix3Xd way(3, 2);
-    way << axis, b.position;
-    frame.outlines[2] = {polyline(way)};
-    animation.frames.push_back(std::move(frame));
-  }
-  return animation;
-}
 
 /// Where carriers are at one time.
 class MotionPictures::Moment {

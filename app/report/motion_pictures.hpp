@@ -9,10 +9,6 @@
 
 namespace snare::app {
 
-/// Wire, probe and the way to the body's centre of mass, seen along z, to scale.
-[[nodiscard]] AnimationSpecification animation_of(const scenario::Probe& probe, const std::string& model,
-                                                  const std::vector<coupling::MotionSample>& samples);
-
 /// Pictures of a motion: wires, bodies, shapes, rings, and arms from joint to joint.
 class MotionPictures {
  public:

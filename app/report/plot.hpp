@@ -85,19 +85,6 @@ struct Margin {
 /// Where one curve dwarfs the rest: the plot shows first what the rest needs, and its note says so.
 void close_up(PlotSpecification& plot, const Range& rest, const Margin& margin, const std::string& note = {});
 
-/// Outlines that move, drawn to scale: one for every name in every frame.
-struct AnimationFrame {
-  using Line = std::vector<double>;         ///< x0, y0, x1, y1, ... in the unit of the plot
-  std::string label;                        ///< "t = 0.120 s"
-  std::vector<std::vector<Line>> outlines;  ///< each of any number of lines
-};
-struct AnimationSpecification {
-  std::string title;
-  std::vector<std::string> names;  ///< in the legend; one an outline
-  std::vector<AnimationFrame> frames;
-  std::string note = {};
-};
-
 /// A time at which something happened.
 struct SceneMark {
   double time = 0.0;  ///< [s]

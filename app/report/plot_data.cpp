@@ -99,40 +99,6 @@ json plot_data(const PlotSpecification& plot) {
   return data;
 }
 
-json animation_data(const AnimationSpecification& animation) {
-  double low[2] = {1e300, 1e300};
-  double high[2] = {-1e300, -1e300};
-  json frames = json::array();
-  for (const AnimationFrame& frame : animation.frames) {
-    if (frame.outlines.size() != animation.names.size()) {
-      throw std::invalid_argument(fmt::format("animation \"{}\": {} outlines, must be {}", animation.title,
-                                              frame.outlines.size(), animation.names.size()));
-    }
-    json outlines = json::array();
-    for (const std::vector<AnimationFrame::Line>& outline : frame.outlines) {
-      json lines = json::array();
-      for (const AnimationFrame::Line& line : outline) {
-        json shortened = json::array();
-        for (std::size_t i = 0; i < line.size(); ++i) {
-          if (!std::isfinite(line[i])) {
-            throw std::invalid_argument(fmt::format("animation \"{}\": a coordinate is {}", animation.title, line[i]));
-          }
-          low[i % 2] = std::min(low[i % 2], line[i]);
-          high[i % 2] = std::max(high[i % 2], line[i]);
-          shortened.push_back(rounded(line[i]));
-        }
-        lines.push_back(shortened);
-      }
-      outlines.push_back(lines);
-    }
-    frames.push_back({{"label", frame.label}, {"outlines", outlines}});
-  }
-  const double margin = 0.05 * std::max({high[0] - low[0], high[1] - low[1], 1e-9});
-  return {{"names", animation.names},
-          {"box", {low[0] - margin, low[1] - margin, high[0] - low[0] + 2.0 * margin, high[1] - low[1] + 2.0 * margin}},
-          {"frames", frames}};
-}
-
 namespace {
 
 /// Numbers of a scene, of so many steps to one.

@@ -10,10 +10,6 @@ namespace snare::app {
 /// Throws std::invalid_argument, naming plot, curve and index, when a value is not finite or lengths differ.
 [[nodiscard]] nlohmann::json plot_data(const PlotSpecification& plot);
 
-/// What assets/animation.js reads; there is at least one frame.
-/// Throws std::invalid_argument when a coordinate is not finite or a frame has another number of outlines than names.
-[[nodiscard]] nlohmann::json animation_data(const AnimationSpecification& animation);
-
 /// What assets/scene.js reads; there is at least one frame.
 /// Throws std::invalid_argument when a coordinate is not finite or a frame does not have what the items say.
 [[nodiscard]] nlohmann::json scene_data(const SceneSpecification& scene);

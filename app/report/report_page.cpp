@@ -154,20 +154,6 @@ void ReportPage::line_plot(const PlotSpecification& plot) {
   body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
 }
 
-void ReportPage::animation(const AnimationSpecification& animation) {
-  if (animation.frames.empty()) return;
-  close_plots();
-  const json data = animation_data(animation);
-  animated_ = true;
-  body_ += fmt::format(
-      "<figure class=\"animation\"><figcaption>{}</figcaption><svg style=\"width:100%;max-height:24rem\"></svg>"
-      "<p><button type=\"button\">play</button> <input type=\"range\" min=\"0\" value=\"0\" style=\"width:60%\"> "
-      "<output></output></p><p class=\"animation-names\"></p>",
-      escape_html(animation.title));
-  if (!animation.note.empty()) body_ += fmt::format("<p class=\"note\">{}</p>", escape_html(animation.note));
-  body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
-}
-
 void ReportPage::scene(const SceneSpecification& scene) {
   if (scene.frames.empty()) return;
   close_plots();
@@ -216,7 +202,6 @@ std::string ReportPage::html() const {
     page += fmt::format("<script>\n/*\n{}*/\n{}\n</script>\n<script>\n{}</script>\n", report_assets::d3_notice,
                         report_assets::d3_script, report_assets::plot_script);
   }
-  if (animated_) page += fmt::format("<script>\n{}</script>\n", report_assets::animation_script);
   if (spatial_) {
     page += fmt::format("<script>\n/*\n{}*/\n{}\n{}\n</script>\n<script>\n{}</script>\n", report_assets::three_notice,
                         report_assets::three_script, report_assets::orbit_script, report_assets::scene_script);

@@ -86,11 +86,7 @@ class ReportPage {
   /// A plot without any point is left out.
   void line_plot(const PlotSpecification& plot);
 
-  /// Throws std::invalid_argument when a coordinate is not finite or a frame has another number of outlines than names.
-  /// Without frames it is left out.
-  void animation(const AnimationSpecification& animation);
-
-  /// The same of a scene, drawn by three.js, or flat where the browser has no WebGL.
+  /// A scene, drawn by three.js, or flat where the browser has no WebGL.
   void scene(const SceneSpecification& scene);
 
   /// A drawing that is whole as it stands, e.g. of heat_map(); not escaped.
@@ -111,7 +107,6 @@ class ReportPage {
   std::vector<std::string> headings_;
   std::optional<PlotWidth> plots_open_;  ///< width of the plots of the row being filled
   int plot_count_ = 0;
-  bool animated_ = false;
   bool spatial_ = false;
 };
 

@@ -32,6 +32,8 @@ struct MotionCarrier {
   Kind kind = Kind::world;
   int index = 0;  ///< of the body or the arm
   int frame = 0;  ///< of the arm's tree
+
+  [[nodiscard]] bool operator==(const MotionCarrier&) const = default;
 };
 
 /// A free body held by a carrier in the pose in which it starts; it starts with the carrier's motion, whatever its own says.

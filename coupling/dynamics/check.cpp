@@ -61,8 +61,11 @@ void validate_laws(const Motion& motion, Complaints& c) {
     if (w.kind == LawWire::Kind::stretched) {
       c.require(w.length > 0.0 && w.axial_stiffness > 0.0, w.name + ".length", w.length,
                 "must be > 0, and so the axial stiffness");
-    } else {
+    } else if (w.kind == LawWire::Kind::rod) {
       c.require(static_cast<bool>(w.law), w.name + ".law", 0.0, "must be given");
+    } else {
+      c.require(static_cast<bool>(w.push), w.name + ".push", 0.0, "must be given");
+      c.require(w.from == w.to, w.name + ".to", 0.0, "must be the carrier of the other mount");
     }
   }
   for (const BodyContact& b : motion.body_contacts) {

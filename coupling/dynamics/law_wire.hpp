@@ -9,9 +9,24 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <string>
 
 namespace snare::coupling {
+
+/// What a wire between mounts that stand still to each other does to a shaft that pushes it, as a law of the shaft's place says.
+struct WirePush {
+  double depth = -1.0;                                 ///< travel from first touch [m]; > 0: they touch
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();     ///< on the wire, along chord and push [N]
+  Eigen::Matrix2d by_place = Eigen::Matrix2d::Zero();  ///< its derivatives by the place [N/m]
+  Eigen::Vector2d by_rate = Eigen::Vector2d::Zero();   ///< and by the rate [N s/m]
+  double energy = 0.0;                                 ///< stored [J]
+  double lost = 0.0;  ///< [W], with all of what a law takes that does not say what it stores
+};
+
+/// Of the place where the shaft's axis goes through the plane of the wire, along chord and push from the first mount [m], and of its
+/// rate along the push [m/s].
+using WirePushLaw = std::function<WirePush(const Eigen::Vector2d& place, double rate)>;
 
 /// A round shaft with which wires meet that a law stands for: a segment on z about its frame's origin.
 struct MotionShaft {
@@ -30,7 +45,8 @@ struct MotionShaft {
 struct LawWire {
   enum class Kind {
     stretched,  ///< an elastic string, straight and round the shaft: T = EA (l - L)/L
-    rod  ///< a rod that turns about `from` and is met by the shaft: F(x), x = lever (commanded less actual angle)
+    rod,  ///< a rod that turns about `from` and is met by the shaft: F(x), x = lever (commanded less actual angle)
+    push  ///< a law of pushes across the chord, of mounts that stand still to each other
   };
   std::string name = "wire";
   Kind kind = Kind::stretched;
@@ -44,7 +60,12 @@ struct LawWire {
   double axial_time = 0.0;                           ///< stretched: T = EA (e + tau e')/L [s], >= 0
   ContactLaw law;                                    ///< rod: F(x, x')
   double standoff = 0.0;    ///< rod: by which the wire that the law means stands off the rod [m], >= 0, for its tension
-  MotionFriction friction;  ///< smooth; acts where the shaft slides along wire and axis
+  WirePushLaw push;         ///< of a push
+  bool push_jumps = false;  ///< whether its force jumps where they touch
+  /// Whether a push was made for a travel and a position along the chord [m]; none: for all.
+  std::function<bool(double travel, double position)> covers;
+  double side = 1.0;        ///< of a push: 1 with the bulge, -1 against it [-]
+  MotionFriction friction;  ///< smooth; acts where the shaft slides along wire and axis; of a push: none
   WireStrength strength = {};
   WireTightness tightness = {};
   MotionShaft shaft;

@@ -39,6 +39,31 @@ struct NearestOfLines {
   }
 };
 
+/// Where the shaft's axis goes through the plane of a wire whose mounts stand still to each other.
+template <class S>
+struct PlaneCrossing {
+  bool exists = false;
+  Vector3<S> chord, push, across, axis, point;  ///< unit vectors in the plane, its normal, the shaft's axis; the place
+  S span{}, along_axis{}, along_chord{};
+
+  PlaneCrossing(const std::array<FrameMotion<S>, 3>& frames, const Vector3d& binormal, double side) {
+    const Vector3<S> way = frames[to].p - frames[from].p;
+    span = way.norm();
+    chord = way / span;
+    across = frames[from].R * binormal.cast<S>();
+    push = chord.cross(across) * S(side);
+    axis = frames[on_shaft].R.col(2);
+    constexpr double flattest = 0.2;  // sine of the angle between axis and plane
+    const S steep = across.dot(axis);
+    exists = std::abs(value_of(steep)) > flattest;
+    if (!exists) return;
+    along_axis = across.dot(Vector3<S>(frames[from].p - frames[on_shaft].p)) / steep;
+    point = frames[on_shaft].p + axis * along_axis;
+    along_chord = chord.dot(Vector3<S>(point - frames[from].p));
+    exists = value_of(along_chord) > 0.0 && value_of(along_chord) < value_of(span);
+  }
+};
+
 /// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
 /// slope is t/rho. A mount into which the shaft is pressed, rho <= r, has none of them: the string goes on along the surface.
 template <class S>
@@ -79,6 +104,7 @@ struct LawWirePart::Action {
   Vector3<S> slide = Vector3<S>::Zero();             // of the shaft along the wire there
   S share{0.5};                                      // of the way from the first mount
   double stiffness = 0.0, rate = 0.0, energy = 0.0;  // of the string: d(tension)/d(elongation), rate of the elongation
+  double lost = 0.0;                                 // of a push [W]
   std::array<Stop<S>, 2> stops{};                    // at the mounts of a string, by their frames
 };
 
@@ -250,8 +276,46 @@ LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& fra
   return a;
 }
 
+// A shift dx of the shaft's material at q, where the axis a goes through the plane of normal m, moves that place by dx - a (m.dx)/(m.a): the
+// law's force g, in the plane, is the force g - m (g.a)/(m.a) on the material, across the axis.
+template <class S>
+LawWirePart::Action<S> LawWirePart::push(const std::array<FrameMotion<S>, 3>& frames) const {
+  using std::sqrt;
+  Action<S> a;
+  const PlaneCrossing<S> on(frames, binormal_, wire_.side);
+  a.point = (frames[from].p + frames[to].p) * S(0.5);
+  if (!holds_ || !on.exists) return a;
+  const S height = on.push.dot(Vector3<S>(on.point - frames[from].p));
+  const Vector3<S> v = frames[on_shaft].velocity_at(on.point) - frames[from].velocity_at(on.point);
+  const S steep = on.across.dot(on.axis);
+  const S rate = on.push.dot(v) - on.push.dot(on.axis) * on.across.dot(v) / steep;
+  const WirePush law = wire_.push({value_of(on.along_chord), value_of(height)}, value_of(rate));
+  a.depth = height + S(law.depth - value_of(height));
+  a.touches = law.depth > 0.0;
+  a.point = on.point;
+  a.share = on.along_chord / on.span;
+  if (!a.touches || law.force.isZero(0.0)) return a;
+  a.acts = true;
+  a.energy = law.energy;
+  a.lost = law.lost;
+  const auto along = [&](Eigen::Index k) {
+    const S by_place = lifted(law.force[k], law.by_place(k, 0), on.along_chord, law.by_place(k, 1), height);
+    return S(by_place + lifted(0.0, law.by_rate[k], rate, 0.0, rate));
+  };
+  const Vector3<S> g = on.chord * along(0) + on.push * along(1);
+  const Vector3<S> force = g - on.across * (g.dot(on.axis) / steep);
+  a.normal = force.norm();
+  add_friction(a.wrenches, frames, a.point, Vector3<S>(-force), a.share);
+  const double h = std::abs(value_of(height)), s = value_of(on.along_chord), span = value_of(on.span);
+  constexpr double flat = 1e-3;  // of the span: two straight pieces that say nothing of a tension
+  if (h > flat * span) a.tension = a.normal / S(h / std::hypot(s, h) + h / std::hypot(span - s, h));
+  a.slide = v - force * (force.dot(v) / force.squaredNorm());
+  return a;
+}
+
 template <class S>
 LawWirePart::Action<S> LawWirePart::act(const std::array<FrameMotion<S>, 3>& frames) const {
+  if (wire_.kind == LawWire::Kind::push) return push(frames);
   if (wire_.kind == LawWire::Kind::rod) return rod(frames);
   Action<S> a = stretched(frames);
   if (within_)
@@ -269,8 +333,13 @@ std::vector<Wrench> LawWirePart::wrenches(const VectorView& y) const {
 }
 
 Eigen::MatrixXd LawWirePart::derivatives(const VectorView& y) const {
+  const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
+  if (wire_.kind == LawWire::Kind::push) {  // the plane turns with what carries the mounts
+    using Variables = FrameVariables<3>;
+    return derivatives_of<Variables>(act(with_derivatives<Variables>(frames)).wrenches);
+  }
   using Variables = FrameVariables<3, 1>;  // mounts are points
-  return derivatives_of<Variables>(act(with_derivatives<Variables>(motions<3>(frames(), y))).wrenches);
+  return derivatives_of<Variables>(act(with_derivatives<Variables>(frames)).wrenches);
 }
 
 double LawWirePart::depth(const VectorView& y) const {
@@ -293,6 +362,8 @@ PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
   if (a.acts) p.work.wrenches = plain(a.wrenches);
   if (wire_.kind == LawWire::Kind::rod) {
     p.work.power.lost = -power_of(a.wrenches, frames);
+  } else if (wire_.kind == LawWire::Kind::push) {
+    p.work.power = {a.energy, a.lost};
   } else {
     const auto by_friction = [&](const Vector3d& slide, double normal) {
       return -smooth_friction(wire_.friction, slide, normal).dot(slide);
@@ -318,11 +389,19 @@ LawWirePart::Shape LawWirePart::shape(const VectorView& y) const {
   return shape;
 }
 
+bool LawWirePart::reaches(const std::array<FrameMotion<double>, 3>& frames) const {
+  if (wire_.kind == LawWire::Kind::push) {
+    const PlaneCrossing<double> on(frames, binormal_, wire_.side);
+    return on.exists && std::abs(on.along_axis) <= wire_.shaft.half_length;
+  }
+  const Vector3d chord = (frames[to].p - frames[from].p).normalized();
+  const NearestOfLines<double> near(chord, frames[on_shaft].R.col(2), frames[from].p - frames[on_shaft].p);
+  return near.exists && std::abs(near.along_axis) <= wire_.shaft.half_length;
+}
+
 void LawWirePart::look_around(const VectorView& y) {
   const std::array<FrameMotion<double>, 3> now = motions<3>(frames(), y);
-  const Vector3d chord = (now[to].p - now[from].p).normalized();
-  const NearestOfLines<double> near(chord, now[on_shaft].R.col(2), now[from].p - now[on_shaft].p);
-  const bool was_within = std::exchange(within_, near.exists && std::abs(near.along_axis) <= wire_.shaft.half_length);
+  const bool was_within = std::exchange(within_, reaches(now));
   if (!within_) {
     holds_ = false;
   } else if (!was_within) {

@@ -23,6 +23,7 @@ class LawWirePart final : public PressPart {
   [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
   [[nodiscard]] double depth(const numerics::VectorView& y) const override;
   [[nodiscard]] bool jumps() const override {
+    if (wire_.kind == LawWire::Kind::push) return wire_.push_jumps;
     return wire_.kind == LawWire::Kind::rod ? jumps_at_touch(wire_.law) : wire_.axial_time > 0.0;
   }
   [[nodiscard]] Pressing pressing(const numerics::VectorView& y) const override;
@@ -56,6 +57,9 @@ class LawWirePart final : public PressPart {
   [[nodiscard]] Stop<S> stop(const std::array<FrameMotion<S>, 3>& frames, std::size_t mount, Action<S>& a) const;
   template <class S>
   [[nodiscard]] Action<S> rod(const std::array<FrameMotion<S>, 3>& frames) const;
+  template <class S>
+  [[nodiscard]] Action<S> push(const std::array<FrameMotion<S>, 3>& frames) const;
+  [[nodiscard]] bool reaches(const std::array<FrameMotion<double>, 3>& frames) const;
   [[nodiscard]] Action<double> now(const numerics::VectorView& y) const;
 
   LawWire wire_;

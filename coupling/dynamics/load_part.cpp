@@ -1,7 +1,9 @@
 #include "coupling/dynamics/load_part.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace snare::coupling {
 
@@ -19,8 +21,11 @@ Wrench LoadPart::wrench(const DaePoint& at) const {
   if (behind == t.begin() || behind == t.end()) return {};
   const auto k = static_cast<Index>(behind - t.begin());
   const double from = *(behind - 1), share = (at.time - from) / (*behind - from);
-  Wrench w{load_.moments.col(k - 1) + share * (load_.moments.col(k) - load_.moments.col(k - 1)),
-           load_.forces.col(k - 1) + share * (load_.forces.col(k) - load_.forces.col(k - 1))};
+  const auto between = [&](const Eigen::Matrix3Xd& values) -> Vector3d {
+    if (load_.half_sines) return std::sin(std::numbers::pi * share) * values.col(k - 1);
+    return values.col(k - 1) + share * (values.col(k) - values.col(k - 1));
+  };
+  Wrench w{between(load_.moments), between(load_.forces)};
   if (!load_.in_frame) return w;
   const Eigen::Matrix3d R = frame_.state(at.y).X_WF.R;
   return {R * w.moment, R * w.force};

@@ -18,16 +18,12 @@ namespace {
 
 using scenario::WireMotions;
 
-/// The one run of a scenario that lists what there is, with sensors.
+/// The run of a scenario with sensors.
 const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
-  const auto* motions = std::get_if<WireMotions>(&s.content);
-  const auto fail = [&](std::string why) -> void {
-    throw base::InputError({set.file.string(), 0, "scenario", set.scenario.string(), std::move(why)});
-  };
-  if (motions == nullptr || motions->runs.size() != 1 || motions->probe)
-    fail("must be a scenario that lists what there is (snare-scenario/2)");
-  if (motions->sensors.empty()) fail("must have [[sensors]]: a record is compared with what they read");
-  return *motions;
+  if (s.motions.sensors.empty())
+    throw base::InputError({set.file.string(), 0, "scenario", set.scenario.string(),
+                            "must have [[sensors]]: a record is compared with what they read"});
+  return s.motions;
 }
 
 /// Long enough for a record, whatever the scenario's own duration.

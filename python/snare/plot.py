@@ -82,18 +82,14 @@ def law(one: Law, positions: Optional[Sequence[float]] = None, axes: Optional[An
 
 
 def history(result: Result, *columns: str, axes: Optional[Any] = None) -> Any:
-    """Columns of a history [SI units] against time [s]; all forces of contact where none are named. Of several models each is a
-    line.
+    """Columns of a history [SI units] against time [s]; all forces of contact where none are named.
 
-    result: of ``simulate``; its ``history`` has columns of one length. columns: their names, as ``"wire_tension_N"``; each is drawn
+    result: of ``simulate``; its ``history`` has columns of one length. columns: their names, as ``"wire tension_N"``; each is drawn
     over the others, so that they had better have one unit."""
     axes = _axes(axes)
-    runs = result["history"]
-    if "time_s" in runs:
-        runs = {"": runs}
-    for model, run in runs.items():
-        for column in columns or [name for name in run if name == "force_N" or name.endswith("normal_N")]:
-            axes.plot(run["time_s"], run[column], label=f"{model} {column}".strip())
+    run = result["history"]
+    for column in columns or [name for name in run if name.endswith("normal_N")]:
+        axes.plot(run["time_s"], run[column], label=column)
     axes.set_xlabel("time [s]")
     axes.legend()
     return axes

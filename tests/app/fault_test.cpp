@@ -291,7 +291,7 @@ TEST_F(SlowFaults, ValidateWritesItsPartOrSaysWhyNot) {
 TEST_F(SlowFaults, SimulateGoesOnWithoutACheckpoint) {
   expect_promises("simulate '" SNARE_SOURCE_DIR
                   "/data/scenarios/air_table.toml' --quiet --set duration_s=0.004 "
-                  "--set solver.elements=8 --set output.checkpoint_interval_s=0.002 "
+                  "--set wires[wire].elements=8 --set output.checkpoint_interval_s=0.002 "
                   "--set output.checkpoint_wall_time_s=0",
                   "checkpoint.bin");
 }

@@ -165,7 +165,7 @@ const LongWork long_work[] = {
     {"compare_pushes", {"compare", "readings.toml"}},
     {"compare_motions", {"compare", data + "/scenarios/ssrms_htv_capture.toml"}},
     {"simulate_lists", {"simulate", data + "/scenarios/ssrms_htv_capture.toml"}},
-    {"simulate_models", {"simulate", data + "/scenarios/air_table.toml", "--set", "duration_s=1000"}},
+    {"simulate_wire", {"simulate", data + "/scenarios/air_table.toml", "--set", "duration_s=1000"}},
     {"simulate_arm", {"simulate", "step.toml"}},
     {"ringdown", {"ringdown", "ringdown.toml"}},
     {"sweep", {"sweep", "sweep.toml"}},
@@ -216,10 +216,12 @@ class AtAnyMoment : public Interruption, public testing::WithParamInterface<Long
     write_chain(600);
     std::string angles = "0";
     for (int i = 1; i < 600; ++i) angles += ", 0";
+    std::string deflections = "0, 0, -1.0";
+    for (int i = 3; i < 600; ++i) deflections += ", 0";
     write("step.toml",
-          "schema = \"snare-scenario/1\"\nkind = \"joint_step\"\ntitle = \"test\"\nsource = \"none\"\n"
-          "arm = \"chain.toml\"\nangles_deg = [" +
-              angles + "]\njoint = \"j3\"\nstep_deg = 1.0\nduration_s = 1000.0\n");
+          "schema = \"snare-scenario/2\"\ntitle = \"test\"\nduration_s = 1000.0\noutput_interval_s = 0.01\n"
+          "[[arms]]\nname = \"chain\"\nfile = \"chain.toml\"\nhold = \"locked\"\nangles_deg = [" +
+              angles + "]\ndeflections_deg = [" + deflections + "]\n");
   }
 };
 

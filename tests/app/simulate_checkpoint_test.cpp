@@ -1,4 +1,4 @@
-// Killed, interrupted and failing runs of `snare simulate` of the kinds with wires in motion.
+// Killed, interrupted and failing runs of `snare simulate` .
 
 #include "tests/app/command_fixture.hpp"
 
@@ -35,7 +35,7 @@ class SimulateCheckpoint : public CommandFixture {
   [[nodiscard]] static std::vector<std::string> arguments(const fs::path& out, const std::string& more = "") {
     std::vector<std::string> list =
         arguments_of("air_table.toml", out,
-                     {"duration_s=0.06", "solver.elements=12", "output.checkpoint_interval_s=0.005",
+                     {"duration_s=0.06", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
                       "output.checkpoint_wall_time_s=0"});
     if (!more.empty()) list.insert(list.end(), {"--set", more});
     return list;
@@ -67,14 +67,8 @@ class SimulateCheckpoint : public CommandFixture {
   /// summary.json without what depends on the clock.
   [[nodiscard]] json timeless(const fs::path& out) const {
     json summary = parsed(out / "summary.json");
-    const auto strip = [](json& object) {
-      object.erase("wall_s");
-      object.erase("real_time_factor");
-    };
-    strip(summary);
-    if (summary.contains("models")) {
-      for (json& model : summary["models"]) strip(model);
-    }
+    summary.erase("wall_s");
+    summary.erase("real_time_factor");
     return summary;
   }
 };
@@ -131,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, KilledRun,
     testing::Values(Killed{"Contact",
                            "air_table.toml",
-                           {"duration_s=0.06", "solver.elements=12", "output.checkpoint_interval_s=0.005",
+                           {"duration_s=0.06", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
                             "output.checkpoint_wall_time_s=0"}},
                     Killed{"Bodies",
                            "grapple_shaft.toml",
@@ -141,8 +135,8 @@ INSTANTIATE_TEST_SUITE_P(
                     // Beyond the first touch.
                     Killed{"Arm",
                            "jemrms_capture.toml",
-                           {"duration_s=0.3", "contact.solver.elements=12", "contact.output.checkpoint_interval_s=0.03",
-                            "contact.output.checkpoint_wall_time_s=0"}}),
+                           {"duration_s=0.3", "wires[wire].elements=12", "output.checkpoint_interval_s=0.03",
+                            "output.checkpoint_wall_time_s=0"}}),
     [](const auto& param) { return std::string(param.param.name); });
 
 TEST_F(SimulateCheckpoint, AnInterruptedRunKeepsWhatItHasAndGoesOn) {
@@ -156,14 +150,14 @@ TEST_F(SimulateCheckpoint, AnInterruptedRunKeepsWhatItHasAndGoesOn) {
   EXPECT_NE(contents("log.txt").find("what was reached is kept; the same command goes on"), std::string::npos)
       << contents("log.txt");
   const json summary = timeless("out");
-  EXPECT_FALSE(summary["models"].back()["finished"].get<bool>());
+  EXPECT_FALSE(summary["finished"].get<bool>());
   EXPECT_TRUE(fs::exists(folder_ / "out/history.csv"));
   ASSERT_TRUE(fs::exists(folder_ / "out/checkpoint.bin"));
 
   // Of other input it is not used.
   fs::create_directories(folder_ / "other");
   fs::copy(folder_ / "out/checkpoint.bin", folder_ / "other/checkpoint.bin");
-  ASSERT_EQ(run(arguments(folder_ / "other", "body.mass_kg=8.8")), 0) << contents("log.txt");
+  ASSERT_EQ(run(arguments(folder_ / "other", "bodies[target].mass_kg=8.8")), 0) << contents("log.txt");
   EXPECT_NE(contents("log.txt").find("the checkpoint is of other input"), std::string::npos);
   // Nor when it is damaged.
   fs::create_directories(folder_ / "damaged");
@@ -189,12 +183,12 @@ TEST_F(SimulateCheckpoint, AFailureNamesTimeStepAndUnknownAndKeepsTheRest) {
   }
   ASSERT_EQ(run(list), 3) << contents("log.txt");
   const std::string log = contents("log.txt");
-  EXPECT_NE(log.find("full wire: IDASolve stopped with IDA_"), std::string::npos) << log;
+  EXPECT_NE(log.find("meets a loose wire: IDASolve stopped with IDA_"), std::string::npos) << log;
   EXPECT_NE(log.find(" s, step "), std::string::npos) << log;
   EXPECT_NE(log.find("worst: "), std::string::npos) << log;
   EXPECT_NE(log.find("what was reached is kept"), std::string::npos) << log;
   const json summary = timeless("out");
-  EXPECT_FALSE(summary["models"][0]["finished"].get<bool>());
+  EXPECT_FALSE(summary["finished"].get<bool>());
   EXPECT_FALSE(contents("out/history.csv").empty());
   EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
 }

@@ -58,9 +58,10 @@ TEST_F(Warnings, AFitOfWhatCannotBe) {
 
 TEST_F(Warnings, ABlowThatBreaks) {
   const std::string scenario = SNARE_SOURCE_DIR "/data/scenarios/air_table.toml";
-  const int status = run("simulate '" + scenario +
-                         "' --out here --set duration_s=2e-4 --set output_interval_s=1e-5 --set solver.elements=12 "
-                         "--set 'body.velocity_m_s=[0,400,0]'");
+  const int status =
+      run("simulate '" + scenario +
+          "' --out here --set duration_s=2e-4 --set output_interval_s=1e-5 --set wires[wire].elements=12 "
+          "--set 'bodies[target].velocity_m_s=[0,400,0]'");
   EXPECT_TRUE(status == 0 || status == 3) << contents("err.txt");
   EXPECT_NE(contents("err.txt").find("is struck at 399."), std::string::npos) << contents("err.txt");
   EXPECT_FALSE(parsed("here/summary.json")["warnings"].empty());

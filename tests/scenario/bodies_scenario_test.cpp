@@ -22,8 +22,7 @@ using ::testing::HasSubstr;
 const fs::path shipped = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/grapple_shaft.toml";
 
 /// One wire, one body, and one shape of every kind.
-constexpr const char* every_kind = R"(schema = "snare-scenario/1"
-kind = "contact"
+constexpr const char* every_kind = R"(schema = "snare-scenario/2"
 title = "every kind"
 duration_s = 0.01
 [gravity]
@@ -136,7 +135,7 @@ class MotionScenarios : public test::FolderFixture {
     write("every_kind.toml", every_kind);
   }
   [[nodiscard]] NamedMotion read(const std::vector<std::string>& settings) const {
-    return std::get<WireMotions>(read_scenario(path("every_kind.toml"), test::overrides(settings)).content).runs.at(0);
+    return read_scenario(path("every_kind.toml"), test::overrides(settings)).motions.runs.at(0);
   }
 };
 
@@ -193,11 +192,11 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
 
 TEST_F(MotionScenarios, SayWhatIsWrong) {
   const test::WrongSetting wrong[] = {
-      {"schema=\"snare-scenario/3\"", "must be \"snare-scenario/2\" or \"snare-scenario/1\""},
-      {"kind=\"push\"", "kind"},
+      {"schema=\"snare-scenario/3\"", "must be \"snare-scenario/2\""},
+      {"kind=\"push\"", "belongs to older files: take the line out"},
       {"duration_s=-1", "duration_s = -1, must be > 0"},
       {"output_interval_s=1e-9", "gives more than 1e+06 lines"},
-      {"body.mass_kg=1", "not beside lists of bodies, wires and shapes"},
+      {"body.mass_kg=1", "body, unknown key"},
       {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
       {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be where the wire begins"},
@@ -251,11 +250,10 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
 const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";
 
 TEST(WirePairScenarios, ContactsNameTheirWires) {
-  const WireMotions read =
-      std::get<WireMotions>(read_scenario(net, {{"contacts[middle on lower].foundation.modulus_N_m2", "5e9"},
-                                                {"contacts[middle on lower].static_friction", "0.4"},
-                                                {"wires[lower].diameter_mm", "1.0"}})
-                                .content);
+  const WireMotions read = read_scenario(net, {{"contacts[middle on lower].foundation.modulus_N_m2", "5e9"},
+                                               {"contacts[middle on lower].static_friction", "0.4"},
+                                               {"wires[lower].diameter_mm", "1.0"}})
+                               .motions;
   const coupling::Motion& motion = read.runs.at(0).motion;
   ASSERT_EQ(motion.wire_pairs.size(), 3u);
   const coupling::WirePair& pair = motion.wire_pairs[2];
@@ -284,11 +282,8 @@ TEST(WirePairScenarios, SayWhatIsWrong) {
   });
 }
 
-TEST(ShippedScenarios, GrappleShaftIsReadAndKnownAsAList) {
-  const auto content = [](const fs::path& file) { return std::get<WireMotions>(read_scenario(file).content); };
-  EXPECT_TRUE(content(fs::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml").probe);
-  const WireMotions listed = content(shipped);
-  EXPECT_FALSE(listed.probe);
+TEST(ShippedScenarios, GrappleShaftHasOneWireTurned) {
+  const WireMotions listed = read_scenario(shipped).motions;
   ASSERT_EQ(listed.runs.size(), 1u);
   const NamedMotion& s = listed.runs[0];
   EXPECT_EQ(s.motion.wires.size(), 3u);

@@ -108,7 +108,7 @@ class CaptureLaws : public test::FolderFixture {
     return read_file(folder_ / "case.toml", settings);
   }
   [[nodiscard]] static WireMotions read_file(const fs::path& file, const std::vector<std::string>& settings) {
-    return std::get<WireMotions>(read_scenario(file, test::overrides(settings)).content);
+    return read_scenario(file, test::overrides(settings)).motions;
   }
 };
 

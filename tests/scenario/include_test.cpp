@@ -94,7 +94,7 @@ class Includes : public test::FolderFixture {
   [[nodiscard]] WireMotions read(const std::string& name, const std::vector<std::string>& settings = {}) const {
     std::vector<base::Override> overrides;
     for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-    return std::get<WireMotions>(read_scenario(path(name), overrides).content);
+    return read_scenario(path(name), overrides).motions;
   }
   [[nodiscard]] std::string complaint(const std::string& name, const std::vector<std::string>& settings = {}) const {
     try {

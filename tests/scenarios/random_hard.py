@@ -96,8 +96,7 @@ def scenario(case):
         shape = f'kind = "grapple_shaft"\nposition_mm = [0.0, 0.0, {3.0 + WIRE + above - CAM:.3f}]'
     else:
         shape = f'kind = "cylinder"\nradius_mm = {SHAFT}\nlength_mm = 200.0'
-    text = f"""schema = "snare-scenario/1"
-kind = "contact"
+    text = f"""schema = "snare-scenario/2"
 title = "random {case}"
 duration_s = {duration:.6g}
 output_interval_s = {duration / 100.0:.6g}

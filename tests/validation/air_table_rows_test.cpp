@@ -4,15 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace snare::validation {
 namespace {
 
+const std::string data = std::string(SNARE_SOURCE_DIR) + "/data";
+
 TEST(AirTable, QuadraticLawKeepsItsEnergyBalance) {
-  expect_within(quadratic_law_rows());
+  expect_within(quadratic_law_rows(data));
 }
 
 TEST(SlowAirTable, LawKeepsTheImpulseOfTheFullWire) {
-  expect_within(law_beside_wire_rows());
+  expect_within(law_beside_wire_rows(data));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace snare::coupling {
 namespace {
@@ -191,6 +192,34 @@ TEST(FrameLoad, ThrusterTurnsWithItsBody) {
   EXPECT_LT((velocity - of(0.0, 0.5) - of(1.0, 1.5)).norm(), 1e-6);
   EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);
   EXPECT_LT(r.momentum_error.norm(), 1e-7);
+}
+
+// A half sine has 2/pi of its peak times its time; the way at its end is half that of the whole impulse from its beginning.
+TEST(FrameLoad, HalfSinesHaveTheirArea) {
+  Motion motion;
+  motion.bodies = {block("visitor", 2.0, {0.3, 0.3, 0.3})};
+  FrameLoad load;
+  load.carrier = body_of(0);
+  load.in_frame = false;
+  load.half_sines = true;
+  load.times = {0.1, 0.4, 0.6, 0.9};
+  load.forces = load.moments = Eigen::Matrix3Xd::Zero(3, 4);
+  load.forces.col(0) = load.forces.col(2) = Vector3d(4.0, 0.0, 0.0);
+  motion.loads = {load};
+  std::vector<MotionSample> samples;
+  MotionOptions options = fine(1.0);
+  options.output_interval = 0.1;
+  const MotionResult r = simulate(motion, options, [&](const MotionSample& s) {
+    samples.push_back(s);
+    return false;
+  });
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const double velocity = 2.0 / std::acos(-1.0) * 4.0 * 0.3 / 2.0;
+  // Some ten steps a pulse, each to 1e-8 of the velocity.
+  EXPECT_NEAR(samples[5].bodies[0].velocity.x(), velocity, 1e-6);
+  EXPECT_NEAR(samples[4].bodies[0].position.x(), 0.5 * velocity * 0.3, 1e-6);
+  EXPECT_NEAR(samples[10].bodies[0].velocity.x(), 2.0 * velocity, 1e-6);
+  EXPECT_LT(r.momentum_error.norm(), 1e-9);
 }
 
 // Times that differ by round-off alone, as of two loads of which one counts 0.1 + 0.2, do not stop the run.
