@@ -16,6 +16,9 @@ namespace snare::identification {
 
 namespace {
 
+/// Degrees of freedom without which nothing is decided.
+constexpr double least_dof = 5.0;
+
 /// The step of a search: fewer edges than for results.
 SolverSettings for_search(const SolverSettings& asked) {
   SolverSettings search = asked;
@@ -321,7 +324,8 @@ void Tracer::reject() {
 
 // One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
 bool Tracer::decided() const {
-  if (!result_.explained || !result_.alternatives.empty()) return false;
+  if (!result_.explained || !result_.alternatives.empty() || final_.dof() < least_dof) return false;
+  if (result_.zero && result_.zero->doubtful) return false;
   if (result_.selected.empty()) {
     return !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
@@ -419,6 +423,10 @@ Trace Tracer::run() {
   add_effects();
   conclude();
   compare_models();
+  if (result_.explained && progress_.go_on("zero of the travel")) {
+    result_.zero = check_zero(model_, data_, final_);
+    progress_.clock("zero of the travel");
+  }
   result_.decided = decided();
   tell_part();
   if (options_.intervals && !result_.selected.empty()) find_intervals();
