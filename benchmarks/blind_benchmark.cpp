@@ -319,7 +319,7 @@ int main(int argc, char** argv) {
   }
   std::vector<Case> cases;
   for (unsigned s = first; s < first + seeds; ++s) {
-    if (!pairs) cases.push_back({"none", 0.0, s, design});
+    if (!pairs && effects.size() != 1) cases.push_back({"none", 0.0, s, design});
     for (const std::string& effect : effects) {
       for (const double size : sizes) cases.push_back({effect, size, s, design});
     }

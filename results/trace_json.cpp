@@ -232,7 +232,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
                {{"significant", trace.significant},
                 {"tests", tests_json(trace.base_tests)},
                 {"tests_after", tests_json(trace.final_tests)}}},
-              {"candidates", any ? round_json(trace.rounds.front())["candidates"] : json::array()},
+              {"candidates", any ? round_json(trace, trace.rounds.front())["candidates"] : json::array()},
               {"classes", any ? json(trace.rounds.front().classes) : json::array()},
               {"rounds", rounds},
               {"selected", trace.selected},

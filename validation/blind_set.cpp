@@ -217,10 +217,11 @@ struct Deviations {
 Deviations deviations_of(int readings_a_leg, bool replicate, std::mt19937& noise) {
   std::normal_distribution<double> normal;
   Deviations result;
-  const int every = finest_leg / readings_a_leg;
-  const double decay = std::exp(-1.0 / (finest_leg * correlation));
+  const int finest = std::max(finest_leg, readings_a_leg);
+  const int every = finest / readings_a_leg;
+  const double decay = std::exp(-1.0 / (finest * correlation));
   double state = normal(noise);
-  for (int i = 1; i < 2 * finest_leg; ++i) {
+  for (int i = 1; i < 2 * finest; ++i) {
     const double white = sigma * normal(noise);
     state = decay * state + std::sqrt(1.0 - decay * decay) * normal(noise);
     if (i % every != 0) continue;

@@ -134,7 +134,7 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
   Eigen::VectorXd border = Eigen::VectorXd::Zero(at.border.size());
   for (Side& side : varied.sides) {
     put_states(system, varied, side);
-    side.system->assemble(moved(at, change, side.amount), scratch_, by_parameter_);
+    side.system->assemble_residual(moved(at, change, side.amount), scratch_, by_parameter_);
     band -= scratch_.band_residual / (2.0 * side.amount);
     border -= scratch_.border_residual / (2.0 * side.amount);
   }

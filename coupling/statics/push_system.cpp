@@ -1,6 +1,7 @@
 #include "coupling/statics/push_system.hpp"
 
 #include "wire/equilibrium.hpp"
+#include "wire/planar_gradient.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -105,10 +106,23 @@ void PushSystem::assemble(const numerics::PathPoint& at, numerics::BorderedSyste
     if (mount.feeds()) wanted[static_cast<std::size_t>(mount.control())] = true;
   }
   rod_->assemble(s, wanted, assembly_);
+  take_reactions(s, at);
+  rod_->hold_mounts(assembly_);
+  add_contacts(s, at, system, by_parameter);
+  std::swap(system.matrix, assembly_.hessian);
+}
 
-  const int m = border_unknowns();
-  system.reset(rod_->unknowns(), m);
-  by_parameter.setZero(m);
+void PushSystem::assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                                   Eigen::VectorXd& by_parameter) {
+  const wire::PlanarState s = state(at);
+  wire::assemble_gradient(*rod_, s, assembly_);
+  take_reactions(s, at);
+  rod_->clear_held(assembly_.gradient);
+  add_contacts(s, at, system, by_parameter);
+}
+
+// From the gradient before rigid positions are held.
+void PushSystem::take_reactions(const wire::PlanarState& s, const numerics::PathPoint& at) {
   const int last = 2 * rod_->mesh().edges();
   reactions_ = {assembly_.gradient.segment<2>(0), assembly_.gradient.segment<2>(last)};
   for (const wire::PlanarEnd* end : {&rod_->properties().left, &rod_->properties().right}) {
@@ -121,10 +135,14 @@ void PushSystem::assemble(const numerics::PathPoint& at, numerics::BorderedSyste
   for (std::size_t k = 0; k < mounts.size(); ++k) {
     if (!mounts[k].feeds()) reactions_[mounts[k].right ? 1 : 0].x() = at.border[mount_row(k)];
   }
-  rod_->hold_mounts(assembly_);
-  system.band_residual = assembly_.gradient;
-  std::swap(system.matrix, assembly_.hessian);
+}
 
+void PushSystem::add_contacts(const wire::PlanarState& s, const numerics::PathPoint& at,
+                              numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) {
+  const int m = border_unknowns();
+  system.reset(rod_->unknowns(), m);
+  by_parameter.setZero(m);
+  system.band_residual = assembly_.gradient;
   for (std::size_t k = 0; k < sliding.size(); ++k) assemble_sliding(k, s, at, system, by_parameter);
   for (std::size_t k = 0; k < wrapped.size(); ++k) assemble_wrapped(k, s, at, system, by_parameter);
   for (std::size_t k = 0; k < mounts.size(); ++k) assemble_mount(k, at, system);

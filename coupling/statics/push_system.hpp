@@ -118,6 +118,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and WrappedRows.   theory.md (C.2)-(C.8)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
+  /// Of assemble() the residuals alone; matrices of the system are of no use then.
+  void assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                         Eigen::VectorXd& by_parameter);
   [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
   [[nodiscard]] double length_scale() const override { return length_; }
 
@@ -127,6 +130,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] const wire::RodAssembly& rod_assembly() const { return assembly_; }
 
  private:
+  void add_contacts(const wire::PlanarState& state, const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                    Eigen::VectorXd& by_parameter);
+  void take_reactions(const wire::PlanarState& state, const numerics::PathPoint& at);
   void assemble_sliding(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
                         numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void assemble_wrapped(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,

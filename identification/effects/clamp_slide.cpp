@@ -2,12 +2,24 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// Force beyond which it slips.
+Parameter force_on_the_left_clamp() {
+  Parameter p = slip_tension<wire::MountSlip::slides, wire::SlipPlace::left>();
+  p.key = "clamp_slide.tension_N";
+  p.unit = "N";
+  return p;
+}
+
+}  // namespace
+
 /// The left mount slides along the chord, the wire fast in it, when the force along the chord passes a limit.
 Effect clamp_slide_effect() {
   return {.name = "clamp_slide",
           .channel = Channel::mount,
           .meaning = "the left mount slides along the bench beyond a certain force",
-          .numbers = {{slip_tension<wire::MountSlip::slides, wire::SlipPlace::left>("clamp_slide.tension_N"), 1e-3, 1e5}},
+          .numbers = {{force_on_the_left_clamp(), 1e-3, 1e5}},
           .one_sided = true,
           .trials = trial_slip_tensions,
           .unobservable = needs_mounts_that_hold,

@@ -4,6 +4,14 @@ namespace snare::identification {
 
 namespace {
 
+/// Force beyond which it slips.
+Parameter tension_of_the_right_feed() {
+  Parameter p = slip_tension<wire::MountSlip::feeds, wire::SlipPlace::right>();
+  p.key = "mount_slip_right.tension_N";
+  p.unit = "N";
+  return p;
+}
+
 std::string told_from_the_left(const std::vector<Series>& series) {
   for (const Series& s : series) {
     if (s.test.pusher.friction > 0.0) return needs_mounts_that_hold(series);
@@ -18,7 +26,7 @@ Effect mount_slip_right_effect() {
   return {.name = "mount_slip_right",
           .channel = Channel::mount,
           .meaning = "the wire slips through the right mount beyond a certain tension",
-          .numbers = {{slip_tension<wire::MountSlip::feeds, wire::SlipPlace::right>("mount_slip_right.tension_N"), 1e-3, 1e5}},
+          .numbers = {{tension_of_the_right_feed(), 1e-3, 1e5}},
           .one_sided = true,
           .trials = trial_slip_tensions,
           .unobservable = told_from_the_left,

@@ -6,7 +6,7 @@ namespace snare::identification {
 
 std::vector<std::vector<double>> trial_slip_tensions(const TrialContext& context) {
   std::vector<std::vector<double>> result;
-  for (const double share : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
+  for (const double share : {0.2, 0.4, 0.6, 0.75, 0.9}) {
     const double tension = share * context.highest_tension;
     if (tension > 1.02 * context.highest_compression) result.push_back({std::log(tension)});
   }

@@ -8,12 +8,10 @@
 
 namespace snare::identification {
 
-/// The force beyond which a mount slips in this way and place, as a number: infinite where it does not.
+/// The force beyond which a mount slips in this way and place, as a number that has no key yet: infinite where it does not.
 template <wire::MountSlip slip, wire::SlipPlace place>
-[[nodiscard]] Parameter slip_tension(const std::string& key) {
-  return {.key = key,
-          .unit = "N",
-          .parametrisation = Parametrisation::magnitude,
+[[nodiscard]] Parameter slip_tension() {
+  return {.parametrisation = Parametrisation::magnitude,
           .number = {[](const PushProblem& p, const ReadingModel&) {
                        return p.mount.slip == slip && p.mount.slip_at == place
                                   ? p.mount.slip_tension.value_or(std::numeric_limits<double>::infinity())

@@ -2,6 +2,7 @@
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/remainder.hpp"
+#include "identification/tracing/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +86,7 @@ std::string too_small(const Data& data, const Fit& current, const Fit& refitted,
     return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
                        refitted.dof(), refitted.free, fewest_dof(refitted.free));
   }
-  if (tolerance > 0.0 && (before - after <= tolerance || after > least_fall * before)) {
+  if (tolerance > 0.0 && !worth_a_name(before, after, tolerance)) {
     return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
                        before - after, tolerance);
   }

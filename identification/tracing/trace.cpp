@@ -16,9 +16,6 @@ namespace snare::identification {
 
 namespace {
 
-/// Degrees of freedom without which nothing is decided.
-constexpr double least_dof = 5.0;
-
 /// The step of a search: fewer edges than for results.
 SolverSettings for_search(const SolverSettings& asked) {
   SolverSettings search = asked;
@@ -264,8 +261,7 @@ void Tracer::conclude() {
     result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
     select();
   } else if (!added_.empty() && !result_.rival_explanation &&
-             tests_.left.upper <= most_force_left * result_.peak_force &&
-             share_left(before, tests_.left) <= most_share_left && rivals().empty()) {
+             is_partial(before, tests_.left, result_.peak_force) && rivals().empty()) {
     leave(tests_.left, share_left(before, tests_.left));
     result_.kind = VerdictKind::partly_explained;
     if (options_.attribute && progress_.go_on("where the rest comes from")) {
@@ -324,23 +320,20 @@ void Tracer::reject() {
 
 // One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
 bool Tracer::decided() const {
-  if (!result_.explained || !result_.alternatives.empty() || final_.dof() < least_dof) return false;
-  if (result_.zero && result_.zero->doubtful) return false;
+  if (!result_.explained) return false;
+  Evidence evidence{.dof = final_.dof(),
+                    .classes = result_.selected_classes,
+                    .cause_outside = !result_.alternatives.empty(),
+                    .one_condition = result_.one_condition && !result_.selected.empty(),
+                    .zero_in_doubt = result_.zero && result_.zero->doubtful};
   if (result_.selected.empty()) {
-    return !result_.few_readings &&
+    return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
   }
-  for (const std::vector<std::string>& members : result_.selected_classes) {
-    if (members.size() != 1) return false;
-  }
   if (result_.one_condition) return false;
-  double before = left_out_rmse(model_, data_, base_);
-  for (const RoundFits& round : rounds_) {
-    const double after = left_out_rmse(model_, data_, round.better);
-    if (!(after < before)) return false;
-    before = after;
-  }
-  return true;
+  evidence.left_out.push_back(left_out_rmse(model_, data_, base_));
+  for (const RoundFits& round : rounds_) evidence.left_out.push_back(left_out_rmse(model_, data_, round.better));
+  return is_decided(evidence);
 }
 
 // Errors of the final model, on fitted series, held-out ones, and each of them left out.

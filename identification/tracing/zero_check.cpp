@@ -68,7 +68,9 @@ std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const 
   result.p = 2.0 * student_tail(std::abs(g.dot(fit_without.residual)) / norm / inflation, data.noise.dof);
   std::vector<Setting> start = fit_without.fitted();
   start.push_back({&zero, std::clamp(g.dot(fit_without.residual) / (norm * norm), model.lower(zero), model.upper(zero))});
-  const Fit with = fit(model, data, start, fit_without.fixed(), {.max_iterations = 15});
+  FitOptions fitting;
+  fitting.max_iterations = 15;
+  const Fit with = fit(model, data, start, fit_without.fixed(), fitting);
   if (!with.report.usable()) return std::nullopt;
   const auto last = static_cast<Eigen::Index>(with.free) - 1;
   const double offset = with.settings[with.free - 1].coordinate;
