@@ -18,8 +18,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
-#include <boost/math/distributions/binomial.hpp>
 #include <CLI/CLI.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -135,11 +135,25 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"effect", c.effect},    {"size", c.size},         {"seed", c.seed},          {"right", o.right},
-          {"alarm", o.alarm},      {"channel", o.channel},   {"beside", o.alternative}, {"deviates", o.deviates},
-          {"covered", o.covered},  {"chi2_dof", o.chi2_dof}, {"left_out", o.left_out},  {"answer", o.answer},
-          {"class", o.class_size}, {"seconds", o.seconds},   {"made", o.made_size},     {"reached", o.reached},
-          {"partial", o.partial},  {"design", c.design},     {"effect_covered", o.effect_covered}};
+  return {{"effect", c.effect},
+          {"size", c.size},
+          {"seed", c.seed},
+          {"right", o.right},
+          {"alarm", o.alarm},
+          {"channel", o.channel},
+          {"beside", o.alternative},
+          {"deviates", o.deviates},
+          {"covered", o.covered},
+          {"chi2_dof", o.chi2_dof},
+          {"left_out", o.left_out},
+          {"answer", o.answer},
+          {"class", o.class_size},
+          {"seconds", o.seconds},
+          {"made", o.made_size},
+          {"reached", o.reached},
+          {"partial", o.partial},
+          {"design", c.design},
+          {"effect_covered", o.effect_covered}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {

@@ -19,8 +19,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
-#include <boost/math/distributions/binomial.hpp>
 #include <CLI/CLI.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -175,10 +175,9 @@ void add(Totals& t, const Outcome& o) {
 nlohmann::json json_of(const Totals& t) {
   return {{"sets", t.sets},
           {"false_culprits", t.culprits},
-          {"false_culprits_at_most", t.culprits < t.sets
-                                         ? boost::math::binomial_distribution<>::find_upper_bound_on_p(
-                                               t.sets, t.culprits, 0.05)
-                                         : 1.0},
+          {"false_culprits_at_most",
+           t.culprits < t.sets ? boost::math::binomial_distribution<>::find_upper_bound_on_p(t.sets, t.culprits, 0.05)
+                               : 1.0},
           {"zeros_in_doubt", t.doubtful},
           {"named", t.named},
           {"verdicts", t.verdicts},
@@ -189,8 +188,8 @@ nlohmann::json json_of(const Totals& t) {
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"kind", c.kind},       {"readings", c.readings},    {"seed", c.seed},   {"culprit", o.culprit},
-          {"verdict", o.verdict}, {"effects", o.effects},      {"sigma", o.sigma_ratio}, {"left", o.upper},
+  return {{"kind", c.kind},       {"readings", c.readings}, {"seed", c.seed},         {"culprit", o.culprit},
+          {"verdict", o.verdict}, {"effects", o.effects},   {"sigma", o.sigma_ratio}, {"left", o.upper},
           {"zero", o.doubtful},   {"seconds", o.seconds}};
 }
 
@@ -205,9 +204,8 @@ std::map<std::size_t, Outcome> read_sets(const std::string& file, const std::vec
       return c.kind == line["kind"] && c.readings == line["readings"] && c.seed == line["seed"];
     });
     if (at == cases.end()) continue;
-    outcomes[static_cast<std::size_t>(at - cases.begin())] = {line["culprit"], line["verdict"], line["effects"],
-                                                              line["sigma"],   line["left"],    line["zero"],
-                                                              line["seconds"]};
+    outcomes[static_cast<std::size_t>(at - cases.begin())] = {
+        line["culprit"], line["verdict"], line["effects"], line["sigma"], line["left"], line["zero"], line["seconds"]};
   }
   return outcomes;
 }

@@ -85,10 +85,7 @@ BENCHMARK_CAPTURE(long_records, strand_hysteresis, "strand_hysteresis", 30.0)
     ->Unit(benchmark::kSecond)
     ->UseRealTime()
     ->Iterations(1);
-BENCHMARK_CAPTURE(long_records, mount_slip, "mount_slip", 30.0)
-    ->Unit(benchmark::kSecond)
-    ->UseRealTime()
-    ->Iterations(1);
+BENCHMARK_CAPTURE(long_records, mount_slip, "mount_slip", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 BENCHMARK_CAPTURE(long_records, damage, "damage", 100.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 BENCHMARK_CAPTURE(replicates, nothing, "none", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 BENCHMARK_CAPTURE(replicates, strand_hysteresis, "strand_hysteresis", 300.0)

@@ -74,7 +74,8 @@ std::string nothing_missing(const Trace& t) {
   std::string text;
   if (t.from_laws) {
     text = fmt::format(
-        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones and their scatters (p = "
+        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones and their "
+        "scatters (p = "
         "{:.2g}); no effect is missing.",
         t.base.numbers.size(), t.rows, t.base_tests.lack_of_fit);
   } else if (t.base_tests.like_noise() || t.base.rmse <= t.base_tests.noise) {
@@ -133,9 +134,10 @@ std::string not_explained(const Trace& t) {
     text =
         fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
   } else if (t.from_laws) {
-    text = fmt::format("Not explained: beside {} fitted numbers the published fits and their scatters agree with the "
-                       "computed ones with p = {:.2g} only.",
-                       t.base.numbers.size(), t.base_tests.lack_of_fit);
+    text = fmt::format(
+        "Not explained: beside {} fitted numbers the published fits and their scatters agree with the "
+        "computed ones with p = {:.2g} only.",
+        t.base.numbers.size(), t.base_tests.lack_of_fit);
   } else if (t.few_readings) {
     text = fmt::format("Not explained: the base model leaves {:.3g} N rms.", t.base.rmse);
   } else {
@@ -151,7 +153,8 @@ std::string not_explained(const Trace& t) {
 /// What a wrong zero of the travel would change.
 std::string zero_words(const identification::ZeroCheck& z) {
   return fmt::format(
-      " Note: the readings do not begin at the touch, and they ask for a zero of the travel at {:.3g} mm ({:.3g} to {:.3g}); "
+      " Note: the readings do not begin at the touch, and they ask for a zero of the travel at {:.3g} mm ({:.3g} to "
+      "{:.3g}); "
       "with it {} would be {:.4g} {} in place of {:.4g}. Find the touch, or free reading.displacement_offset_mm.",
       z.offset, z.lower, z.upper, z.key, z.with, z.unit, z.without);
 }

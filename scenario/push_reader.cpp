@@ -128,9 +128,8 @@ wire::MountSpecification read_mount(const TomlTable& table) {
   mount.slip_tension = table.optional_number("slip_tension_N", Range::above(0.0, largest_force));
   static constexpr Choice<wire::MountSlip> slips[] = {{"feeds", wire::MountSlip::feeds},
                                                       {"slides", wire::MountSlip::slides}};
-  static constexpr Choice<wire::SlipPlace> places[] = {{"left", wire::SlipPlace::left},
-                                                       {"right", wire::SlipPlace::right},
-                                                       {"both", wire::SlipPlace::both}};
+  static constexpr Choice<wire::SlipPlace> places[] = {
+      {"left", wire::SlipPlace::left}, {"right", wire::SlipPlace::right}, {"both", wire::SlipPlace::both}};
   for (const char* key : {"slip", "slip_at"}) {
     if (table.has(key) && !mount.slip_tension) table.fail(key, "only beside slip_tension_N");
   }

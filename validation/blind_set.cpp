@@ -20,10 +20,10 @@ namespace snare::validation {
 namespace {
 
 using base::mm;
-constexpr double sigma = 0.05;  // of a reading [N]
-constexpr int finest_leg = 40;          // readings a leg on which noise is drawn
-constexpr double deviation = 0.01;      // of a replicate, of the force
-constexpr double correlation = 0.25;    // of its path, of the travel
+constexpr double sigma = 0.05;        // of a reading [N]
+constexpr int finest_leg = 40;        // readings a leg on which noise is drawn
+constexpr double deviation = 0.01;    // of a replicate, of the force
+constexpr double correlation = 0.25;  // of its path, of the travel
 constexpr double diameter = 1.5 * mm;
 constexpr double length = 176.0 * mm;
 constexpr double modulus = 193e9;    // [Pa]
@@ -120,8 +120,7 @@ void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench
     w.mount_slip_tension = highest_tension * std::max(0.05, 1.0 - 0.9 * a);
     w.mount_slides = effect != "mount_slip";
     w.mount_slips_right = w.mount_slides ? effect == "clamp_slide_right" : h.right;
-  }
-  else if (effect == "mount_axial_compliance")
+  } else if (effect == "mount_axial_compliance")
     w.mount_axial_compliance = 1e-6 * a;
   else if (effect == "mount_rotational_compliance")
     w.mount_rotational_compliance += 2.0 * a;
@@ -200,8 +199,7 @@ Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double
   std::vector<double> all;
   const std::vector<Push> made = pushes_of(design);
   for (std::size_t k = 0; k < made.size(); ++k) {
-    const std::vector<double> one =
-        read(doses, made[k], h.position_off[k], h, highest_tension, design.readings_a_leg);
+    const std::vector<double> one = read(doses, made[k], h.position_off[k], h, highest_tension, design.readings_a_leg);
     all.insert(all.end(), one.begin(), one.end());
   }
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));

@@ -17,8 +17,8 @@ struct BlindSet {
   double amount = 0.0;  ///< of the (first) effect, in its own measure
   double size = 0.0;    ///< of its change of the forces over the noise of one reading, after the best fit of the base
       ///< model's numbers: sqrt(sum (projected change / sigma)^2); of several, each alone, the smallest
-  std::string key;     ///< of the (first) effect's first number; empty: it is in no catalogue
-  double truth = 0.0;  ///< of that number, in its unit
+  std::string key;                 ///< of the (first) effect's first number; empty: it is in no catalogue
+  double truth = 0.0;              ///< of that number, in its unit
   double bending_stiffness = 0.0;  ///< true [N m^2]
   double axial_stiffness = 0.0;    ///< true [N]
 };

@@ -298,7 +298,8 @@ namespace {
 
 /// derivatives: the Hessian and what goes with it, else the gradient alone.
 template <bool derivatives>
-void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) {
+void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::array<bool, 3>& wanted,
+                   RodAssembly& out) {
   const MaterialMesh& mesh = rod.mesh();
   const PlanarRodProperties& properties = rod.properties();
   thread_local std::vector<Edge> edges;

@@ -51,7 +51,8 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
   if (before.border.size() != now.border.size()) return work;
   for (std::size_t k = 0; k < system.mounts.size(); ++k) {
     const SlippingMount& mount = system.mounts[k];
-    if (mount.slips || (mount.follows && system.mounts.front().slips)) work += mount.limit * std::abs(mount.moved(system.mount_place(k, now)));
+    if (mount.slips || (mount.follows && system.mounts.front().slips))
+      work += mount.limit * std::abs(mount.moved(system.mount_place(k, now)));
   }
   return work;
 }

@@ -28,8 +28,8 @@ struct SlippingMount {
   double last = 0.0;       ///< S, or where the mount stands along the chord, at the last accepted state [m]
 
   [[nodiscard]] bool feeds() const { return kind == wire::MountSlip::feeds; }
-  [[nodiscard]] int control() const { return right ? 2 : 0; }         ///< that a feeding mount moves
-  [[nodiscard]] double sense() const { return right ? -1.0 : 1.0; }   ///< of the chord from this mount inwards
+  [[nodiscard]] int control() const { return right ? 2 : 0; }        ///< that a feeding mount moves
+  [[nodiscard]] double sense() const { return right ? -1.0 : 1.0; }  ///< of the chord from this mount inwards
   /// Slipped since the last state, > 0 where wire comes in [m]. now: S, or where the mount stands.
   [[nodiscard]] double moved(double now) const { return (feeds() ? -sense() : sense()) * (now - last); }
 };
@@ -42,8 +42,8 @@ struct SlippingMount {
 struct ContactStates {
   std::vector<SlidingContact> sliding;  ///< the pusher first, then the supports
   std::vector<WrappedContact> wrapped;
-  std::vector<SlippingMount> mounts;    ///< that can slip
-  wire::SectionMemory sections;  ///< of a wire with sliders
+  std::vector<SlippingMount> mounts;  ///< that can slip
+  wire::SectionMemory sections;       ///< of a wire with sliders
 };
 
 /// Places of a sliding contact in the border: of its unknowns (columns), and of its equations (rows).
@@ -96,9 +96,7 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] SlidingRows pusher_rows() const { return sliding_rows(0); }
   [[nodiscard]] WrappedRows wrapped_rows(std::size_t contact) const;
   /// Of a mount's unknown, and of its equation; counted as in `mounts`.
-  [[nodiscard]] int mount_row(std::size_t k) const {
-    return wrapped_rows(wrapped.size()).force + static_cast<int>(k);
-  }
+  [[nodiscard]] int mount_row(std::size_t k) const { return wrapped_rows(wrapped.size()).force + static_cast<int>(k); }
   /// Force that drives the mount, > 0 where the wire pulls [N], and S or where it stands [m]; of the last assembly.
   [[nodiscard]] double mount_drive(std::size_t k, const numerics::PathPoint& at) const;
   [[nodiscard]] double mount_place(std::size_t k, const numerics::PathPoint& at) const;

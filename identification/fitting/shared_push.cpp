@@ -70,7 +70,8 @@ bool one_way(const Series& series) {
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& declared, const Model::Applied& applied) {
+std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& declared,
+                                                    const Model::Applied& applied) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t k = 0; k < declared.size(); ++k) {
     const auto alike = [&](const std::vector<std::size_t>& group) {
@@ -114,7 +115,8 @@ Prediction part_of(const Prediction& whole, const Series& merged, const Series& 
     return result;
   }
   std::vector<Eigen::Index> rows;
-  for (const double d : measured_displacement(one)) rows.push_back(std::lower_bound(all.begin(), all.end(), d) - all.begin());
+  for (const double d : measured_displacement(one))
+    rows.push_back(std::lower_bound(all.begin(), all.end(), d) - all.begin());
   for (const Eigen::Index row : rows) {
     const auto i = static_cast<std::size_t>(row);
     result.force.push_back(whole.force[i]);

@@ -260,8 +260,8 @@ void Tracer::conclude() {
     leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));
     result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
     select();
-  } else if (!added_.empty() && !result_.rival_explanation &&
-             is_partial(before, tests_.left, result_.peak_force) && rivals().empty()) {
+  } else if (!added_.empty() && !result_.rival_explanation && is_partial(before, tests_.left, result_.peak_force) &&
+             rivals().empty()) {
     leave(tests_.left, share_left(before, tests_.left));
     result_.kind = VerdictKind::partly_explained;
     if (options_.attribute && progress_.go_on("where the rest comes from")) {

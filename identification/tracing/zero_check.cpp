@@ -14,10 +14,10 @@ namespace snare::identification {
 namespace {
 
 constexpr const char* zero_key = "reading.displacement_offset_mm";
-constexpr double near_touch = 0.01;   // of the travel
+constexpr double near_touch = 0.01;     // of the travel
 constexpr double noise_at_touch = 3.0;  // standard deviations of a force
-constexpr double asked = 0.01;        // P below which the readings ask for a zero
-constexpr double worthwhile = 0.05;   // change of a fitted number that an engineer must know of
+constexpr double asked = 0.01;          // P below which the readings ask for a zero
+constexpr double worthwhile = 0.05;     // change of a fitted number that an engineer must know of
 
 bool begins_at_touch(const Series& series, double sigma) {
   const Readings& r = *series.readings;
@@ -67,7 +67,8 @@ std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const 
   ZeroCheck result;
   result.p = 2.0 * student_tail(std::abs(g.dot(fit_without.residual)) / norm / inflation, data.noise.dof);
   std::vector<Setting> start = fit_without.fitted();
-  start.push_back({&zero, std::clamp(g.dot(fit_without.residual) / (norm * norm), model.lower(zero), model.upper(zero))});
+  start.push_back(
+      {&zero, std::clamp(g.dot(fit_without.residual) / (norm * norm), model.lower(zero), model.upper(zero))});
   FitOptions fitting;
   fitting.max_iterations = 15;
   const Fit with = fit(model, data, start, fit_without.fixed(), fitting);
