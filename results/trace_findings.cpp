@@ -153,7 +153,7 @@ std::string not_explained(const Trace& t) {
 /// What a wrong zero of the travel would change.
 std::string zero_words(const identification::ZeroCheck& z) {
   return fmt::format(
-      " Note: the readings do not begin at the touch, and they ask for a zero of the travel at {:.3g} mm ({:.3g} to "
+      " Note: the readings ask for a zero of the travel at {:.3g} mm ({:.3g} to "
       "{:.3g}); "
       "with it {} would be {:.4g} {} in place of {:.4g}. Find the touch, or free reading.displacement_offset_mm.",
       z.offset, z.lower, z.upper, z.key, z.with, z.unit, z.without);

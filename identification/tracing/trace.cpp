@@ -416,7 +416,7 @@ Trace Tracer::run() {
   add_effects();
   conclude();
   compare_models();
-  if (result_.explained && progress_.go_on("zero of the travel")) {
+  if (progress_.go_on("zero of the travel")) {
     result_.zero = check_zero(model_, data_, final_);
     progress_.clock("zero of the travel");
   }

@@ -14,16 +14,8 @@ namespace snare::identification {
 namespace {
 
 constexpr const char* zero_key = "reading.displacement_offset_mm";
-constexpr double near_touch = 0.01;     // of the travel
-constexpr double noise_at_touch = 3.0;  // standard deviations of a force
 constexpr double asked = 0.01;          // P below which the readings ask for a zero
 constexpr double worthwhile = 0.05;     // change of a fitted number that an engineer must know of
-
-bool begins_at_touch(const Series& series, double sigma) {
-  const Readings& r = *series.readings;
-  const double travel = *std::max_element(r.displacement.begin(), r.displacement.end());
-  return std::abs(r.displacement.front()) <= near_touch * travel && std::abs(r.force.front()) <= noise_at_touch * sigma;
-}
 
 bool has_zero(const Fit& fit) {
   return std::any_of(fit.settings.begin(), fit.settings.end(),
@@ -52,10 +44,9 @@ void compare(const Model& model, const Fit& without, const Fit& with, ZeroCheck&
 }  // namespace
 
 std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const Fit& fit_without) {
-  const bool late = std::any_of(data.series.begin(), data.series.end(), [&](std::size_t k) {
-    return !data.noise.summarised(k) && !begins_at_touch(model.series()[k], data.noise.sigma[k]);
-  });
-  if (!late || has_zero(fit_without) || fit_without.dof() < 2.0) return std::nullopt;
+  const bool read = std::any_of(data.series.begin(), data.series.end(),
+                                [&](std::size_t k) { return !data.noise.summarised(k); });
+  if (!read || has_zero(fit_without) || fit_without.dof() < 2.0) return std::nullopt;
   const Parameter& zero = parameters().at(zero_key);
   const Evaluation at = model.evaluate(fit_without.settings, {&zero});
   if (!at.complete) return std::nullopt;
