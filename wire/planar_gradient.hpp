@@ -1,8 +1,10 @@
 #pragma once
 
-#include "wire/planar_rod.hpp"
-
 namespace snare::wire {
+
+class PlanarRod;
+struct PlanarState;
+struct RodAssembly;
 
 /// Of PlanarRod::assemble the energy [J] and its first derivatives alone, by q [N] and by the controls [N]: a third of the
 /// work. The rest of `out` stays as it was.

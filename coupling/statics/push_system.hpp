@@ -27,6 +27,7 @@ struct SlippingMount {
   double slip_sign = 0.0;  ///< of the driving force while it slips, +1: the wire pulls, or -1 [-]
   double last = 0.0;       ///< S, or where the mount stands along the chord, at the last accepted state [m]
 
+  /// The wire slips through it; else it slides with the wire.
   [[nodiscard]] bool feeds() const { return kind == wire::MountSlip::feeds; }
   [[nodiscard]] int control() const { return right ? 2 : 0; }        ///< that a feeding mount moves
   [[nodiscard]] double sense() const { return right ? -1.0 : 1.0; }  ///< of the chord from this mount inwards
@@ -116,7 +117,7 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and WrappedRows.   theory.md (C.2)-(C.8)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
-  /// Of assemble() the residuals alone; matrices of the system are of no use then.
+  /// Of assemble() the residuals [N], [m] alone; matrices of the system are of no use then.
   void assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                          Eigen::VectorXd& by_parameter);
   [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;

@@ -27,7 +27,7 @@ template <wire::MountSlip slip, wire::SlipPlace place>
       .step = 1e-4};
 }
 
-/// Forces at which a mount may begin to slip, as coordinates: from just above what the buckled wire pushes, which the
+/// Forces at which a mount may begin to slip, as coordinates, logarithms [-] of newtons: from just above what the buckled wire pushes, which the
 /// mount must have held, to the highest tension of the test.
 [[nodiscard]] std::vector<std::vector<double>> trial_slip_tensions(const TrialContext& context);
 

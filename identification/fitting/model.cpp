@@ -134,7 +134,7 @@ Evaluation Model::predict_with(const Applied& model, const PredictionOptions& op
   // Records of one push share its curve, where no number belongs to one of them alone.
   std::vector<std::vector<std::size_t>> groups;
   if (options.thin && model.of_all) {
-    groups = shared_pushes(series_, model);
+    groups = shared_pushes(series_, series, model.reading);
   } else {
     for (std::size_t k = 0; k < series.size(); ++k) groups.push_back({k});
   }

@@ -71,17 +71,17 @@ bool one_way(const Series& series) {
 }  // namespace
 
 std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& declared,
-                                                    const Model::Applied& applied) {
+                                                    const std::vector<Series>& applied,
+                                                    const std::vector<ReadingModel>& reading) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t k = 0; k < declared.size(); ++k) {
     const auto alike = [&](const std::vector<std::size_t>& group) {
       const std::size_t j = group.front();
       return one_way(declared[j]) && same_push(declared[j].test, declared[k].test) &&
-             same_push(applied.series[j].test, applied.series[k].test) &&
-             members(applied.reading[j]) == members(applied.reading[k]);
+             same_push(applied[j].test, applied[k].test) && members(reading[j]) == members(reading[k]);
     };
     // Where the wire relaxes the speed of every record counts.
-    const bool may = applied.reading[k].relaxation_time == 0.0 && one_way(declared[k]);
+    const bool may = reading[k].relaxation_time == 0.0 && one_way(declared[k]);
     const auto at = may ? std::find_if(groups.begin(), groups.end(), alike) : groups.end();
     if (at == groups.end())
       groups.push_back({k});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/fitting/model.hpp"
+#include "identification/fitting/prediction.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -9,9 +9,10 @@ namespace snare::identification {
 
 /// Series whose curves are one and the same, as indices, every series in one group: dense records of a push in one
 /// direction on the same wire, read alike, which one solve serves. declared: as the file gives them, from which numbers
-/// count; applied: with a model's settings.
+/// count; applied, reading: with a model's settings, one a series.
 [[nodiscard]] std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& declared,
-                                                                  const Model::Applied& applied);
+                                                                  const std::vector<Series>& applied,
+                                                                  const std::vector<ReadingModel>& reading);
 
 /// One series with the displacements of all of a group, in their order.
 [[nodiscard]] Series merged(const std::vector<Series>& series, const std::vector<std::size_t>& group);

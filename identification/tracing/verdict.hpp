@@ -63,7 +63,7 @@ inline constexpr double usual_tolerance = 0.01;
 
 /// What speaks for an answer being the only one.
 struct Evidence {
-  double dof = 0.0;                                 ///< of the final fit
+  double dof = 0.0;                                 ///< of the final fit [-]
   std::vector<std::vector<std::string>> classes{};  ///< one a selected effect
   bool cause_outside = false;                       ///< one that the catalogue does not have would do as well
   bool one_condition = false;                       ///< of readings

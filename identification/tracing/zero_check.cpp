@@ -14,8 +14,8 @@ namespace snare::identification {
 namespace {
 
 constexpr const char* zero_key = "reading.displacement_offset_mm";
-constexpr double asked = 0.01;          // P below which the readings ask for a zero
-constexpr double worthwhile = 0.05;     // change of a fitted number that an engineer must know of
+constexpr double asked = 0.01;       // P below which the readings ask for a zero
+constexpr double worthwhile = 0.05;  // change of a fitted number that an engineer must know of
 
 bool has_zero(const Fit& fit) {
   return std::any_of(fit.settings.begin(), fit.settings.end(),
@@ -44,8 +44,8 @@ void compare(const Model& model, const Fit& without, const Fit& with, ZeroCheck&
 }  // namespace
 
 std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const Fit& fit_without) {
-  const bool read = std::any_of(data.series.begin(), data.series.end(),
-                                [&](std::size_t k) { return !data.noise.summarised(k); });
+  const bool read =
+      std::any_of(data.series.begin(), data.series.end(), [&](std::size_t k) { return !data.noise.summarised(k); });
   if (!read || has_zero(fit_without) || fit_without.dof() < 2.0) return std::nullopt;
   const Parameter& zero = parameters().at(zero_key);
   const Evaluation at = model.evaluate(fit_without.settings, {&zero});

@@ -216,8 +216,9 @@ TEST(Verdict, NoZeroIsLookedForBesideAFittedOne) {
   const Experiment e = computed(40, {65.0 * mm});
   Fitted f = fitted(e, 0.05);
   EXPECT_TRUE(check_zero(f.model, f.data, f.fit).has_value());
-  f.fit = fit(f.model, f.data,
-              {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("reading.displacement_offset_mm"), 0.0}});
+  f.fit = fit(
+      f.model, f.data,
+      {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("reading.displacement_offset_mm"), 0.0}});
   EXPECT_FALSE(check_zero(f.model, f.data, f.fit).has_value());
 }
 
