@@ -1,11 +1,15 @@
 // How often the tracing names the right class: blind sets of the continuous wire with an effect that the
 // declared model lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion
 // matrix as JSON.
-//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--out FILE] [--sets FILE]
-//   [--require]
+//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--design NAME] [--intervals]
+//   [--minutes M] [--out FILE] [--sets FILE] [--require]
 // --effects a+b puts two in at once; --pairs takes a list of such pairs.
 // --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended.
-// It belongs to one build: another one starts with a new file.
+// It belongs to one build: another one starts with a new file. --minutes ends a run after a set.
+// --design geometry: length off by 0.1 mm and freed, every position off by 0.02 mm (standard deviations); replicates and
+// dense: three pushes, three records each that deviate smoothly, noise not declared, 20 and 40 readings a leg of the same
+// wire and noise.
+// Shares come with the lower end of their one-sided 95 % interval (Clopper and Pearson 1934), rates of errors with the upper.
 
 #include "base/files.hpp"
 #include "identification/tracing/trace.hpp"
@@ -15,6 +19,7 @@
 #include <fmt/ranges.h>
 #include <omp.h>
 #include <CLI/CLI.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -32,7 +37,24 @@ struct Case {
   std::string effect;
   double size = 0.0;
   unsigned seed = 0;
+  std::string design = "plain";
 };
+
+validation::BlindDesign design_of(const std::string& name) {
+  validation::BlindDesign design;
+  if (name == "geometry") design = {.length_deviation = 1e-4, .position_deviation = 2e-5};
+  if (name == "replicates") design.replicates = 3;
+  if (name == "dense") design = {.readings_a_leg = 40, .replicates = 3};
+  return design;
+}
+
+/// Where the chance of at least `k` of n, or of at most `k`, is 5 %: bounds of a share that was seen as k of n.
+double lower_bound(double k, double n) {
+  return k <= 0.0 ? 0.0 : boost::math::binomial_distribution<>::find_lower_bound_on_p(n, k, 0.05);
+}
+double upper_bound(double k, double n) {
+  return k >= n ? 1.0 : boost::math::binomial_distribution<>::find_upper_bound_on_p(n, k, 0.05);
+}
 
 struct Outcome {
   bool right = false;    // the class holds the effect (nothing, where nothing is inside); see judge()
@@ -41,6 +63,7 @@ struct Outcome {
   // The class of the selected effect holds a cause outside the catalogue (the right one, if one is inside).
   bool alternative = false;
   int covered = 0;               // base numbers within their intervals, of two
+  int effect_covered = -1;       // the effect's number within its interval; -1: not asked
   std::vector<double> deviates;  // of the base numbers from the truth, in standard errors
   double chi2_dof = 0.0;
   double left_out = 0.0;  // error of series predicted from the others, over the noise
@@ -103,17 +126,34 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
                          : n.key == "wire.axial_stiffness_N"   ? set.axial_stiffness
                                                                : std::nan("");
     if (n.lower && n.upper && *n.lower <= truth && truth <= *n.upper) ++o.covered;
+    if (n.profiled && n.key == set.key && o.right) {
+      o.effect_covered = (!n.lower || *n.lower <= set.truth) && (!n.upper || set.truth <= *n.upper) ? 1 : 0;
+    }
     if (n.standard_error && std::isfinite(truth)) o.deviates.push_back((n.value - truth) / *n.standard_error);
   }
   return o;
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"effect", c.effect},    {"size", c.size},         {"seed", c.seed},          {"right", o.right},
-          {"alarm", o.alarm},      {"channel", o.channel},   {"beside", o.alternative}, {"deviates", o.deviates},
-          {"covered", o.covered},  {"chi2_dof", o.chi2_dof}, {"left_out", o.left_out},  {"answer", o.answer},
-          {"class", o.class_size}, {"seconds", o.seconds},   {"made", o.made_size},     {"reached", o.reached},
-          {"partial", o.partial}};
+  return {{"effect", c.effect},
+          {"size", c.size},
+          {"seed", c.seed},
+          {"right", o.right},
+          {"alarm", o.alarm},
+          {"channel", o.channel},
+          {"beside", o.alternative},
+          {"deviates", o.deviates},
+          {"covered", o.covered},
+          {"chi2_dof", o.chi2_dof},
+          {"left_out", o.left_out},
+          {"answer", o.answer},
+          {"class", o.class_size},
+          {"seconds", o.seconds},
+          {"made", o.made_size},
+          {"reached", o.reached},
+          {"partial", o.partial},
+          {"design", c.design},
+          {"effect_covered", o.effect_covered}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {
@@ -132,6 +172,7 @@ Outcome outcome_of(const nlohmann::json& line) {
   o.made_size = line["made"];
   o.reached = line["reached"];
   o.partial = line.value("partial", false);
+  o.effect_covered = line.value("effect_covered", -1);
   o.finished = true;
   return o;
 }
@@ -144,7 +185,8 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
     const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
     if (line.is_discarded()) continue;
     const auto at = std::find_if(cases.begin(), cases.end(), [&line](const Case& c) {
-      return c.effect == line["effect"] && c.size == line["size"] && c.seed == line["seed"];
+      return c.effect == line["effect"] && c.size == line["size"] && c.seed == line["seed"] &&
+             c.design == line.value("design", "plain");
     });
     if (at != cases.end()) outcomes[static_cast<std::size_t>(at - cases.begin())] = outcome_of(line);
   }
@@ -155,7 +197,7 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
 struct Totals {
   double inside = 0, right = 0, class_size = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0, left_out = 0;
   double outside = 0, silent = 0, channel = 0, named = 0;
-  double pairs = 0, both = 0, part = 0;
+  double pairs = 0, both = 0, part = 0, asked = 0, effect_covered = 0;
 };
 
 /// Counts over the sets that are finished.
@@ -200,6 +242,10 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
     }
     ++t.inside;
     t.right += o.right ? 1 : 0;
+    if (o.effect_covered >= 0) {
+      ++t.asked;
+      t.effect_covered += o.effect_covered;
+    }
     t.class_size += o.class_size;
     t.undecided += o.alternative ? 1 : 0;
     // A gain is EI and EA by another name: they are told up to it.
@@ -213,24 +259,36 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
   result["sets_finished"] = finished;
   result["sets_asked"] = cases.size();
   result["false_alarms"] = nothing > 0.0 ? 1.0 - quiet / nothing : 0.0;
+  result["false_alarms_at_most"] = nothing > 0.0 ? upper_bound(nothing - quiet, nothing) : 1.0;
+  result["sets_without_effect"] = nothing;
   result["mean_seconds_a_trace"] = seconds / std::max(1.0, finished);
   for (const auto& [size, t] : totals) {
     nlohmann::json& s = result["sizes"][fmt::format("{:g}", size)];
     if (t.inside > 0) {
+      s["sets"] = t.inside;
       s["right_class"] = t.right / t.inside;
+      s["right_class_at_least"] = lower_bound(t.right, t.inside);
       s["mean_class_size"] = t.class_size / t.inside;
       s["class_holds_a_cause_outside"] = t.undecided / t.inside;
       s["chi2_dof_within_0.8_and_1.2"] = t.at_noise / t.inside;
       s["mean_error_of_left_out_series_over_noise"] = t.left_out / t.inside;
       if (t.numbers > 0) s["base_numbers_covered"] = t.covered / t.numbers;
+      if (t.asked > 0) {
+        s["effects_numbers"] = t.asked;
+        s["effects_numbers_covered"] = t.effect_covered / t.asked;
+        s["effects_numbers_covered_at_least"] = lower_bound(t.effect_covered, t.asked);
+      }
     }
     if (t.pairs > 0) {
       s["pairs"] = t.pairs;
       s["pairs_both_named"] = t.both / t.pairs;
+      s["pairs_both_named_at_least"] = lower_bound(t.both, t.pairs);
+      s["pairs_wrong_at_most"] = upper_bound(t.pairs - t.both - t.part, t.pairs);
       s["pairs_in_part"] = t.part / t.pairs;
       s["pairs_wrong"] = 1.0 - (t.both + t.part) / t.pairs;
     }
     if (t.outside > 0) {
+      s["outside_sets"] = t.outside;
       s["outside_nothing_selected"] = t.silent / t.outside;
       s["outside_right_channel_alone"] = t.channel / t.outside;
       s["outside_right_channel_alone_or_in_the_class"] = t.named / t.outside;
@@ -257,6 +315,12 @@ int main(int argc, char** argv) {
   app.add_option("--out", out);
   bool required = false;
   bool pairs = false;
+  bool intervals = false;
+  double minutes = 1e9;
+  std::string design = "plain";
+  app.add_option("--design", design)->check(CLI::IsMember({"plain", "geometry", "replicates", "dense"}));
+  app.add_flag("--intervals", intervals, "profile likelihood of the effects' numbers");
+  app.add_option("--minutes", minutes);
   app.add_flag("--pairs", pairs, "two effects at once");
   app.add_flag("--require", required, "exit with 1 when too few answers are right");
   CLI11_PARSE(app, argc, argv);
@@ -269,9 +333,9 @@ int main(int argc, char** argv) {
   }
   std::vector<Case> cases;
   for (unsigned s = first; s < first + seeds; ++s) {
-    if (!pairs) cases.push_back({"none", 0.0, s});
+    if (!pairs && effects.size() != 1) cases.push_back({"none", 0.0, s, design});
     for (const std::string& effect : effects) {
-      for (const double size : sizes) cases.push_back({effect, size, s});
+      for (const double size : sizes) cases.push_back({effect, size, s, design});
     }
   }
   std::vector<Outcome> outcomes = sets.empty() ? std::vector<Outcome>(cases.size()) : read_sets(sets, cases);
@@ -279,14 +343,16 @@ int main(int argc, char** argv) {
   if (!sets.empty()) journal.open(sets, std::ios::app);
   std::mutex mutex;
   omp_set_max_active_levels(1);
+  const auto began = std::chrono::steady_clock::now();
   const auto count = static_cast<std::ptrdiff_t>(cases.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Case& c = cases[static_cast<std::size_t>(i)];
     if (outcomes[static_cast<std::size_t>(i)].finished) continue;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes) continue;
     Outcome o;
     try {
-      const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed);
+      const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed, design_of(c.design));
       const bool absorbed_whole = c.effect == "force_gain";  // scales with EI and EA: no size at all
       if (c.effect != "none" && !absorbed_whole && set.size < 0.8 * c.size) {
         const std::lock_guard lock(mutex);
@@ -298,7 +364,7 @@ int main(int argc, char** argv) {
       }
       const auto start = std::chrono::steady_clock::now();
       identification::TraceOptions options;
-      options.intervals = false;
+      options.intervals = intervals;
       const identification::Trace t = identification::trace(set.experiment, options);
       o = judge(set, t);
       o.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

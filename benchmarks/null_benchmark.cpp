@@ -2,6 +2,9 @@
 // off the declared ones by a tenth, with noise of several kinds that is not declared. One line a set and a summary as
 // JSON.
 //   null_benchmark [--seeds N] [--first SEED] [--readings 6,30,500,3000] [--kinds white,smooth,replicates] [--out FILE]
+//   [--sets FILE] [--minutes M]
+// --sets keeps every set's outcome, one line of JSON each; a run of the same build that finds the file goes on where it
+// ended. --minutes ends a run after a set. Rates of errors come with the upper end of their one-sided 95 % interval.
 // Noise, as shares of the largest force: white 1 %; smooth 0.7 % (an Ornstein-Uhlenbeck process of a quarter of the
 // travel) and white 0.5 %; replicates: six records to peak travels up to 5 % apart, each with a smooth deviation that
 // goes with the force (3 % of it) and white 0.5 %. Readings are those of a record; six of them are one record, else two
@@ -17,11 +20,13 @@
 #include <fmt/ranges.h>
 #include <omp.h>
 #include <CLI/CLI.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -43,6 +48,7 @@ struct Outcome {
   std::string verdict, effects;
   double sigma_ratio = 0.0;  // estimated over true, of a reading
   double upper = 0.0;        // bound of what is left, over the largest force
+  bool doubtful = false;     // the zero of the travel is said to be wrong
   double seconds = 0.0;
 };
 
@@ -143,12 +149,13 @@ Outcome outcome_of(const Case& c) {
   double square = 0.0;
   for (const double one : t.noise.sigma) square += one * one / static_cast<double>(t.noise.sigma.size());
   o.sigma_ratio = std::sqrt(square) / sigma;
+  o.doubtful = t.zero && t.zero->doubtful;
   o.upper = t.peak_force > 0.0 ? t.remaining.upper / t.peak_force : 0.0;
   return o;
 }
 
 struct Totals {
-  int sets = 0, culprits = 0, near = 0;
+  int sets = 0, culprits = 0, near = 0, doubtful = 0;
   double sigma = 0.0, seconds = 0.0, longest = 0.0;
   std::map<std::string, int> verdicts, named;
 };
@@ -158,6 +165,7 @@ void add(Totals& t, const Outcome& o) {
   t.culprits += o.culprit ? 1 : 0;
   t.near += std::abs(o.sigma_ratio - 1.0) < 0.2 ? 1 : 0;
   t.sigma += o.sigma_ratio;
+  t.doubtful += o.doubtful ? 1 : 0;
   t.seconds += o.seconds;
   t.longest = std::max(t.longest, o.seconds);
   ++t.verdicts[o.verdict];
@@ -167,12 +175,39 @@ void add(Totals& t, const Outcome& o) {
 nlohmann::json json_of(const Totals& t) {
   return {{"sets", t.sets},
           {"false_culprits", t.culprits},
+          {"false_culprits_at_most",
+           t.culprits < t.sets ? boost::math::binomial_distribution<>::find_upper_bound_on_p(t.sets, t.culprits, 0.05)
+                               : 1.0},
+          {"zeros_in_doubt", t.doubtful},
           {"named", t.named},
           {"verdicts", t.verdicts},
           {"mean_sigma_over_truth", t.sigma / std::max(1, t.sets)},
           {"share_with_sigma_within_20_percent", static_cast<double>(t.near) / std::max(1, t.sets)},
           {"mean_seconds", t.seconds / std::max(1, t.sets)},
           {"longest_seconds", t.longest}};
+}
+
+nlohmann::json line_of(const Case& c, const Outcome& o) {
+  return {{"kind", c.kind},       {"readings", c.readings}, {"seed", c.seed},         {"culprit", o.culprit},
+          {"verdict", o.verdict}, {"effects", o.effects},   {"sigma", o.sigma_ratio}, {"left", o.upper},
+          {"zero", o.doubtful},   {"seconds", o.seconds}};
+}
+
+/// Outcomes of an earlier run, as far as they are whole lines.
+std::map<std::size_t, Outcome> read_sets(const std::string& file, const std::vector<Case>& cases) {
+  std::map<std::size_t, Outcome> outcomes;
+  std::ifstream in(file);
+  for (std::string text; std::getline(in, text);) {
+    const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
+    if (line.is_discarded()) continue;
+    const auto at = std::ranges::find_if(cases, [&line](const Case& c) {
+      return c.kind == line["kind"] && c.readings == line["readings"] && c.seed == line["seed"];
+    });
+    if (at == cases.end()) continue;
+    outcomes[static_cast<std::size_t>(at - cases.begin())] = {
+        line["culprit"], line["verdict"], line["effects"], line["sigma"], line["left"], line["zero"], line["seconds"]};
+  }
+  return outcomes;
 }
 
 }  // namespace
@@ -189,6 +224,10 @@ int main(int argc, char** argv) {
   app.add_option("--readings", readings)->delimiter(',');
   app.add_option("--kinds", kinds)->delimiter(',');
   app.add_option("--out", out);
+  std::string sets;
+  double minutes = 1e9;
+  app.add_option("--sets", sets);
+  app.add_option("--minutes", minutes);
   CLI11_PARSE(app, argc, argv);
 
   std::vector<Case> cases;
@@ -199,6 +238,14 @@ int main(int argc, char** argv) {
   }
   Totals all;
   std::map<std::string, Totals> parts;
+  const std::map<std::size_t, Outcome> known = read_sets(sets, cases);
+  for (const auto& [i, o] : known) {
+    add(all, o);
+    add(parts[fmt::format("{} {}", cases[i].kind, cases[i].readings)], o);
+  }
+  std::ofstream journal;
+  if (!sets.empty()) journal.open(sets, std::ios::app);
+  const auto began = std::chrono::steady_clock::now();
   std::mutex mutex;
   omp_set_max_active_levels(1);
   const auto write = [&] {
@@ -210,6 +257,8 @@ int main(int argc, char** argv) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(cases.size()); ++i) {
     const Case& c = cases[static_cast<std::size_t>(i)];
+    if (known.contains(static_cast<std::size_t>(i))) continue;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes) continue;
     Outcome o;
     try {
       o = outcome_of(c);
@@ -222,6 +271,7 @@ int main(int argc, char** argv) {
     fmt::print("{} {} {} seed {}: {} {} sigma {:.2f} left {:.4f} ({:.2f} s)\n", o.culprit ? "WRONG" : "ok   ", c.kind,
                c.readings, c.seed, o.verdict, o.effects, o.sigma_ratio, o.upper, o.seconds);
     std::fflush(stdout);
+    journal << line_of(c, o).dump() << std::endl;
     write();
   }
   fmt::print("{}\n", write().dump(1));

@@ -6,6 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <ctime>
 #include <map>
 
 namespace {
@@ -21,6 +22,42 @@ void whole_trace(benchmark::State& state, const char* effect) {
     for (const auto& [what, time] : t.seconds) seconds[what] += time;
   }
   for (const auto& [what, time] : seconds) state.counters[what] = time / static_cast<double>(state.iterations());
+}
+
+/// Six series of 499 readings, with intervals; `processor` is the CPU time of all threads [s].
+void long_records(benchmark::State& state, const char* effect, double size) {
+  const validation::BlindSet set = validation::make_blind_set(effect, size, 1, {.readings_a_leg = 250});
+  double processor = 0.0;
+  for (auto _ : state) {
+    const std::clock_t before = std::clock();
+    const identification::Trace t = identification::trace(set.experiment);
+    benchmark::DoNotOptimize(t.final.rmse);
+    processor += static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    state.SetLabel(to_string(t.kind));
+  }
+  state.counters["processor"] = processor / static_cast<double>(state.iterations());
+}
+
+/// Six replicates of 500 readings, loading, of which nothing or the strands are missing.
+void replicates(benchmark::State& state, const char* effect, double size) {
+  validation::BlindSet set = validation::make_blind_set(effect, size, 1, {.readings_a_leg = 500, .replicates = 6});
+  set.experiment.series.resize(6);
+  for (identification::Series& s : set.experiment.series) {
+    identification::Readings& r = *s.readings;
+    r.displacement.resize(500);
+    r.force.resize(500);
+    r.time.resize(500);
+    s.test.travel = r.displacement;
+  }
+  double processor = 0.0;
+  for (auto _ : state) {
+    const std::clock_t before = std::clock();
+    const identification::Trace t = identification::trace(set.experiment);
+    benchmark::DoNotOptimize(t.final.rmse);
+    processor += static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    state.SetLabel(to_string(t.kind));
+  }
+  state.counters["processor"] = processor / static_cast<double>(state.iterations());
 }
 
 void force_and_derivatives(benchmark::State& state) {
@@ -42,6 +79,19 @@ BENCHMARK_CAPTURE(whole_trace, strand_hysteresis, "strand_hysteresis")
     ->UseRealTime()
     ->Iterations(1);
 BENCHMARK_CAPTURE(whole_trace, drift, "drift")->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, nothing, "none", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, span, "span", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, strand_hysteresis, "strand_hysteresis", 30.0)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
+BENCHMARK_CAPTURE(long_records, mount_slip, "mount_slip", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, damage, "damage", 100.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(replicates, nothing, "none", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(replicates, strand_hysteresis, "strand_hysteresis", 300.0)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
 BENCHMARK(force_and_derivatives)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

@@ -97,25 +97,67 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
   return true;
 }
 
+namespace {
+
+/// Substitutes forth and back in `width` right-hand sides at once, entry by entry side by side: one alone waits for every
+/// product before the next. Every one has the operations of one alone, in their order. B: half bandwidth, 0: that of l.
+template <int B, int width>
+void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first, Eigen::Index stride,
+                std::vector<double>& work) {
+  const int n = l.order();
+  const int b = B > 0 ? B : l.half_bandwidth();
+  work.resize(static_cast<std::size_t>(n) * width);
+  double* w = work.data();
+  for (int c = 0; c < width; ++c) {
+    const double* x = first + c * stride;
+    for (int j = 0; j < n; ++j) w[j * width + c] = x[j];
+  }
+  for (int j = 0; j < n; ++j) {
+    const double* factor = l.column(j);
+    const int last = std::min(b, n - 1 - j);
+    const double* value = w + j * width;
+    for (int k = 1; k <= last; ++k) {
+      double* below = w + (j + k) * width;
+      for (int c = 0; c < width; ++c) below[c] -= factor[k] * value[c];
+    }
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    const double* factor = l.column(j);
+    const int last = std::min(b, n - 1 - j);
+    double* value = w + j * width;
+    for (int c = 0; c < width; ++c) value[c] *= inverse[static_cast<std::size_t>(j)];
+    for (int k = 1; k <= last; ++k) {
+      const double* below = w + (j + k) * width;
+      for (int c = 0; c < width; ++c) value[c] -= factor[k] * below[c];
+    }
+  }
+  for (int c = 0; c < width; ++c) {
+    double* x = first + c * stride;
+    for (int j = 0; j < n; ++j) x[j] = w[j * width + c];
+  }
+}
+
+template <int B>
+void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inverse, Eigen::Ref<Eigen::MatrixXd>& x) {
+  thread_local std::vector<double> work;
+  Eigen::Index at = 0;
+  const Eigen::Index stride = x.outerStride();
+  for (; at + 4 <= x.cols(); at += 4) substitute<B, 4>(l, inverse, x.col(at).data(), stride, work);
+  for (; at + 2 <= x.cols(); at += 2) substitute<B, 2>(l, inverse, x.col(at).data(), stride, work);
+  for (; at < x.cols(); ++at) substitute<B, 1>(l, inverse, x.col(at).data(), stride, work);
+}
+
+}  // namespace
+
 void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
-  const int n = l_.order();
-  const int b = l_.half_bandwidth();
-  assert(x.rows() == n);
-  for (Eigen::Index column = 0; column < x.cols(); ++column) {
-    double* v = x.col(column).data();
-    for (int j = 0; j < n; ++j) {
-      const double* c = l_.column(j);
-      const int last = std::min(b, n - 1 - j);
-      const double value = v[j];
-      for (int k = 1; k <= last; ++k) v[j + k] -= c[k] * value;
-    }
-    for (int j = n - 1; j >= 0; --j) {
-      const double* c = l_.column(j);
-      const int last = std::min(b, n - 1 - j);
-      double value = v[j] * inverse_[static_cast<std::size_t>(j)];
-      for (int k = 1; k <= last; ++k) value -= c[k] * v[j + k];
-      v[j] = value;
-    }
+  assert(x.rows() == l_.order());
+  switch (l_.half_bandwidth()) {
+    case 5:
+      return substitute_all<5>(l_, inverse_, x);
+    case 10:
+      return substitute_all<10>(l_, inverse_, x);
+    default:
+      return substitute_all<0>(l_, inverse_, x);
   }
 }
 

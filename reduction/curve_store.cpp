@@ -35,9 +35,11 @@ std::string identity(const WireCase& wire, const DistilSettings& settings, const
   add("kt", t.mount.translational_stiffness);
   add("kr", t.mount.rotational_stiffness);
   add("slip", t.mount.slip_tension);
+  if (t.mount.slip_tension)
+    text += fmt::format(" {} {}", static_cast<int>(t.mount.slip), static_cast<int>(t.mount.slip_at));
   if (t.wire.strand_friction)
-    text +=
-        fmt::format(" strands {} {}", t.wire.strand_friction->extra_stiffness, t.wire.strand_friction->slip_curvature);
+    text += fmt::format(" strands {} {} {}", t.wire.strand_friction->extra_stiffness,
+                        t.wire.strand_friction->slip_curvature, t.wire.strand_friction->breadth);
   // The curvature at which metal yields depends on the diameter.
   if (t.wire.yielding)
     text += fmt::format(" yield {} {} {} {}", t.wire.yielding->yield_stress, t.wire.yielding->hardening_ratio,

@@ -74,10 +74,10 @@ std::string nothing_missing(const Trace& t) {
   std::string text;
   if (t.from_laws) {
     text = fmt::format(
-        "Nothing missing: the base model agrees with the published fits (chi2 {:.3g} at {} numbers, {} "
-        "of them fitted; p = {:.2g}); no effect is missing.",
-        t.base.chi2_dof * static_cast<double>(t.rows - t.base.numbers.size()), t.rows, t.base.numbers.size(),
-        t.base_tests.lack_of_fit);
+        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones and their "
+        "scatters (p = "
+        "{:.2g}); no effect is missing.",
+        t.base.numbers.size(), t.rows, t.base_tests.lack_of_fit);
   } else if (t.base_tests.like_noise() || t.base.rmse <= t.base_tests.noise) {
     text = fmt::format(
         "Nothing missing: the base model explains the readings to the noise (rmse {:.3g} N); no effect "
@@ -133,6 +133,11 @@ std::string not_explained(const Trace& t) {
   } else if (std::ranges::any_of(t.findings, [](const identification::Finding& f) { return f.sure; })) {
     text =
         fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
+  } else if (t.from_laws) {
+    text = fmt::format(
+        "Not explained: beside {} fitted numbers the published fits and their scatters agree with the "
+        "computed ones with p = {:.2g} only.",
+        t.base.numbers.size(), t.base_tests.lack_of_fit);
   } else if (t.few_readings) {
     text = fmt::format("Not explained: the base model leaves {:.3g} N rms.", t.base.rmse);
   } else {
@@ -143,6 +148,15 @@ std::string not_explained(const Trace& t) {
   if (t.functions.empty()) return text;
   if (t.one_condition) return text + " All readings are of one position and one slack: its channel cannot be told.";
   return text + nearest_channel(t.functions.front());
+}
+
+/// What a wrong zero of the travel would change.
+std::string zero_words(const identification::ZeroCheck& z) {
+  return fmt::format(
+      " Note: the readings ask for a zero of the travel at {:.3g} mm ({:.3g} to "
+      "{:.3g}); "
+      "with it {} would be {:.4g} {} in place of {:.4g}. Find the touch, or free reading.displacement_offset_mm.",
+      z.offset, z.lower, z.upper, z.key, z.with, z.unit, z.without);
 }
 
 }  // namespace
@@ -171,6 +185,7 @@ std::string verdict(const Trace& t) {
       break;
   }
   for (const identification::Finding& f : t.findings) text += fmt::format(" Note: {}.", finding_words(f));
+  if (t.zero && t.zero->doubtful) text += zero_words(*t.zero);
   return text;
 }
 

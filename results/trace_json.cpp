@@ -47,6 +47,18 @@ json tests_json(const identification::ResidualTests& tests) {
   return {{"runs_p", tests.runs}, {"ljung_box_p", tests.ljung_box}, {"lack_of_fit_p", tests.lack_of_fit}};
 }
 
+json zero_json(const std::optional<identification::ZeroCheck>& zero) {
+  if (!zero) return nullptr;
+  return {{"offset_mm", finite(zero->offset)},
+          {"interval95_mm", {finite(zero->lower), finite(zero->upper)}},
+          {"p", zero->p},
+          {"key", zero->key.empty() ? json() : json(zero->key)},
+          {"unit", zero->unit},
+          {"without", finite(zero->without)},
+          {"with", finite(zero->with)},
+          {"doubtful", zero->doubtful}};
+}
+
 json candidate_json(const Candidate& c) {
   json values = json::object();
   json intervals = json::object();
@@ -76,13 +88,28 @@ json candidate_json(const Candidate& c) {
           {"class", c.class_index}};
 }
 
-json round_json(const Round& round) {
+/// By the names of the fitted series.
+json curves_json(const Trace& trace, const Round& round) {
+  json result = json::array();
+  for (const identification::RefitCurves& curves : round.curves) {
+    json force = json::object();
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < trace.series.size(); ++k) {
+      if (!trace.heldout[k] && at < curves.force.size()) force[trace.series[k].name] = curves.force[at++];
+    }
+    result.push_back({{"effect", curves.effect}, {"force_N", force}});
+  }
+  return result;
+}
+
+json round_json(const Trace& trace, const Round& round) {
   json candidates = json::array();
   for (const Candidate& c : round.candidates) candidates.push_back(candidate_json(c));
   return {{"candidates", candidates},
           {"classes", round.classes},
           {"added", round.added.empty() ? json() : json(round.added)},
-          {"reason", round.reason}};
+          {"reason", round.reason},
+          {"curves", curves_json(trace, round)}};
 }
 
 json function_json(const identification::ChannelFunction& f) {
@@ -176,7 +203,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
   json alternatives = json::array();
   for (const identification::ChannelFunction& f : trace.alternatives) alternatives.push_back(function_json(f));
   json rounds = json::array();
-  for (const Round& round : trace.rounds) rounds.push_back(round_json(round));
+  for (const Round& round : trace.rounds) rounds.push_back(round_json(trace, round));
   json result{{"schema", "snare-trace/1"},
               {"title", experiment.title},
               {"source", experiment.source},
@@ -190,6 +217,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
               {"few_readings", trace.few_readings},
               {"one_condition", trace.one_condition},
               {"findings", findings_json(trace)},
+              {"zero", zero_json(trace.zero)},
               {"interrupted", trace.interrupted},
               {"noise",
                {{"sigma_N", finite(reading_noise(trace))},
@@ -204,7 +232,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
                {{"significant", trace.significant},
                 {"tests", tests_json(trace.base_tests)},
                 {"tests_after", tests_json(trace.final_tests)}}},
-              {"candidates", any ? round_json(trace.rounds.front())["candidates"] : json::array()},
+              {"candidates", any ? round_json(trace, trace.rounds.front())["candidates"] : json::array()},
               {"classes", any ? json(trace.rounds.front().classes) : json::array()},
               {"rounds", rounds},
               {"selected", trace.selected},

@@ -25,6 +25,7 @@ using base::mm;
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
 constexpr double largest_length = 1e5;                // [mm]
 constexpr double largest_force = 1e9;                 // [N]
+constexpr double largest_breadth = 5.0;               // curvatures that differ by e^10
 constexpr double largest_stiffness = 1e15;            // [N/m], [N m/rad], [N]
 constexpr double smallest_bending_stiffness = 1e-15;  // [N m^2]; a glass fibre of 10 um has 3e-11
 constexpr double smallest_axial_stiffness = 1e-12;    // [N]
@@ -85,8 +86,11 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held) {
   }
   const auto extra = table.optional_number("strand_extra_stiffness_Nm2", bending);
   const auto slip = table.optional_number("strand_slip_curvature_1_m", Range::from(1e-4, 1e4));
+  const auto breadth = table.optional_number("strand_slip_breadth", Range::from(0.0, largest_breadth));
   if (extra && slip)
-    wire.strand_friction = wire::StrandFriction{*extra, *slip};
+    wire.strand_friction = wire::StrandFriction{*extra, *slip, breadth.value_or(0.0)};
+  else if (breadth)
+    table.fail("strand_slip_breadth", "only beside strand_extra_stiffness_Nm2 and strand_slip_curvature_1_m");
   else if (extra)
     table.fail("strand_extra_stiffness_Nm2", "needs strand_slip_curvature_1_m beside it");
   else if (slip)
@@ -122,6 +126,15 @@ wire::MountSpecification read_mount(const TomlTable& table) {
   mount.translational_stiffness = table.optional_number("translational_stiffness_N_m", stiffness);
   mount.rotational_stiffness = table.optional_number("rotational_stiffness_Nm_rad", stiffness);
   mount.slip_tension = table.optional_number("slip_tension_N", Range::above(0.0, largest_force));
+  static constexpr Choice<wire::MountSlip> slips[] = {{"feeds", wire::MountSlip::feeds},
+                                                      {"slides", wire::MountSlip::slides}};
+  static constexpr Choice<wire::SlipPlace> places[] = {
+      {"left", wire::SlipPlace::left}, {"right", wire::SlipPlace::right}, {"both", wire::SlipPlace::both}};
+  for (const char* key : {"slip", "slip_at"}) {
+    if (table.has(key) && !mount.slip_tension) table.fail(key, "only beside slip_tension_N");
+  }
+  if (table.has("slip")) mount.slip = table.choice("slip", slips).value_or(mount.slip);
+  if (table.has("slip_at")) mount.slip_at = table.choice("slip_at", places).value_or(mount.slip_at);
 
   const auto refuse = [&](std::string_view key, std::string_view kinds_that_have_it) {
     if (table.has(key)) table.fail(key, fmt::format("only for a mount of kind {}", kinds_that_have_it));
@@ -213,6 +226,8 @@ void require_simple_motion(const PushTables& tables, const coupling::PushProblem
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
     if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
   }
+  if (tables.wire.has("strand_slip_breadth"))
+    tables.wire.fail("strand_slip_breadth", "all strands slide at one curvature in motion");
 }
 
 std::optional<std::string> position_problem(double position, double span) {

@@ -252,7 +252,7 @@ void Collocation::assemble(const Section& law, const Conditions& at, const Unkno
 // The six conditions on the globals, all as residuals:
 //   0  x_c + R sin th_c - a_x = 0            3  y_L = 0
 //   1  y_c - R cos th_c - a_y = 0  (f_x)     4  grip  (f_y)
-//   2  x_L + c n_x(L) - span = 0             5  S_0 held, or C = limit
+//   2  x_L + c n_x(L) - span = 0             5  S_0 (place) held, or C (n_x) = limit
 // with a = pusher - c_p (f . m) m; rows 1 and 4 are f = 0 without contact.
 void Collocation::close(const Section& law, const Conditions& at, const Unknowns& z, Square& by_global,
                         Globals& residual) {
@@ -271,7 +271,7 @@ void Collocation::close(const Section& law, const Conditions& at, const Unknowns
       by_global(row, static_cast<Eigen::Index>(j)) += arm_global_[which][j];
     }
   };
-  const double x_begin = mount_axial_ * z.n.x();
+  const double x_begin = z.place + mount_axial_ * z.n.x();
   contact_position_ = {x_begin + arm_global_[0][kGlobals], arm_global_[1][kGlobals]};
 
   integral(0, 0);
@@ -313,11 +313,15 @@ void Collocation::close(const Section& law, const Conditions& at, const Unknowns
   residual[2] += x_begin + mount_axial_ * nx_end - at.span;
   by_global(2, 0) += 2.0 * mount_axial_;
   by_global(2, 2) -= mount_axial_;
-  by_global(2, 5) += mount_axial_ * at.weight.x();
+  if (!at.slides) by_global(2, 5) += mount_axial_ * at.weight.x();
+  if (at.slides) by_global(0, 5) = by_global(2, 5) = 1.0;
   integral(3, 1);
   integral(3, 3);
 
-  if (at.feeding) {
+  if (at.slides) {
+    residual[5] = at.feeding ? z.n.x() - at.feed_limit : z.place - at.begin;
+    by_global(5, at.feeding ? 0 : 5) = 1.0;
+  } else if (at.feeding) {
     const double c = std::cos(first[0]);
     const double s = std::sin(first[0]);
     const double N = z.n.x() * c + z.n.y() * s;
@@ -434,7 +438,7 @@ double Collocation::apply(const Square& by_global, const Globals& residual, Unkn
   z.n += part * dq.segment<2>(0);
   z.f += part * dq.segment<2>(2);
   z.contact += part * dq[4];
-  z.begin += part * dq[5];
+  (slides_ ? z.place : z.begin) += part * dq[5];
   return size;
 }
 
@@ -443,6 +447,12 @@ bool Collocation::solve(const Section& law, const Conditions& at, Unknowns& z) {
   Globals residual;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     assemble(law, at, z);
+    slides_ = at.slides;
+    if (slides_) {
+      // The sixth global moves nothing inside the wire.
+      for (Column& column : columns_) column[5] = 0.0;
+      for (Column& column : arm_global_) column[5] = 0.0;
+    }
     close(law, at, z, by_global, residual);
     if (!eliminate()) return false;
     const double size = apply(by_global, residual, z);

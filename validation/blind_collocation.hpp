@@ -18,12 +18,13 @@ struct Conditions {
   Eigen::Vector2d pusher = Eigen::Vector2d::Zero();  ///< its axis, were it rigid [m]
   double slope = 0.0;                                ///< sliding: f . t over f . nu [-]
   double anchor = 0.0;                               ///< sticking: S_c + R th_c [m]
-  double feed_limit = 0.0;                           ///< feeding: C [N]
-  double begin = 0.0;                                ///< not feeding: S_0 [m]
+  double feed_limit = 0.0;                           ///< slipping: C, or the force along the chord [N]
+  double begin = 0.0;                                ///< not slipping: S_0, or where the left mount stands [m]
   double rate = 0.0;                                 ///< relaxation time over time step [-]
   Grip grip = Grip::smooth;
   bool touching = false;  ///< otherwise S_c follows the pusher without a force
   bool feeding = false;   ///< the left mount slips
+  bool slides = false;    ///< it does so along the chord, with the wire in it
 };
 
 /// Unknowns of the collocated elastica.
@@ -33,12 +34,13 @@ struct Unknowns {
   Eigen::Vector2d f = Eigen::Vector2d::Zero();  ///< pusher on wire [N]
   double contact = 0.0;                         ///< S_c [m]
   double begin = 0.0;                           ///< S_0 [m]
+  double place = 0.0;                           ///< of the left mount along the chord [m]
 };
 
 /// Planar extensible elastica by Hermite-Simpson collocation (Lobatto IIIA, fourth order) on either side of
 /// the contact. n is affine in S and r an integral, so only th and M are unknown in the nodes:
 ///   th' = kappa(M, S),  M' = -(1 + e(N, S)) n . nu(th),  n = n_0 - w (S - S_0) - [S > S_c] f
-/// with the globals n_0, f, S_c, S_0 and six conditions on r and on contact, friction and mount. The mesh is
+/// with the globals n_0, f, S_c, S_0 (of a mount that slides its place instead) and six conditions on r and on contact, friction and mount. The mesh is
 /// stretched with S_0 and S_c. Newton with the analytic Jacobian: the nodes' band is eliminated by pivoting
 /// (which keeps boundary layers stable), the globals by their Schur complement.
 class Collocation {
@@ -86,6 +88,7 @@ class Collocation {
   Eigen::Vector2d direction_;
   double force_scale_;
   double moment_scale_;
+  bool slides_ = false;  // of the conditions under way
   std::size_t left_ = 0;
   std::size_t right_ = 0;
   std::vector<double> fraction_;                           // of the nodes, the contact's as the end of the left side

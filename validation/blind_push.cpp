@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "validation/blind_collocation.hpp"
 #include "validation/blind_section.hpp"
@@ -53,6 +54,8 @@ void check(const BlindWire& w) {
   not_negative("friction", w.friction);
   not_negative("strand_extra_stiffness", w.strand_extra_stiffness);
   not_negative("strand_slip_curvature", w.strand_slip_curvature);
+  not_negative("strand_slip_breadth", w.strand_slip_breadth);
+  require(w.strand_layers >= 1, "strand_layers", w.strand_layers, ">= 1");
   require(w.yield_stress > 0.0, "yield_stress", w.yield_stress, "> 0");
   if (std::isfinite(w.yield_stress)) positive("diameter", w.diameter);
   not_negative("relaxation_time", w.relaxation_time);
@@ -145,8 +148,9 @@ Vector2d Push::tangent(const Unknowns& z) const {
   return {std::cos(th), std::sin(th)};
 }
 
-// C at the left mount.
+// C at the left mount, or the force on it along the chord.
 double Push::drive(const Unknowns& z) const {
+  if (wire_.mount_slides) return z.n.x();
   const auto& [th, M] = z.section.front();
   const double N = z.n.x() * std::cos(th) + z.n.y() * std::sin(th);
   return N + 0.5 * N * N / wire_.axial_stiffness + 0.5 * M * M / law_.stiffness(z.begin)[0];
@@ -232,7 +236,8 @@ Conditions Push::conditions(const State& state, double travel, double rate) cons
   at.anchor = state.anchor;
   at.feeding = state.feed != 0;
   if (at.feeding) at.feed_limit = state.feed * wire_.mount_slip_tension;
-  at.begin = state.z.begin;
+  at.slides = wire_.mount_slides;
+  at.begin = at.slides ? state.z.place : state.z.begin;
   at.rate = rate;
   return at;
 }
@@ -279,6 +284,7 @@ std::optional<State> Push::attempt(double travel, double duration) {
       z.f += ratio * (z.f - old.f);
       z.contact += ratio * (z.contact - old.contact);
       z.begin += ratio * (z.begin - old.begin);
+      z.place += ratio * (z.place - old.place);
     }
   }
   const Conditions at = conditions(here_, travel, rate(duration));
@@ -296,7 +302,8 @@ bool Push::contact_turned(const State& trial) const {
 }
 
 bool Push::mount_turned(const State& trial) const {
-  return here_.feed * (trial.z.begin - here_.z.begin) > 1e-10 * wire_.length;
+  const double came_in = wire_.mount_slides ? trial.z.place - here_.z.place : here_.z.begin - trial.z.begin;
+  return here_.feed * came_in < -1e-10 * wire_.length;
 }
 
 void Push::change(Event event) {
@@ -459,14 +466,41 @@ BlindReading Push::read() const {
   BlindReading reading;
   reading.force = here_.touching ? std::max(0.0, z.f.dot(motion)) : 0.0;
   reading.tension_left = z.n.x() * std::cos(th) + z.n.y() * std::sin(th);
+  const double end = z.section.back()[0];
+  const Vector2d n = z.n - z.f - (wire_.length - z.begin) * wire_.weight;
+  reading.tension_right = n.x() * std::cos(end) + n.y() * std::sin(end);
   reading.contact_coordinate = z.contact;
   return reading;
 }
 
 }  // namespace
 
+namespace {
+
+// The same wire seen from behind: its right mount is the left one.
+BlindWire mirrored(BlindWire w) {
+  w.mount_slips_right = false;
+  w.position = w.span - w.position;
+  w.weight.x() *= -1.0;
+  w.misalignment *= -1.0;
+  const double from = w.length - w.damage_to;
+  w.damage_to = w.length - w.damage_from;
+  w.damage_from = from;
+  return w;
+}
+
+}  // namespace
+
 std::vector<BlindReading> blind_push(const BlindWire& wire, const std::vector<double>& travel,
                                      const std::vector<double>& time) {
+  if (wire.mount_slips_right) {
+    std::vector<BlindReading> readings = blind_push(mirrored(wire), travel, time);
+    for (BlindReading& r : readings) {
+      std::swap(r.tension_left, r.tension_right);
+      r.contact_coordinate = wire.length - r.contact_coordinate;
+    }
+    return readings;
+  }
   const bool timed = wire.relaxation_time > 0.0;
   require(time.empty() ? !timed : time.size() == travel.size(), "number of times", static_cast<double>(time.size()),
           "that of the readings; needed with a relaxation time");

@@ -16,6 +16,18 @@ std::array<double, 2> ramp(double x) {
   return {u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) / kRamp};
 }
 
+// Of equal shares, at the middles of equal parts of the logarithms' range.
+std::vector<double> slip_curvatures(const BlindWire& wire) {
+  if (!(wire.strand_slip_breadth > 0.0)) return {wire.strand_slip_curvature};
+  std::vector<double> result;
+  const int n = wire.strand_layers;
+  for (int i = 0; i < n; ++i) {
+    const double at = (2.0 * i + 1.0) / n - 1.0;
+    result.push_back(wire.strand_slip_curvature * std::exp(wire.strand_slip_breadth * at));
+  }
+  return result;
+}
+
 }  // namespace
 
 Section::Section(const BlindWire& wire)
@@ -26,8 +38,8 @@ Section::Section(const BlindWire& wire)
       damage_to_(wire.damage_to),
       damage_(wire.damage_factor),
       extra_(wire.strand_extra_stiffness),
-      slip_(wire.strand_slip_curvature),
-      strands_(extra_ > 0.0 && slip_ > 0.0),
+      slip_(slip_curvatures(wire)),
+      strands_(extra_ > 0.0 && wire.strand_slip_curvature > 0.0),
       yields_(std::isfinite(wire.yield_stress)),
       viscous_(wire.relaxation_time > 0.0) {
   if (!remembers()) return;
@@ -35,7 +47,7 @@ Section::Section(const BlindWire& wire)
   begin_ = std::isfinite(wire.mount_slip_tension) ? -0.1 * wire.length : 0.0;
   count_ = static_cast<std::size_t>(wire.history_points);
   step_ = (wire.length - begin_) / static_cast<double>(count_ - 1);
-  if (strands_) strand_.assign(count_, 0.0);
+  if (strands_) strand_.assign(slip_.size(), std::vector<double>(count_, 0.0));
   if (viscous_) {
     curvature_.assign(count_, 0.0);
     strain_.assign(count_, 0.0);
@@ -77,7 +89,7 @@ std::array<double, 2> Section::at(const std::vector<double>& field, Place p) con
 
 // Without fibres: M = B (kappa + kappa_nat) + B rate (kappa - kappa_old) + m with m a clamped spring.
 Response Section::bend(double M, double S, double rate, double guess) const {
-  if (yields_) return bend_fibres(M, S, rate, guess);
+  if (yields_ || slip_.size() > 1) return bend_fibres(M, S, rate, guess);
   const auto [B, B_slope] = stiffness(S);
   double slope = B;
   double load = M - B * natural_;
@@ -96,14 +108,14 @@ Response Section::bend(double M, double S, double rate, double guess) const {
     load_slope += rate * (B_slope * old[0] + B * old[1]);
   }
   if (strands_) {
-    const auto centre = at(strand_, p);
+    const auto centre = at(strand_.front(), p);
     const double held = (load + extra_ * centre[0]) / (slope + extra_);
-    if (std::abs(held - centre[0]) <= slip_) {
+    if (std::abs(held - centre[0]) <= slip_.front()) {
       slope += extra_;
       load += extra_ * centre[0];
       load_slope += extra_ * centre[1];
     } else {
-      load -= std::copysign(extra_ * slip_, held - centre[0]);
+      load -= std::copysign(extra_ * slip_.front(), held - centre[0]);
     }
   }
   const double kappa = load / slope;
@@ -117,14 +129,15 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
   const Place p = find(S);
   std::array<double, kFibres> centre{};
   std::array<double, kFibres> centre_slope{};
-  for (std::size_t i = 0; i < kFibres; ++i) {
+  for (std::size_t i = 0; i < kFibres && yields_; ++i) {
     const double change = plastic_[p.j + 1][i] - plastic_[p.j][i];
     centre[i] = plastic_[p.j][i] + p.part * change;
     centre_slope[i] = change / step_;
   }
-  std::array<double, 2> strand{0.0, 0.0};
+  std::vector<std::array<double, 2>> strand;
   std::array<double, 2> old{0.0, 0.0};
-  if (strands_) strand = at(strand_, p);
+  for (const std::vector<double>& layer : strand_) strand.push_back(at(layer, p));
+  const double share = extra_ / static_cast<double>(slip_.size());
   if (viscous_) old = at(curvature_, p);
   const double viscous = viscous_ ? rate : 0.0;
 
@@ -135,10 +148,10 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
   double by_S = 0.0;
   for (int iteration = 0; iteration < 60; ++iteration) {
     const double turned = kappa + natural_;
-    double section = kHardening * bending_ * turned;
-    double section_tangent = kHardening * bending_;
+    double section = (yields_ ? kHardening : 1.0) * bending_ * turned;
+    double section_tangent = (yields_ ? kHardening : 1.0) * bending_;
     double memory_slope = 0.0;
-    for (std::size_t i = 0; i < kFibres; ++i) {
+    for (std::size_t i = 0; i < kFibres && yields_; ++i) {
       const double stress = modulus_ * (height_[i] * turned - centre[i]);
       const double bounded = std::clamp(stress, -limit_, limit_);
       section += height_[i] * area_[i] * bounded;
@@ -150,12 +163,12 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
     double moment = factor * section + viscous * B * (kappa - old[0]);
     tangent = factor * section_tangent + viscous * B;
     by_S = B_slope / bending_ * section + factor * memory_slope + viscous * (B_slope * (kappa - old[0]) - B * old[1]);
-    if (strands_) {
-      const double arm = kappa - strand[0];
-      moment += extra_ * std::clamp(arm, -slip_, slip_);
-      if (std::abs(arm) <= slip_) {
-        tangent += extra_;
-        by_S -= extra_ * strand[1];
+    for (std::size_t j = 0; j < strand.size(); ++j) {
+      const double arm = kappa - strand[j][0];
+      moment += share * std::clamp(arm, -slip_[j], slip_[j]);
+      if (std::abs(arm) <= slip_[j]) {
+        tangent += share;
+        by_S -= share * strand[j][1];
       }
     }
     const double excess = moment - M;
@@ -200,7 +213,8 @@ void Section::remember(std::size_t j, double M, double N, double rate) {
   const double S = coordinate(j);
   const double kappa = bend(M, S, rate, viscous_ ? curvature_[j] : M / bending_).strain;
   const double strain = stretch(N, S, rate).strain;
-  if (strands_) strand_[j] = std::clamp(strand_[j], kappa - slip_, kappa + slip_);
+  for (std::size_t i = 0; i < strand_.size(); ++i)
+    strand_[i][j] = std::clamp(strand_[i][j], kappa - slip_[i], kappa + slip_[i]);
   if (yields_) {
     const double range = limit_ / modulus_;
     for (std::size_t i = 0; i < kFibres; ++i) {

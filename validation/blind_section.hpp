@@ -63,7 +63,7 @@ class Section {
   double damage_to_;
   double damage_;
   double extra_;
-  double slip_;
+  std::vector<double> slip_;  // curvature at which each layer of strands slips [1/m]
   bool strands_;
   bool yields_;
   bool viscous_;
@@ -75,7 +75,7 @@ class Section {
   double begin_ = 0.0;
   double step_ = 1.0;
   std::size_t count_ = 0;
-  std::vector<double> strand_;                        // kappa_p
+  std::vector<std::vector<double>> strand_;           // kappa_p, of every layer
   std::vector<std::array<double, kFibres>> plastic_;  // strains
   std::vector<double> axial_plastic_;
   std::vector<double> curvature_;  // at the end of the last step

@@ -12,14 +12,18 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 namespace snare::validation {
 
 namespace {
 
 using base::mm;
-constexpr double sigma = 0.05;  // of a reading [N]
-constexpr int readings_a_leg = 20;
+constexpr double sigma = 0.05;        // of a reading [N]
+constexpr int finest_leg = 40;        // readings a leg on which noise is drawn
+constexpr double deviation = 0.01;    // of a replicate, of the force
+constexpr double correlation = 0.25;  // of its path, of the travel
 constexpr double diameter = 1.5 * mm;
 constexpr double length = 176.0 * mm;
 constexpr double modulus = 193e9;    // [Pa]
@@ -34,6 +38,11 @@ constexpr Push pushes[] = {{40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {65 * mm, 
                            {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
                            {65 * mm, 175.5 * mm, 2.4 * mm, 0.2 * mm}, {90 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm}};
 
+/// The pushes of a design.
+std::vector<Push> pushes_of(const BlindDesign& design) {
+  return {std::begin(pushes), std::begin(pushes) + (design.replicates > 1 ? 3 : std::size(pushes))};
+}
+
 /// The wire of one set and what a laboratory would not know of it.
 struct Hidden {
   double declared_bending = 0.0, declared_axial = 0.0;
@@ -41,19 +50,23 @@ struct Hidden {
   double sign = 1.0;   // of effects that go both ways
   double place = 0.0;  // of a damaged stretch, as a share of the wire
   double slip_curvature = 0.0;
+  double slip_breadth = 0.0;
+  double length = 0.0;
+  std::vector<double> position_off;  // of the pushes
+  bool right = false;                // the mount that slips
   double drift_shape = 0.0;
   double clamp_compliance = 0.0;
   double highest_stress = 0.0;  // about
 };
 
-std::vector<double> travel_of(const Push& p) {
+std::vector<double> travel_of(const Push& p, int readings_a_leg) {
   std::vector<double> d;
   for (int i = 1; i <= readings_a_leg; ++i) d.push_back(p.travel * i / readings_a_leg);
   for (int i = readings_a_leg - 1; i >= 1; --i) d.push_back(p.travel * i / readings_a_leg);
   return d;
 }
 
-std::vector<double> time_of(const Push& p) {
+std::vector<double> time_of(const Push& p, int readings_a_leg) {
   std::vector<double> t;
   for (int i = 1; i < 2 * readings_a_leg; ++i) t.push_back(p.travel / p.speed * i / readings_a_leg);
   return t;
@@ -61,7 +74,7 @@ std::vector<double> time_of(const Push& p) {
 
 BlindWire wire_of(const Push& p, const Hidden& h) {
   BlindWire w;
-  w.length = length;
+  w.length = h.length;
   w.span = p.span;
   w.bending_stiffness = h.bending;
   w.axial_stiffness = h.axial;
@@ -103,9 +116,11 @@ void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench
     w.position += 2.0 * mm * s;
   else if (effect == "push_misalignment")
     w.misalignment = 0.1 * s;
-  else if (effect == "mount_slip")
+  else if (effect == "mount_slip" || effect == "clamp_slide" || effect == "clamp_slide_right") {
     w.mount_slip_tension = highest_tension * std::max(0.05, 1.0 - 0.9 * a);
-  else if (effect == "mount_axial_compliance")
+    w.mount_slides = effect != "mount_slip";
+    w.mount_slips_right = w.mount_slides ? effect == "clamp_slide_right" : h.right;
+  } else if (effect == "mount_axial_compliance")
     w.mount_axial_compliance = 1e-6 * a;
   else if (effect == "mount_rotational_compliance")
     w.mount_rotational_compliance += 2.0 * a;
@@ -124,6 +139,7 @@ void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench
   else if (effect == "strand_hysteresis") {
     w.strand_extra_stiffness = h.bending * a;
     w.strand_slip_curvature = h.slip_curvature;
+    w.strand_slip_breadth = h.slip_breadth;
   } else if (effect == "plasticity")
     w.yield_stress = h.highest_stress * std::max(0.05, 4.0 - 3.9 * a);
   else if (effect == "gravity")
@@ -138,11 +154,37 @@ void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench
     bench.drift = 3.0 * s;
 }
 
+/// What the tracing calls an effect's first number, and its value.
+std::pair<std::string, double> number_of(const Dose& dose, const Hidden& h, double highest_tension) {
+  const std::string& effect = dose.effect;
+  const double a = dose.amount;
+  const double s = h.sign * a;
+  if (effect == "wire_length") return {"wire.length_mm", (h.length + 0.3 * mm * s) / mm};
+  if (effect == "contact_position") return {"contact_position.shift_mm", 2.0 * s};
+  if (effect == "push_misalignment") return {"pusher.misalignment_deg", 0.1 * s * 180.0 / std::numbers::pi};
+  if (effect == "mount_slip" || effect == "clamp_slide" || effect == "clamp_slide_right")
+    return {effect + ".tension_N", highest_tension * std::max(0.05, 1.0 - 0.9 * a)};
+  if (effect == "mount_axial_compliance") return {"mount_axial_compliance.compliance_m_N", 1e-6 * a};
+  if (effect == "mount_rotational_compliance")
+    return {"mount_rotational_compliance.compliance_rad_Nm", h.clamp_compliance + 2.0 * a};
+  if (effect == "contact_friction") return {"pusher.friction", 0.4 * a};
+  if (effect == "pusher_compliance") return {"pusher.compliance_m_N", 1e-6 * a};
+  if (effect == "displacement_offset") return {"reading.displacement_offset_mm", 0.1 * s};
+  if (effect == "force_offset") return {"reading.force_offset_N", 5.0 * s};
+  if (effect == "natural_curvature") return {"wire.natural_curvature_1_m", 5.0 * s};
+  if (effect == "strand_hysteresis") return {"strand_hysteresis.extra_stiffness_Nm2", h.bending * a};
+  if (effect == "gravity") return {"gravity.along_bulge_m_s2", 9.81 * s};
+  if (effect == "rate_viscosity") return {"rate_viscosity.relaxation_time_s", 0.1 * a};
+  return {"", 0.0};
+}
+
 // Readings of one push with these effects, without noise.
-std::vector<double> read(const std::vector<Dose>& doses, const Push& p, const Hidden& h, double highest_tension) {
-  Bench bench{.wire = wire_of(p, h), .travel = travel_of(p)};
+std::vector<double> read(const std::vector<Dose>& doses, const Push& p, double off, const Hidden& h,
+                         double highest_tension, int readings_a_leg) {
+  Bench bench{.wire = wire_of(p, h), .travel = travel_of(p, readings_a_leg)};
+  bench.wire.position += off;
   for (const Dose& dose : doses) add(dose, h, highest_tension, bench);
-  const std::vector<double> time = time_of(p);
+  const std::vector<double> time = time_of(p, readings_a_leg);
   std::vector<double> force;
   for (const BlindReading& r : blind_push(bench.wire, bench.travel, time))
     force.push_back(bench.gain * r.force + bench.offset);
@@ -151,13 +193,40 @@ std::vector<double> read(const std::vector<Dose>& doses, const Push& p, const Hi
   return force;
 }
 
-Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double highest_tension) {
+// One push below the other.
+Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double highest_tension,
+                         const BlindDesign& design) {
   std::vector<double> all;
-  for (const Push& p : pushes) {
-    const std::vector<double> one = read(doses, p, h, highest_tension);
+  const std::vector<Push> made = pushes_of(design);
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    const std::vector<double> one = read(doses, made[k], h.position_off[k], h, highest_tension, design.readings_a_leg);
     all.insert(all.end(), one.begin(), one.end());
   }
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+/// Deviations of a record with so many readings a leg: white noise, and a smooth one over the path where it is a replicate.
+/// Drawn at the finest readings, of which every record has its own.
+struct Deviations {
+  std::vector<double> white;   // [N]
+  std::vector<double> smooth;  // of the force [-]
+};
+
+Deviations deviations_of(int readings_a_leg, bool replicate, std::mt19937& noise) {
+  std::normal_distribution<double> normal;
+  Deviations result;
+  const int finest = std::max(finest_leg, readings_a_leg);
+  const int every = finest / readings_a_leg;
+  const double decay = std::exp(-1.0 / (finest * correlation));
+  double state = normal(noise);
+  for (int i = 1; i < 2 * finest; ++i) {
+    const double white = sigma * normal(noise);
+    state = decay * state + std::sqrt(1.0 - decay * decay) * normal(noise);
+    if (i % every != 0) continue;
+    result.white.push_back(white);
+    result.smooth.push_back(replicate ? deviation * state : 0.0);
+  }
+  return result;
 }
 
 }  // namespace
@@ -168,6 +237,8 @@ const std::vector<std::string>& blind_effects() {
                                             "contact_position",
                                             "push_misalignment",
                                             "mount_slip",
+                                            "clamp_slide",
+                                            "clamp_slide_right",
                                             "mount_axial_compliance",
                                             "mount_rotational_compliance",
                                             "contact_friction",
@@ -195,7 +266,7 @@ std::vector<std::string> effects_in(const std::string& name) {
   return effects;
 }
 
-BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
+BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, const BlindDesign& design) {
   const auto& known = blind_effects();
   const std::vector<std::string> inside = effect == "none" ? std::vector<std::string>() : effects_in(effect);
   for (const std::string& one : inside) {
@@ -222,13 +293,21 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   h.place = 0.3 + 0.4 * uniform(random);
   h.slip_curvature = 0.1 + 0.4 * uniform(random);
   h.drift_shape = 5.0 + 20.0 * uniform(random);
+  h.right = uniform(random) < 0.5;
+  // Half of the strands slide all at once.
+  const double breadth = 2.0 * uniform(random);
+  h.slip_breadth = uniform(random) < 0.5 ? 0.0 : breadth;
+  h.length = length + design.length_deviation * normal(random);
+  for (std::size_t k = 0; k < std::size(pushes); ++k)
+    h.position_off.push_back(design.position_deviation * normal(random));
+  const std::vector<Push> made = pushes_of(design);
   // A uniform natural curvature does nothing between rigid clamps.
   const bool curved = std::find(inside.begin(), inside.end(), "natural_curvature") != inside.end();
   h.clamp_compliance = curved ? 0.5 : 0.0;
 
   double highest_tension = 0.0;
-  for (const Push& p : pushes) {
-    for (const BlindReading& r : blind_push(wire_of(p, h), travel_of(p), time_of(p))) {
+  for (const Push& p : made) {
+    for (const BlindReading& r : blind_push(wire_of(p, h), travel_of(p, design.readings_a_leg))) {
       highest_tension = std::max(highest_tension, r.tension_left);
     }
   }
@@ -237,7 +316,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
   h.highest_stress =
       std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
                0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
-  const Eigen::VectorXd plain = read_all({}, h, highest_tension);
+  const Eigen::VectorXd plain = read_all({}, h, highest_tension, design);
   Eigen::VectorXd force = plain;
   BlindSet set;
   set.effect = effect;
@@ -249,7 +328,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     for (const int k : {0, 1}) {
       Hidden other = h;
       (k == 0 ? other.bending : other.axial) *= 1.001;
-      base.col(k) = read_all({}, other, highest_tension) - plain;
+      base.col(k) = read_all({}, other, highest_tension, design) - plain;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
     // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly.
@@ -260,7 +339,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
         const Eigen::VectorXd step = 1e-3 * qr.solve(left);
         fitted.bending *= std::exp(std::clamp(step[0], -0.5, 0.5));
         fitted.axial *= std::exp(std::clamp(step[1], -0.5, 0.5));
-        left = changed - read_all({}, fitted, highest_tension);
+        left = changed - read_all({}, fitted, highest_tension, design);
       }
       return (left - base * qr.solve(left)).norm() / sigma;
     };
@@ -273,7 +352,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     Dose dose{one, a};
     for (int k = 0; k < 20; ++k) {
       dose.amount = a;
-      force = read_all({dose}, h, highest_tension);
+      force = read_all({dose}, h, highest_tension, design);
       reached = size_of(force);
       if (std::abs(reached / size - 1.0) < 0.05 || (a >= 1.0 && reached < size)) break;
       (reached < size ? low : high) = a;
@@ -282,19 +361,22 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     }
     set.amount = doses.empty() ? dose.amount : set.amount;
     set.size = doses.empty() ? reached : std::min(set.size, reached);
+    if (doses.empty()) std::tie(set.key, set.truth) = number_of(dose, h, highest_tension);
     doses.push_back(dose);
   }
-  if (doses.size() > 1) force = read_all(doses, h, highest_tension);
+  if (doses.size() > 1) force = read_all(doses, h, highest_tension, design);
 
   identification::Experiment& experiment = set.experiment;
   experiment.file = "blind.toml";
   experiment.title = fmt::format("blind set {}", seed);
   experiment.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
-  Eigen::Index row = 0;
-  int number = 0;
-  for (const Push& p : pushes) {
+  if (design.length_deviation > 0.0) experiment.free.emplace_back("wire.length_mm");
+  const auto readings_a_push = static_cast<Eigen::Index>(force.size()) / static_cast<Eigen::Index>(made.size());
+  const auto records = static_cast<int>(made.size()) * design.replicates;
+  for (int number = 0; number < records; ++number) {
+    const Push& p = made[static_cast<std::size_t>(number / design.replicates)];
     identification::Series series;
-    series.name = fmt::format("p{}", ++number);
+    series.name = fmt::format("p{}", number + 1);
     coupling::PushProblem& t = series.test;
     t.wire.construction = wire::Construction::strand;
     t.wire.diameter = diameter;
@@ -309,13 +391,16 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed) {
     t.pusher.radius = radius;
     t.contact_position = p.position;
     identification::Readings readings;
-    readings.displacement = travel_of(p);
-    readings.time = time_of(p);
-    for (std::size_t i = 0; i < readings.displacement.size(); ++i)
-      readings.force.push_back(force[row++] + sigma * normal(noise));
+    readings.displacement = travel_of(p, design.readings_a_leg);
+    readings.time = time_of(p, design.readings_a_leg);
+    const bool replicate = design.replicates > 1;
+    const Deviations off = deviations_of(design.readings_a_leg, replicate, noise);
+    Eigen::Index row = readings_a_push * (number / design.replicates);
+    for (std::size_t i = 0; i < readings.displacement.size(); ++i, ++row)
+      readings.force.push_back(force[row] * (1.0 + off.smooth[i]) + off.white[i]);
     t.travel = readings.displacement;
     series.readings = readings;
-    series.force_sigma = sigma;
+    if (!replicate) series.force_sigma = sigma;
     experiment.series.push_back(std::move(series));
   }
   return set;

@@ -17,8 +17,22 @@ struct BlindSet {
   double amount = 0.0;  ///< of the (first) effect, in its own measure
   double size = 0.0;    ///< of its change of the forces over the noise of one reading, after the best fit of the base
       ///< model's numbers: sqrt(sum (projected change / sigma)^2); of several, each alone, the smallest
+  std::string key;                 ///< of the (first) effect's first number; empty: it is in no catalogue
+  double truth = 0.0;              ///< of that number, in its unit
   double bending_stiffness = 0.0;  ///< true [N m^2]
   double axial_stiffness = 0.0;    ///< true [N]
+};
+
+/// How the readings of a blind set are taken, and what of them the laboratory does not know.
+struct BlindDesign {
+  int readings_a_leg = 20;          ///< a divisor of 40, or more
+  double length_deviation = 0.0;    ///< standard deviation of the wire's length about the declared one [m]; where it is
+                                    ///< > 0 the length is freed as well
+  double position_deviation = 0.0;  ///< of every push's position about the declared one [m]
+  /// Of three pushes so many records each, every one with a deviation of its own that goes with the force and is
+  /// correlated over a quarter of the travel, 1 % of it, beside the noise; nothing of this is declared. 1: six pushes, one
+  /// record each, with noise alone.
+  int replicates = 1;
 };
 
 /// Effects that can be put in; the last two are in no catalogue: a stretch of the wire that is softer in
@@ -32,6 +46,8 @@ struct BlindSet {
 /// declared ones by about 10 %. effect: one, or several joined by "+", each alone of that size. The same seed gives the same wire for
 /// every effect and size. size: wanted, > 0, in standard deviations of the noise (see BlindSet); effects with a largest size (a slipping
 /// mount) stay below it where they must. "none" ignores it.
-[[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed);
+/// The design changes neither the wire nor the noise of the readings that two designs share.
+[[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed,
+                                      const BlindDesign& design = {});
 
 }  // namespace snare::validation

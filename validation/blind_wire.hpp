@@ -26,7 +26,9 @@ struct BlindWire {
 
   double mount_axial_compliance = 0.0;                                  ///< of each mount along the chord [m/N], >= 0
   double mount_rotational_compliance = 0.0;                             ///< of each clamp [rad/(N m)], >= 0
-  double mount_slip_tension = std::numeric_limits<double>::infinity();  ///< T_s of the left mount [N], > 0
+  double mount_slip_tension = std::numeric_limits<double>::infinity();  ///< T_s of a mount [N], > 0
+  bool mount_slides = false;       ///< the mount slides along the chord with the wire; else the wire feeds through it
+  bool mount_slips_right = false;  ///< it is the right mount; else the left one
 
   double misalignment = 0.0;       ///< of the pusher's motion a [rad]: along (sin a, cos a)
   double pusher_compliance = 0.0;  ///< along the motion [m/N], >= 0
@@ -34,6 +36,8 @@ struct BlindWire {
 
   double strand_extra_stiffness = 0.0;  ///< EI_x while the strands hold together [N m^2], >= 0
   double strand_slip_curvature = 0.0;   ///< at which they slip [1/m], >= 0
+  double strand_slip_breadth = 0.0;  ///< b: in `strand_layers` equal shares, the logarithms evenly over +-b [-], >= 0
+  int strand_layers = 40;            ///< where b > 0, >= 1
 
   double yield_stress = std::numeric_limits<double>::infinity();  ///< sigma_y [Pa], > 0
   double relaxation_time = 0.0;                                   ///< tau of Kelvin and Voigt [s], >= 0

@@ -1,6 +1,7 @@
 #include "wire/planar_rod.hpp"
 
 #include "base/index.hpp"
+#include "wire/planar_gradient.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -293,18 +294,27 @@ double PlanarRod::energy(const PlanarState& state) const {
   return sum + spring(properties_.left, state.q[0]) + spring(properties_.right, state.q[2 * mesh_.edges()]);
 }
 
-void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+namespace {
+
+/// derivatives: the Hessian and what goes with it, else the gradient alone.
+template <bool derivatives>
+void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::array<bool, 3>& wanted,
+                   RodAssembly& out) {
+  const MaterialMesh& mesh = rod.mesh();
+  const PlanarRodProperties& properties = rod.properties();
   thread_local std::vector<Edge> edges;
   thread_local std::vector<Cell> cells;
-  const int n = mesh_.edges();
-  const int unknown_count = unknowns();
-  fill_edges(mesh_, state, edges);
+  const int n = mesh.edges();
+  const int unknown_count = rod.unknowns();
+  fill_edges(mesh, state, edges);
   cells.resize(base::at(n + 1));
-  for (int i = 0; i <= n; ++i) cells[base::at(i)] = bend_at(i, edges, properties_, mesh_, state);
+  for (int i = 0; i <= n; ++i) cells[base::at(i)] = bend_at(i, edges, properties, mesh, state);
 
   out.gradient.setZero(unknown_count);
-  if (out.hessian.order() != unknown_count) {
-    out.hessian = numerics::SymmetricBandMatrix(unknown_count, half_bandwidth);
+  if constexpr (!derivatives) {
+    // Stays as it was.
+  } else if (out.hessian.order() != unknown_count) {
+    out.hessian = numerics::SymmetricBandMatrix(unknown_count, PlanarRod::half_bandwidth);
   } else {
     out.hessian.set_zero();
   }
@@ -312,17 +322,17 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     if (wanted[k]) out.control_columns[k].setZero(unknown_count);
   }
   out.control_gradient.setZero();
-  out.control_hessian.setZero();
+  if constexpr (derivatives) out.control_hessian.setZero();
   out.energy = 0.0;
 
-  const double wx = properties_.weight.x();
-  const double wy = properties_.weight.y();
+  const double wx = properties.weight.x();
+  const double wy = properties.weight.y();
   for (int e = 0; e < n; ++e) {
     const Edge& edge = edges[base::at(e)];
     const Cell& left = cells[base::at(e)];
     const Cell& right = cells[base::at(e + 1)];
     const double stretch = edge.length / edge.rest;
-    const SectionResponse section = stretch_at(e, stretch - 1.0, properties_, state);
+    const SectionResponse section = stretch_at(e, stretch - 1.0, properties, state);
     const double tension = section.resultant;
     // dE/de = T t + (M_i - M_{i+1}) e_perp/l^2 (W.3): a turn of the edge by alpha adds to phi_i of its left
     // vertex, whose outgoing edge it is, and takes from phi_{i+1} of its right one.
@@ -332,18 +342,20 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     const double half = 0.5 * edge.rest;
     add_forces(2 * e, {gx, gy}, {half * wx, half * wy}, out);
 
-    // d2l/de2 = (I - t t^T)/l, so that stretching has EA/h t t^T + T (I - t t^T)/l;
-    // d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4 (W.4).
     const double axial = section.tangent / edge.rest;
-    const double lateral = tension / edge.length;
-    const double bxx = (axial - lateral) * edge.tx * edge.tx + lateral;
-    const double bxy = (axial - lateral) * edge.tx * edge.ty;
-    const double byy = (axial - lateral) * edge.ty * edge.ty + lateral;
-    const double twist = -turn / (edge.length * edge.length);
-    add_edge_stiffness(2 * e,
-                       {bxx - 2.0 * twist * edge.tx * edge.ty, bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty),
-                        byy + 2.0 * twist * edge.tx * edge.ty},
-                       out.hessian);
+    if constexpr (derivatives) {
+      // d2l/de2 = (I - t t^T)/l, so that stretching has EA/h t t^T + T (I - t t^T)/l;
+      // d2alpha/de2 = -(e e_perp^T + e_perp e^T)/l^4 (W.4).
+      const double lateral = tension / edge.length;
+      const double bxx = (axial - lateral) * edge.tx * edge.tx + lateral;
+      const double bxy = (axial - lateral) * edge.tx * edge.ty;
+      const double byy = (axial - lateral) * edge.ty * edge.ty + lateral;
+      const double twist = -turn / (edge.length * edge.length);
+      add_edge_stiffness(2 * e,
+                         {bxx - 2.0 * twist * edge.tx * edge.ty, bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty),
+                          byy + 2.0 * twist * edge.tx * edge.ty},
+                         out.hessian);
+    }
 
     // By the rest length, through the edge and through the two cells it belongs to.
     const double middle_x = 0.5 * (state.q[2 * e] + state.q[2 * e + 2]);
@@ -352,11 +364,12 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     out.energy += section.energy * edge.rest - edge.rest * weight_work;
     const double by_rest = section.energy - stretch * tension - weight_work + 0.5 * (left.by_length + right.by_length);
     for (int k = 0; k < 3; ++k) {
-      const double share = mesh_.rest_length_derivative(e, k);
+      const double share = mesh.rest_length_derivative(e, k);
       if (share == 0.0) continue;
       out.control_gradient[k] += share * by_rest;
+      if constexpr (!derivatives) continue;
       for (int m = 0; m < 3; ++m) {
-        out.control_hessian(k, m) += share * mesh_.rest_length_derivative(e, m) * axial * stretch * stretch;
+        out.control_hessian(k, m) += share * mesh.rest_length_derivative(e, m) * axial * stretch * stretch;
       }
       if (!wanted[base::at(k)]) continue;
       double* column = out.control_columns[base::at(k)].data() + 2 * e;
@@ -374,20 +387,20 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
     const double give = state.q[row] - end.position.x();
     out.energy += 0.5 * end.translational_stiffness * give * give;
     out.gradient[row] += end.translational_stiffness * give;
-    out.hessian.add(row, row, end.translational_stiffness);
+    if constexpr (derivatives) out.hessian.add(row, row, end.translational_stiffness);
   };
-  spring(properties_.left, 0);
-  spring(properties_.right, 2 * n);
+  spring(properties.left, 0);
+  spring(properties.right, 2 * n);
 
   // Rank-one part of bending (W.4): M' v v^T with v = d phi/d(x_{i-1}, x_i, x_{i+1}), M' = d2E/dphi2.
   for (int i = 0; i <= n; ++i) {
     const Cell& cell = cells[base::at(i)];
     out.energy += cell.energy;
-    if (cell.stiffness == 0.0) continue;
+    if (!derivatives || cell.stiffness == 0.0) continue;
     const TurnGradient v(i, edges);
     add_rank_one(v, cell.stiffness, out.hessian);
     // By the cell's length l = (h_{i-1} + h_i)/2, linear in the controls (W.10).
-    const std::array<double, 3> share = length_by_controls(i, mesh_);
+    const std::array<double, 3> share = length_by_controls(i, mesh);
     for (std::size_t k = 0; k < 3; ++k) {
       if (share[k] == 0.0) continue;
       for (std::size_t m = 0; m < 3; ++m) {
@@ -400,6 +413,16 @@ void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wa
         column[v.row + a] += share[k] * cell.moment_by_length * v.values[base::at(a)];
     }
   }
+}
+
+}  // namespace
+
+void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+  assemble_into<true>(*this, state, wanted, out);
+}
+
+void assemble_gradient(const PlanarRod& rod, const PlanarState& state, RodAssembly& out) {
+  assemble_into<false>(rod, state, {false, false, false}, out);
 }
 
 namespace {

@@ -6,7 +6,7 @@ namespace snare::wire {
 
 namespace {
 
-PlanarEnd planar_end(const MountSpecification& mount, double x) {
+PlanarEnd planar_end(const MountSpecification& mount, SlipPlace place) {
   PlanarEnd end;
   switch (mount.kind) {
     case MountKind::clamped:
@@ -19,9 +19,12 @@ PlanarEnd planar_end(const MountSpecification& mount, double x) {
       end.kind = PlanarEnd::Kind::free;
       break;
   }
-  end.position = {x, 0.0};
+  end.position = {place == SlipPlace::left ? 0.0 : mount.span, 0.0};
   if (mount.rotational_stiffness) end.rotational_stiffness = *mount.rotational_stiffness;
   if (mount.translational_stiffness) end.translational_stiffness = *mount.translational_stiffness;
+  // A mount that slides is no spring of the wire: what holds it is an unknown force (theory.md, C.8).
+  const bool here = mount.slip_at == SlipPlace::both || mount.slip_at == place;
+  if (mount.slip_tension && mount.slip == MountSlip::slides && here) end.translational_stiffness = 0.0;
   return end;
 }
 
@@ -35,8 +38,8 @@ PlanarRodProperties planar_rod_properties(const WireSpecification& wire, const M
   // The bulge goes to +y, where a wire running along +x turns right at its top.
   properties.natural_curvature = -wire.natural_curvature;
   properties.weight = wire.mass_per_length() * gravity;
-  properties.left = planar_end(mount, 0.0);
-  properties.right = planar_end(mount, mount.span);
+  properties.left = planar_end(mount, SlipPlace::left);
+  properties.right = planar_end(mount, SlipPlace::right);
   properties.bending_profile = wire.bending_profile;
   if (wire.yielding) {
     const double hardening = wire.yielding->hardening_ratio;
@@ -52,7 +55,8 @@ PlanarRodProperties planar_rod_properties(const WireSpecification& wire, const M
     properties.axial_stiffness *= hardening;
   }
   if (wire.strand_friction) {
-    properties.bending_sliders.push_back({wire.strand_friction->extra_stiffness, wire.strand_friction->slip_curvature});
+    const std::vector<SliderElement> strands = strand_sliders(*wire.strand_friction);
+    properties.bending_sliders.insert(properties.bending_sliders.end(), strands.begin(), strands.end());
   }
   return properties;
 }

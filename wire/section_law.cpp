@@ -46,6 +46,17 @@ std::vector<SliderElement> yielding_section(double bending_stiffness, double dia
   return elements;
 }
 
+std::vector<SliderElement> strand_sliders(const StrandFriction& friction) {
+  if (!(friction.breadth > 0.0)) return {{friction.extra_stiffness, friction.slip_curvature}};
+  constexpr int shares = 10;
+  std::vector<SliderElement> elements;
+  for (int i = 0; i < shares; ++i) {
+    const double at = 2.0 * (i + 0.5) / shares - 1.0;
+    elements.push_back({friction.extra_stiffness / shares, friction.slip_curvature * std::exp(friction.breadth * at)});
+  }
+  return elements;
+}
+
 std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<double>& values, int components,
                                  bool of_edges, const Controls& from, const Controls& to) {
   if (from == to || values.empty()) return values;

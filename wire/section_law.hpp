@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wire/mesh.hpp"
+#include "wire/specification.hpp"
 
 #include <vector>
 
@@ -41,6 +42,11 @@ void slide(const std::vector<SliderElement>& elements, double strain, double* sl
 /// bending_stiffness: EI [N m^2]; diameter [m]; yield_strain: yield stress over E [-]; hardening: in (0, 1).
 [[nodiscard]] std::vector<SliderElement> yielding_section(double bending_stiffness, double diameter,
                                                           double yield_strain, double hardening);
+
+/// Friction of strands in bending as sliders: one, or of a breadth > 0 ten of equal stiffness, the logarithms of their
+/// slip curvatures at the middles of ten equal parts. Of the breadth 2 the moment is within 0.4 % of the continuous
+/// distribution's.
+[[nodiscard]] std::vector<SliderElement> strand_sliders(const StrandFriction& friction);
 
 /// Slipped strains of all elements: bending ones a vertex, axial ones an edge, of the material that is there
 /// while the controls have these values.

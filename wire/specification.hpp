@@ -8,10 +8,12 @@ namespace snare::wire {
 enum class Construction { solid, strand };
 
 /// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands,
-/// a stiffness that acts until the curvature has changed by slip_curvature and slides then.  theory.md (W.13)
+/// a stiffness that acts until the curvature has changed by slip_curvature and slides then; or whose shares slide one
+/// after the other, the logarithms of their curvatures evenly spread over 2 breadth.         theory.md (W.13)
 struct StrandFriction {
-  double extra_stiffness = 0.0;  ///< [N m^2], > 0
-  double slip_curvature = 0.0;   ///< [1/m], > 0
+  double extra_stiffness = 0.0;  ///< of all while they stick [N m^2], > 0
+  double slip_curvature = 0.0;   ///< the middle one, in logarithms [1/m], > 0
+  double breadth = 0.0;          ///< from slip_curvature exp(-breadth) to slip_curvature exp(breadth) [-], >= 0
 };
 
 /// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by
@@ -57,6 +59,14 @@ enum class MountKind {
   supports  ///< the wire rests on two round supports and slides over them (three-point bending)
 };
 
+/// What gives way where a mount slips.
+enum class MountSlip {
+  feeds,  ///< the wire feeds through the mount, which stands still
+  slides  ///< the mount slides along the chord, the wire fast in it
+};
+/// Which mounts slip; of both each by itself.
+enum class SlipPlace { left, right, both };
+
 /// The two mounts; the chord runs along +x from the left mount at the origin, the bulge towards +y.
 struct MountSpecification {
   MountKind kind = MountKind::clamped;
@@ -64,7 +74,9 @@ struct MountSpecification {
   double support_radius = 0.0;                    ///< supports only [m], >= 0
   std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
   std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
-  std::optional<double> slip_tension;             ///< wire feeds through the left mount beyond this |tension| [N]
+  std::optional<double> slip_tension;             ///< force on a mount beyond which it slips [N], > 0: theory.md (C.8)
+  MountSlip slip = MountSlip::feeds;
+  SlipPlace slip_at = SlipPlace::left;
 };
 
 }  // namespace snare::wire

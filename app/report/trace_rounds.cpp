@@ -115,6 +115,33 @@ void add_classes(ReportPage& page, const Round& round) {
   add_list(page, "These data cannot tell apart, since the curves change in the same way:", items);
 }
 
+/// What the winner leaves of each fitted series, and its rivals, over the travel.
+void add_rivals(ReportPage& page, const Trace& trace, const Round& round) {
+  if (round.curves.size() < 2) return;
+  page.paragraph(
+      "What the best refits leave, measured minus computed. One that could not come near the best was given up before "
+      "its own best fit.");
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < trace.series.size(); ++k) {
+    if (trace.heldout[k]) continue;
+    const identification::Series& series = trace.series[k];
+    PlotSpecification plot{.title = fmt::format("Left of {} beside each effect", series.name),
+                           .x = {"travel", "mm"},
+                           .y = {"residual", "N"}};
+    std::vector<double> travel;
+    for (const double d : series.readings->displacement) travel.push_back(1e3 * d);
+    int colour = blue;
+    for (const identification::RefitCurves& curves : round.curves) {
+      if (at >= curves.force.size() || curves.force[at].size() != travel.size()) continue;
+      std::vector<double> left;
+      for (std::size_t i = 0; i < travel.size(); ++i) left.push_back(series.readings->force[i] - curves.force[at][i]);
+      plot.curves.push_back(make_curve(curves.effect, travel, left, CurveStyle::line, colour++));
+    }
+    page.line_plot(plot);
+    ++at;
+  }
+}
+
 }  // namespace
 
 void add_rounds(ReportPage& page, const Trace& trace) {
@@ -136,6 +163,7 @@ void add_rounds(ReportPage& page, const Trace& trace) {
                    (round.reason.empty() ? "" : "; " + round.reason) + ".");
     add_scores(page, round);
     add_refits(page, round);
+    add_rivals(page, trace, round);
     add_reasons(page, round, told);
     add_classes(page, round);
   }

@@ -48,8 +48,11 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
     const double force = now.border.segment<2>(system.wrapped_rows(k).force).dot(left_of(n));
     work += 0.5 * std::abs(last + force) * system.sliding[0].radius * std::abs(angle_between(r, n));
   }
-  if (system.mount && system.mount->slips && before.border.size() == now.border.size()) {
-    work += system.mount->limit * std::abs(now.border[system.mount_row()] - system.mount->last_coordinate);
+  if (before.border.size() != now.border.size()) return work;
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    const SlippingMount& mount = system.mounts[k];
+    if (mount.slips || (mount.follows && system.mounts.front().slips))
+      work += mount.limit * std::abs(mount.moved(system.mount_place(k, now)));
   }
   return work;
 }

@@ -38,18 +38,19 @@ bool settle_friction(SlidingContact& contact, const VertexTangent& v, const Vect
   return true;
 }
 
-bool settle_mount(PushSystem& system, const numerics::PathPoint& point, const ContactTolerance& tolerance) {
-  SlippingMount& mount = *system.mount;
-  const double drive = system.rod_assembly().control_gradient[0];
-  const double coordinate = point.border[system.mount_row()];
+bool settle_mount(std::size_t which, PushSystem& system, const numerics::PathPoint& point,
+                  const ContactTolerance& tolerance) {
+  SlippingMount& mount = system.mounts[which];
+  if (mount.follows) return false;
+  const double drive = system.mount_drive(which, point);
   if (!mount.slips) {
     if (std::abs(drive) <= mount.limit + tolerance.force) return false;
     mount.slips = true;
     mount.slip_sign = drive > 0.0 ? 1.0 : -1.0;
     return true;
   }
-  // A pull (drive > 0) feeds wire in: S_0 falls.
-  if ((coordinate - mount.last_coordinate) * mount.slip_sign <= tolerance.slip) return false;
+  // A pull (drive > 0) brings wire in.
+  if (mount.moved(system.mount_place(which, point)) * mount.slip_sign >= -tolerance.slip) return false;
   mount.slips = false;
   return true;
 }
@@ -88,7 +89,9 @@ void release_pusher(PushSystem& system, numerics::PathPoint& point, const PinFor
 // One condition of contact after the other; the first that is violated changes its state.
 bool change_state(PushSystem& system, numerics::PathPoint& point, ContactMemory& memory) {
   const ContactTolerance tolerance = contact_tolerance(system);
-  if (system.mount && settle_mount(system, point, tolerance)) return true;
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    if (settle_mount(k, system, point, tolerance)) return true;
+  }
   const SlidingContact& pusher = system.sliding[0];
   if (pusher.status == ContactStatus::wrapped) return settle_wrap(system, point, tolerance);
   if (pusher.status == ContactStatus::open) return close_pusher(system, point, tolerance, memory);
@@ -128,8 +131,9 @@ std::vector<PushEvent::Kind> contact_events(const ContactStates& before, const C
     events.push_back(Kind::slip_ends);
     events.push_back(Kind::slip_begins);
   }
-  if (after.mount && before.mount && after.mount->slips != before.mount->slips) {
-    events.push_back(after.mount->slips ? Kind::mount_slips : Kind::mount_holds);
+  for (std::size_t k = 0; k < after.mounts.size() && k < before.mounts.size(); ++k) {
+    if (after.mounts[k].slips == before.mounts[k].slips) continue;
+    events.push_back(after.mounts[k].slips ? Kind::mount_slips : Kind::mount_holds);
   }
   return events;
 }
@@ -156,7 +160,7 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
     contact.last_radial = (wire::vertex(state, contact.node) - centre).normalized();
     contact.last_force = point.border.segment<2>(system.wrapped_rows(k).force);
   }
-  if (system.mount) system.mount->last_coordinate = point.border[system.mount_row()];
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) system.mounts[k].last = system.mount_place(k, point);
   if (system.rod().has_memory()) system.sections = system.rod().remembered(state);
 }
 

@@ -66,10 +66,16 @@ Arc with_neighbours(const Arc& kept, const PushSystem& system, const wire::Plana
   return complete;
 }
 
+// The mounts' unknowns, last in the border, from the old one, where they began at `first`.
+void keep_mounts(const Eigen::VectorXd& old, int first, const PushSystem& system, numerics::PathPoint& point) {
+  const auto count = static_cast<Eigen::Index>(system.mounts.size());
+  point.border.tail(count) = old.segment(first, count);
+}
+
 // Replaces the wrapped contacts; the other border unknowns keep their values.
 void put(const Arc& arc, PushSystem& system, numerics::PathPoint& point) {
   const Eigen::VectorXd old = point.border;
-  const int old_mount = system.mount_row();
+  const int old_mount = system.mount_row(0);
   const int head = system.wrapped_rows(0).force;
   system.wrapped = arc.contacts;
   point.border.resize(system.border_unknowns());
@@ -77,7 +83,7 @@ void put(const Arc& arc, PushSystem& system, numerics::PathPoint& point) {
   for (std::size_t k = 0; k < arc.forces.size(); ++k) {
     point.border.segment<2>(system.wrapped_rows(k).force) = arc.forces[k];
   }
-  if (system.mount) point.border[system.mount_row()] = old[old_mount];
+  keep_mounts(old, old_mount, system, point);
 }
 
 // One wrapped vertex is left: contact at a point again, at that vertex. `state`: of the point before.
@@ -87,10 +93,10 @@ void end_wrap(PushSystem& system, numerics::PathPoint& point, const wire::Planar
   const Vector2d force = point.border.segment<2>(system.wrapped_rows(0).force);
   const double coordinate = system.rod().mesh().coordinate(left.node, state.controls);
   const Eigen::VectorXd old = point.border;
-  const int old_mount = system.mount_row();
+  const int old_mount = system.mount_row(0);
   system.wrapped.clear();
   point.border.conservativeResize(system.border_unknowns());
-  if (system.mount) point.border[system.mount_row()] = old[old_mount];
+  keep_mounts(old, old_mount, system, point);
   move_contact_vertex(system, point, coordinate);
   pusher.status = left.status;
   pusher.slip_sign = pusher.side * left.slip_sign;

@@ -19,7 +19,7 @@ int PlanarPush::count_unstable_modes() {
   // Sliding: d2E/dS2 with the wire relaxed and the point of contact held must be positive as well.
   const SlidingContact& pusher = system_.sliding[0];
   const bool slides = pusher.status == ContactStatus::slip && !pusher.holds_material && pusher.friction == 0.0;
-  if (slides && system_.sliding.size() == 1 && !system_.mount) {
+  if (slides && system_.sliding.size() == 1 && system_.mounts.empty()) {
     const Eigen::VectorXd& column = system_.rod_assembly().control_columns[1];
     const double stiffness =
         system_.rod_assembly().control_hessian(1, 1) - column.dot(workspace_.solver.solved_column(0));
@@ -116,6 +116,7 @@ bool PlanarPush::is_stable_without_pusher() {
   Eigen::VectorXd by_parameter;
   numerics::BandLdlt factor;
   system_.assemble(trial_, free, by_parameter);
+  for (const numerics::BorderedSystem::Anchor& mount : free.anchors) free.matrix.hold(mount.band);
   return factor.factorize(free.matrix) && factor.negative_pivots() == 0;
 }
 
@@ -125,6 +126,7 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
   assembled_at_.reset();
   const wire::PlanarState start = system_.state(point_);
   const int last = system_.rod().mesh().edges();
+  const wire::PlanarRod held = system_.rod_with_held_mounts(point_);
   numerics::SolveReport worst;
   for (const double size : {1e-4, 1e-3, 1e-2, 5e-2}) {
     wire::PlanarState free = start;
@@ -132,7 +134,7 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
       const double bump = std::sin(std::numbers::pi * i / last);
       free.q.segment<2>(2 * i) += size * system_.length_scale() * bump * bump * system_.sliding[0].motion;
     }
-    const wire::EquilibriumReport report = wire::find_equilibrium(system_.rod(), free);
+    const wire::EquilibriumReport report = wire::find_equilibrium(held, free);
     iterations_ += report.iterations;
     worst = static_cast<const numerics::SolveReport&>(report);
     if (!report.usable()) continue;

@@ -128,7 +128,7 @@ StepOutcome PlanarPush::step_to(double travel) {
 }
 
 numerics::SolveReport PlanarPush::without_steps(double target, const numerics::SolveReport& last) {
-  if (system_.wrapped.empty() && !system_.mount) return follow_arc(target);
+  if (system_.wrapped.empty() && system_.mounts.empty()) return follow_arc(target);
   return ended(last.termination, last.message);
 }
 
@@ -183,7 +183,10 @@ double PlanarPush::viscous_stiffness() {
     const auto k = static_cast<std::size_t>(contact.control);
     rate.controls[k] = ahead.controls[k] / along.parameter;
   }
-  if (system_.mount) rate.controls[0] = ahead.controls[0] / along.parameter;
+  for (const SlippingMount& mount : system_.mounts) {
+    const auto k = static_cast<std::size_t>(mount.control());
+    if (mount.feeds()) rate.controls[k] = ahead.controls[k] / along.parameter;
+  }
   return system_.rod().rate_form(now, rate);
 }
 

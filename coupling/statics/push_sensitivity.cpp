@@ -56,7 +56,7 @@ PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMe
       side.contacts = make_contacts(changed, mesh, controls);
       side.controls = controls;
       side.system->compliance = changed.pusher.compliance;
-      side.slip_limit = changed.mount.slip_tension.value_or(0.0);
+      side.mounts = slipping_mounts(changed.mount, test.pusher.friction, controls);
     }
     const auto& [minus, plus] = varied.sides;
     const double twice = 2.0 * variation.step;
@@ -67,6 +67,9 @@ PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMe
                                          twice);
     }
     varied.memory.angle.assign(plus.contacts.size(), 0.0);
+    for (std::size_t k = 0; k < plus.mounts.size(); ++k) {
+      varied.memory.mounts.push_back((plus.mounts[k].last - minus.mounts[k].last) / twice);
+    }
     varied_.push_back(std::move(varied));
   }
   force_by_.assign(varied_.size(), 0.0);
@@ -105,10 +108,13 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
   for (std::size_t k = 0; k < states.sliding.size(); ++k) {
     controls[static_cast<std::size_t>(states.sliding[k].control)] += side.amount * memory.coordinate[k];
   }
-  controls[0] += side.amount * memory.mount;
-  if (states.mount) {
-    states.mount->limit = side.slip_limit;
-    states.mount->last_coordinate += side.amount * memory.mount;
+  for (std::size_t k = 0; k < states.mounts.size(); ++k) {
+    SlippingMount& mount = states.mounts[k];
+    const auto control = static_cast<std::size_t>(mount.control());
+    if (mount.feeds()) controls[control] = system.sections.controls[control] + side.amount * memory.mounts[k];
+    mount.limit = side.mounts[k].limit;
+    mount.compliance = side.mounts[k].compliance + side.amount * varied.mount_compliance;
+    mount.last += side.amount * memory.mounts[k];
   }
 }
 
@@ -117,15 +123,18 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
   numerics::PathPoint change{varied.held, Eigen::VectorXd::Zero(at.border.size()), varied.travel};
   if (varied.mount_compliance != 0.0) {
     // A spring of stiffness 1/c under the gradient g of the wire's energy: q = x - c g.
+    // Of a mount that slides that spring is part of its equation.
     const auto& reactions = system.mount_reactions();
-    change.band[0] -= varied.mount_compliance * reactions[0].x();
-    change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
+    std::array<bool, 2> held{true, true};
+    for (const SlippingMount& mount : system.mounts) held[mount.right ? 1 : 0] = mount.feeds();
+    if (held[0]) change.band[0] -= varied.mount_compliance * reactions[0].x();
+    if (held[1]) change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
   }
   Eigen::VectorXd band = Eigen::VectorXd::Zero(at.band.size());
   Eigen::VectorXd border = Eigen::VectorXd::Zero(at.border.size());
   for (Side& side : varied.sides) {
     put_states(system, varied, side);
-    side.system->assemble(moved(at, change, side.amount), scratch_, by_parameter_);
+    side.system->assemble_residual(moved(at, change, side.amount), scratch_, by_parameter_);
     band -= scratch_.band_residual / (2.0 * side.amount);
     border -= scratch_.border_residual / (2.0 * side.amount);
   }
@@ -191,7 +200,9 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
     const Vector2d to = wire::vertex(high_state, contact.node) - plus.pusher_centre(high);
     varied.memory.radial[contact.node] = angle_between(from, to) / (2.0 * varied.step);
   }
-  if (system.mount) varied.memory.mount = change.border[system.mount_row()];
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    varied.memory.mounts[k] = (plus.mount_place(k, high) - minus.mount_place(k, low)) / (2.0 * varied.step);
+  }
   if (!system.rod().has_memory()) return;
   // The sliders follow the moved states; a kink between the two is as rare as a reading that falls on it.
   const wire::SectionMemory before = minus.rod().remembered(low_state);

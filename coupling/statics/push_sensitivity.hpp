@@ -45,14 +45,14 @@ class PushSensitivity {
     std::unique_ptr<PushSystem> system;
     std::vector<SlidingContact> contacts;  // constants
     wire::Controls controls{};             // to begin with
-    double slip_limit = 0.0;
+    std::vector<SlippingMount> mounts;     // constants
   };
   /// Derivatives of what friction remembers.
   struct Memory {
     std::vector<double> coordinate;  // of the sliding contacts [m]
     std::vector<double> angle;       // of their last tangents [rad]
     std::map<int, double> radial;    // angle of the last radial of a wrapped vertex [rad]
-    double mount = 0.0;              // S_0 [m]
+    std::vector<double> mounts;      // of `last` of the mounts that can slip [m]
     std::vector<double> bending;     // slipped curvatures of the sliders [1/m]
     std::vector<double> axial;       // slipped strains [-]
   };

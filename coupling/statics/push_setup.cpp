@@ -115,7 +115,11 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
   }
 
   wire::Controls controls = initial_controls(test);
-  wire::LooseWire loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+  // The loose wire is found between mounts that hold.
+  PushProblem holding = test;
+  holding.mount.slip_tension.reset();
+  const wire::PlanarRod held(mesh, rod_properties(holding));
+  wire::LooseWire loose = wire::find_loose_wire(held, controls, test.bulge.mode);
   setup.iterations = loose.report.iterations;
   if (test.bulge.mode > 1 && loose.report.usable()) {
     // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method
@@ -128,7 +132,7 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
       controls[1] =
           (1.0 - part) * mesh.coordinate(i, loose.state.controls) + part * mesh.coordinate(i + 1, loose.state.controls);
     }
-    loose = wire::find_loose_wire(*setup.rod, controls, test.bulge.mode);
+    loose = wire::find_loose_wire(held, controls, test.bulge.mode);
     setup.iterations += loose.report.iterations;
   }
   setup.report = static_cast<const numerics::SolveReport&>(loose.report);
@@ -141,11 +145,14 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
   pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
   pusher.status = ContactStatus::touching;
   system.compliance = test.pusher.compliance;
-  if (test.mount.slip_tension) system.mount = SlippingMount{*test.mount.slip_tension, false, 0.0, 0.0};
+  system.mounts = slipping_mounts(test.mount, test.pusher.friction, controls);
 
   setup.start.band = loose.state.q;
   setup.start.border.setZero(system.border_unknowns());
   setup.start.border[system.pusher_rows().coordinate] = controls[1];
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    if (system.mounts[k].feeds()) setup.start.border[system.mount_row(k)] = system.mounts[k].last;
+  }
   numerics::PathWorkspace workspace;
   const numerics::SolveReport touch = numerics::correct(system, setup.start, workspace, 50);
   setup.iterations += touch.iterations;

@@ -1,9 +1,11 @@
 #include "coupling/statics/push_system.hpp"
 
 #include "wire/equilibrium.hpp"
+#include "wire/planar_gradient.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace snare::coupling {
 
@@ -26,7 +28,26 @@ WrappedRows PushSystem::wrapped_rows(std::size_t contact) const {
 }
 
 int PushSystem::border_unknowns() const {
-  return mount_row() + (mount ? 1 : 0);
+  return mount_row(mounts.size());
+}
+
+std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount, double friction,
+                                           const wire::Controls& controls) {
+  std::vector<SlippingMount> result;
+  if (!mount.slip_tension) return result;
+  for (const bool right : {false, true}) {
+    if (mount.slip_at == (right ? wire::SlipPlace::left : wire::SlipPlace::right)) continue;
+    SlippingMount one{.right = right, .kind = mount.slip, .limit = *mount.slip_tension};
+    if (one.feeds()) {
+      one.follows = !result.empty() && friction == 0.0;
+      one.last = controls[static_cast<std::size_t>(one.control())];
+    } else {
+      one.last = right ? mount.span : 0.0;
+      if (mount.translational_stiffness) one.compliance = 1.0 / *mount.translational_stiffness;
+    }
+    result.push_back(one);
+  }
+  return result;
 }
 
 wire::PlanarState PushSystem::state(const numerics::PathPoint& at) const {
@@ -34,7 +55,9 @@ wire::PlanarState PushSystem::state(const numerics::PathPoint& at) const {
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     result.controls[static_cast<std::size_t>(sliding[k].control)] = at.border[sliding_rows(k).coordinate];
   }
-  if (mount) result.controls[0] = at.border[mount_row()];
+  for (std::size_t k = 0; k < mounts.size(); ++k) {
+    if (mounts[k].feeds()) result.controls[static_cast<std::size_t>(mounts[k].control())] = at.border[mount_row(k)];
+  }
   if (!sections.bending.empty() || !sections.axial.empty()) result.memory = &sections;
   return result;
 }
@@ -79,12 +102,27 @@ void PushSystem::assemble(const numerics::PathPoint& at, numerics::BorderedSyste
   const wire::PlanarState s = state(at);
   std::array<bool, 3> wanted{false, false, false};
   for (const SlidingContact& contact : sliding) wanted[static_cast<std::size_t>(contact.control)] = true;
-  if (mount) wanted[0] = true;
+  for (const SlippingMount& mount : mounts) {
+    if (mount.feeds()) wanted[static_cast<std::size_t>(mount.control())] = true;
+  }
   rod_->assemble(s, wanted, assembly_);
+  take_reactions(s, at);
+  rod_->hold_mounts(assembly_);
+  add_contacts(s, at, system, by_parameter);
+  std::swap(system.matrix, assembly_.hessian);
+}
 
-  const int m = border_unknowns();
-  system.reset(rod_->unknowns(), m);
-  by_parameter.setZero(m);
+void PushSystem::assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                                   Eigen::VectorXd& by_parameter) {
+  const wire::PlanarState s = state(at);
+  wire::assemble_gradient(*rod_, s, assembly_);
+  take_reactions(s, at);
+  rod_->clear_held(assembly_.gradient);
+  add_contacts(s, at, system, by_parameter);
+}
+
+// From the gradient before rigid positions are held.
+void PushSystem::take_reactions(const wire::PlanarState& s, const numerics::PathPoint& at) {
   const int last = 2 * rod_->mesh().edges();
   reactions_ = {assembly_.gradient.segment<2>(0), assembly_.gradient.segment<2>(last)};
   for (const wire::PlanarEnd* end : {&rod_->properties().left, &rod_->properties().right}) {
@@ -94,13 +132,20 @@ void PushSystem::assemble(const numerics::PathPoint& at, numerics::BorderedSyste
     const double x = s.q[left ? 0 : last];
     reactions_[left ? 0 : 1].x() = -end->translational_stiffness * (x - end->position.x());
   }
-  rod_->hold_mounts(assembly_);
-  system.band_residual = assembly_.gradient;
-  std::swap(system.matrix, assembly_.hessian);
+  for (std::size_t k = 0; k < mounts.size(); ++k) {
+    if (!mounts[k].feeds()) reactions_[mounts[k].right ? 1 : 0].x() = at.border[mount_row(k)];
+  }
+}
 
+void PushSystem::add_contacts(const wire::PlanarState& s, const numerics::PathPoint& at,
+                              numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) {
+  const int m = border_unknowns();
+  system.reset(rod_->unknowns(), m);
+  by_parameter.setZero(m);
+  system.band_residual = assembly_.gradient;
   for (std::size_t k = 0; k < sliding.size(); ++k) assemble_sliding(k, s, at, system, by_parameter);
   for (std::size_t k = 0; k < wrapped.size(); ++k) assemble_wrapped(k, s, at, system, by_parameter);
-  if (mount) assemble_mount(s, system);
+  for (std::size_t k = 0; k < mounts.size(); ++k) assemble_mount(k, at, system);
 }
 
 void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s, const numerics::PathPoint& at,
@@ -162,7 +207,9 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
     for (std::size_t k = 0; k < sliding.size(); ++k) {
       corner(row, sliding_rows(k).coordinate) += factor * by_control(sliding[k].control);
     }
-    if (mount) corner(row, mount_row()) += factor * by_control(0);
+    for (std::size_t k = 0; k < mounts.size(); ++k) {
+      if (mounts[k].feeds()) corner(row, mount_row(k)) += factor * by_control(mounts[k].control());
+    }
   };
 
   // Position: x - p - (R + g) n = 0.                                                          theory.md (C.2)
@@ -244,24 +291,75 @@ void PushSystem::assemble_wrapped(std::size_t index, const wire::PlanarState& s,
   }
 }
 
-void PushSystem::assemble_mount(const wire::PlanarState& s, numerics::BorderedSystem& system) const {
-  const int row = mount_row();
-  system.columns.emplace_back(row, &assembly_.control_columns[0]);
-  if (!mount->slips) {
-    system.border_residual[row] = s.controls[0] - mount->last_coordinate;
+// With the sense s from the mount inwards. Feeding: the unknown is S, the drive s dE/dS. Sliding: the unknown is the force f
+// of the friction on the wire along the chord, the drive -s f, and the mount stands at x + c f, c its spring's compliance.
+//   holds: S or x + c f as at the last state;   slips: drive = sign * limit                    theory.md (C.8)
+void PushSystem::assemble_mount(std::size_t index, const numerics::PathPoint& at,
+                                numerics::BorderedSystem& system) const {
+  const SlippingMount& mount = mounts[index];
+  const int row = mount_row(index);
+  const double sense = mount.sense();
+  if (!mount.feeds()) {
+    const int x = band_of(mount);
+    system.band_residual[x] -= at.border[row];
+    system.anchors.push_back({x, row});
+    if (mount.slips) {
+      system.border_residual[row] = mount_drive(index, at) - mount.slip_sign * mount.limit;
+      system.corner(row, row) = -sense;
+      return;
+    }
+    system.border_residual[row] = mount_place(index, at) - mount.last;
+    system.rows.push_back({row, x, 1.0});
+    system.corner(row, row) = mount.compliance;
+    return;
+  }
+  const auto control = static_cast<std::size_t>(mount.control());
+  const Eigen::VectorXd& column = assembly_.control_columns[control];
+  system.columns.emplace_back(row, &column);
+  if (mount.follows) {
+    const int first = mount_row(0);
+    system.border_residual[row] = mount.moved(at.border[row]) - mounts.front().moved(at.border[first]);
+    system.corner(row, row) = system.corner(row, first) = 1.0;
+    return;
+  }
+  if (!mount.slips) {
+    system.border_residual[row] = at.border[row] - mount.last;
     system.corner(row, row) = 1.0;
     return;
   }
-  // dE/dS_0 = sign * limit.  theory.md (C.8)
-  system.border_residual[row] = assembly_.control_gradient[0] - mount->slip_sign * mount->limit;
-  const Eigen::VectorXd& column = assembly_.control_columns[0];
+  system.border_residual[row] = mount_drive(index, at) - mount.slip_sign * mount.limit;
   for (Eigen::Index i = 0; i < column.size(); ++i) {
-    if (column[i] != 0.0) system.rows.push_back({row, static_cast<int>(i), column[i]});
+    if (column[i] != 0.0) system.rows.push_back({row, static_cast<int>(i), sense * column[i]});
   }
-  system.corner(row, row) = assembly_.control_hessian(0, 0);
+  for (std::size_t k = 0; k < mounts.size(); ++k) {
+    if (!mounts[k].feeds()) continue;
+    system.corner(row, mount_row(k)) = sense * assembly_.control_hessian(mount.control(), mounts[k].control());
+  }
   for (std::size_t k = 0; k < sliding.size(); ++k) {
-    system.corner(row, sliding_rows(k).coordinate) = assembly_.control_hessian(0, sliding[k].control);
+    system.corner(row, sliding_rows(k).coordinate) =
+        sense * assembly_.control_hessian(mount.control(), sliding[k].control);
   }
+}
+
+double PushSystem::mount_drive(std::size_t k, const numerics::PathPoint& at) const {
+  const SlippingMount& mount = mounts[k];
+  return mount.sense() * (mount.feeds() ? assembly_.control_gradient[mount.control()] : -at.border[mount_row(k)]);
+}
+
+double PushSystem::mount_place(std::size_t k, const numerics::PathPoint& at) const {
+  const double unknown = at.border[mount_row(k)];
+  return mounts[k].feeds() ? unknown : at.band[band_of(mounts[k])] + mounts[k].compliance * unknown;
+}
+
+wire::PlanarRod PushSystem::rod_with_held_mounts(const numerics::PathPoint& at) const {
+  wire::PlanarRodProperties held = rod_->properties();
+  for (const SlippingMount& mount : mounts) {
+    if (mount.feeds()) continue;
+    wire::PlanarEnd& end = mount.right ? held.right : held.left;
+    end.translational_stiffness = std::numeric_limits<double>::infinity();
+    end.position.x() = at.band[band_of(mount)];
+  }
+  return {rod_->mesh(), held};
 }
 
 double PushSystem::error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const {
@@ -292,7 +390,9 @@ double PushSystem::error(const numerics::PathPoint& at, const numerics::Bordered
     error = std::max(error, std::abs(residual[rows.distance]) / position);
     error = std::max(error, std::abs(residual[rows.slip]) / (slides ? force : position));
   }
-  if (mount) error = std::max(error, std::abs(residual[mount_row()]) / (mount->slips ? force : position));
+  for (std::size_t k = 0; k < mounts.size(); ++k) {
+    error = std::max(error, std::abs(residual[mount_row(k)]) / (mounts[k].slips ? force : position));
+  }
   return error;
 }
 

@@ -3,6 +3,7 @@
 #include "coupling/contact/pin_contact.hpp"
 #include "numerics/path.hpp"
 #include "wire/planar_rod.hpp"
+#include "wire/specification.hpp"
 
 #include <array>
 #include <cstddef>
@@ -11,20 +12,39 @@
 
 namespace snare::coupling {
 
-/// The left mount lets the wire through when the force on it passes Coulomb's limit.   theory.md (C.8)
+/// A mount that lets the wire through, or slides with it, when the force on it passes Coulomb's limit. theory.md (C.8)
+/// Its unknown in the border is the material coordinate that it holds, S [m], or the force of its friction on the
+/// wire along the chord [N].
 struct SlippingMount {
-  double limit = 0.0;  ///< force at which the wire slips [N], > 0
+  bool right = false;  ///< else the left one
+  wire::MountSlip kind = wire::MountSlip::feeds;
+  double limit = 0.0;       ///< driving force at which it slips [N], > 0
+  double compliance = 0.0;  ///< of a spring between a mount that slides and what it slides on [m/N], >= 0
+  /// Brings in as much wire as the mount before it, and has no equation of its own: where the wire slides freely over the
+  /// pusher the driving forces of both are equal whatever share each has.
+  bool follows = false;
   bool slips = false;
-  double slip_sign = 0.0;        ///< of the driving force dE/dS_0 while it slips, +1 or -1 [-]
-  double last_coordinate = 0.0;  ///< S_0 at the last accepted state [m]
+  double slip_sign = 0.0;  ///< of the driving force while it slips, +1: the wire pulls, or -1 [-]
+  double last = 0.0;       ///< S, or where the mount stands along the chord, at the last accepted state [m]
+
+  /// The wire slips through it; else it slides with the wire.
+  [[nodiscard]] bool feeds() const { return kind == wire::MountSlip::feeds; }
+  [[nodiscard]] int control() const { return right ? 2 : 0; }        ///< that a feeding mount moves
+  [[nodiscard]] double sense() const { return right ? -1.0 : 1.0; }  ///< of the chord from this mount inwards
+  /// Slipped since the last state, > 0 where wire comes in [m]. now: S, or where the mount stands.
+  [[nodiscard]] double moved(double now) const { return (feeds() ? -sense() : sense()) * (now - last); }
 };
+
+/// The mounts that slip, as they begin. friction: at the pusher [-].
+[[nodiscard]] std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount, double friction,
+                                                         const wire::Controls& controls);
 
 /// Contacts and mount of a push, with what they remember of the last accepted state.
 struct ContactStates {
   std::vector<SlidingContact> sliding;  ///< the pusher first, then the supports
   std::vector<WrappedContact> wrapped;
-  std::optional<SlippingMount> mount;
-  wire::SectionMemory sections;  ///< of a wire with sliders
+  std::vector<SlippingMount> mounts;  ///< that can slip
+  wire::SectionMemory sections;       ///< of a wire with sliders
 };
 
 /// Places of a sliding contact in the border: of its unknowns (columns), and of its equations (rows).
@@ -56,7 +76,7 @@ struct WrappedRows {
 /// Equilibrium of a planar rod with the pins that guide it, as a path problem in the pusher's travel.
 ///
 /// Band unknowns: q of the rod. Border unknowns: of every sliding contact (f_x, f_y, S, g), see SlidingRows;
-/// of every wrapped one (f_x, f_y); S_0 of a slipping mount.
+/// of every wrapped one (f_x, f_y); of every mount that can slip one, see SlippingMount.
 class PushSystem final : public numerics::PathProblem, public ContactStates {
  public:
   PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls);
@@ -68,7 +88,7 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// Puts back what `contact_states` gave.
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
 
-  /// Columns of the border: unknowns of all contacts, and S_0 of a mount that slips.
+  /// Columns of the border: unknowns of all contacts, and one of every mount that can slip.
   [[nodiscard]] int border_unknowns() const;
   /// Places in the border of the contact's unknowns and equations, counted as in `sliding`; of the pusher; of one in `wrapped`.
   [[nodiscard]] SlidingRows sliding_rows(std::size_t contact) const {
@@ -76,8 +96,13 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   }
   [[nodiscard]] SlidingRows pusher_rows() const { return sliding_rows(0); }
   [[nodiscard]] WrappedRows wrapped_rows(std::size_t contact) const;
-  /// Of S_0, and of the mount's equation.
-  [[nodiscard]] int mount_row() const { return wrapped_rows(wrapped.size()).force; }
+  /// Of a mount's unknown, and of its equation; counted as in `mounts`.
+  [[nodiscard]] int mount_row(std::size_t k) const { return wrapped_rows(wrapped.size()).force + static_cast<int>(k); }
+  /// Force that drives the mount, > 0 where the wire pulls [N], and S or where it stands [m]; of the last assembly.
+  [[nodiscard]] double mount_drive(std::size_t k, const numerics::PathPoint& at) const;
+  [[nodiscard]] double mount_place(std::size_t k, const numerics::PathPoint& at) const;
+  /// The rod with mounts that slide held where they are.
+  [[nodiscard]] wire::PlanarRod rod_with_held_mounts(const numerics::PathPoint& at) const;
 
   /// The rod that is pushed.
   [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
@@ -92,6 +117,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and WrappedRows.   theory.md (C.2)-(C.8)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
+  /// Of assemble() the residuals [N], [m] alone; matrices of the system are of no use then.
+  void assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                         Eigen::VectorXd& by_parameter);
   [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
   [[nodiscard]] double length_scale() const override { return length_; }
 
@@ -101,12 +129,17 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] const wire::RodAssembly& rod_assembly() const { return assembly_; }
 
  private:
+  void add_contacts(const wire::PlanarState& state, const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                    Eigen::VectorXd& by_parameter);
+  void take_reactions(const wire::PlanarState& state, const numerics::PathPoint& at);
   void assemble_sliding(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
                         numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void assemble_wrapped(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
                         numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void add_compliance(int row, const Eigen::Vector2d& by_centre, numerics::BorderedSystem& system) const;
-  void assemble_mount(const wire::PlanarState& state, numerics::BorderedSystem& system) const;
+  void assemble_mount(std::size_t index, const numerics::PathPoint& at, numerics::BorderedSystem& system) const;
+  /// Place in the band of a mount's position along the chord.
+  [[nodiscard]] int band_of(const SlippingMount& mount) const { return mount.right ? 2 * rod_->mesh().edges() : 0; }
 
   const wire::PlanarRod* rod_;
   wire::Controls controls_;

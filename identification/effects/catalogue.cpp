@@ -14,6 +14,10 @@ namespace snare::identification {
   EFFECT(contact_position)            \
   EFFECT(push_misalignment)           \
   EFFECT(mount_slip)                  \
+  EFFECT(mount_slip_right)            \
+  EFFECT(clamp_slide)                 \
+  EFFECT(clamp_slide_right)           \
+  EFFECT(clamp_slide_both)            \
   EFFECT(mount_axial_compliance)      \
   EFFECT(mount_rotational_compliance) \
   EFFECT(contact_friction)            \
@@ -46,6 +50,10 @@ constexpr std::string_view order_in_messages[] = {"wire.bending_stiffness_Nm2",
                                                   "mount_axial_compliance.compliance_m_N",
                                                   "mount_rotational_compliance.compliance_rad_Nm",
                                                   "mount_slip.tension_N",
+                                                  "mount_slip_right.tension_N",
+                                                  "clamp_slide.tension_N",
+                                                  "clamp_slide_right.tension_N",
+                                                  "clamp_slide_both.tension_N",
                                                   "pusher.radius_mm",
                                                   "contact_position.shift_mm",
                                                   "pusher.misalignment_deg",
@@ -53,6 +61,7 @@ constexpr std::string_view order_in_messages[] = {"wire.bending_stiffness_Nm2",
                                                   "pusher.compliance_m_N",
                                                   "strand_hysteresis.extra_stiffness_Nm2",
                                                   "strand_hysteresis.slip_curvature_1_m",
+                                                  "strand_hysteresis.slip_breadth",
                                                   "plasticity.yield_stress_MPa",
                                                   "plasticity.hardening_ratio",
                                                   "gravity.along_bulge_m_s2",

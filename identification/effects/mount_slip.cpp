@@ -1,48 +1,29 @@
-#include "identification/effects/effect.hpp"
-
-#include <cmath>
-#include <limits>
+#include "identification/effects/slip_tension.hpp"
 
 namespace snare::identification {
 
 namespace {
 
-/// Tension at which the mount lets the wire through.
-Parameter tension() {
-  return {
-      .key = "mount_slip.tension_N",
-      .unit = "N",
-      .parametrisation = Parametrisation::magnitude,
-      .number = {[](const PushProblem& p, const ReadingModel&) {
-                   return p.mount.slip_tension.value_or(std::numeric_limits<double>::infinity());
-                 },
-                 [](PushProblem& p, ReadingModel&, double v) { p.mount.slip_tension = v; }},
-      .limits = [](const PushProblem& p) { return between(1e-9 * p.wire.axial_stiffness(), p.wire.axial_stiffness()); },
-      .step = 1e-4};
-}
-
-// The tension at which slip begins decides everything: from just above what the buckled wire pushes, which
-// the mount must have held, to the highest tension of the test.
-std::vector<std::vector<double>> trial_tensions(const TrialContext& context) {
-  std::vector<std::vector<double>> result;
-  for (const double share : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
-    const double tension = share * context.highest_tension;
-    if (tension > 1.02 * context.highest_compression) result.push_back({std::log(tension)});
-  }
-  return result;
+/// Force beyond which it slips.
+Parameter tension_of_the_feed() {
+  Parameter p = slip_tension<wire::MountSlip::feeds, wire::SlipPlace::left>();
+  p.key = "mount_slip.tension_N";
+  p.unit = "N";
+  return p;
 }
 
 }  // namespace
 
-/// The wire feeds through the left mount by Coulomb's law when its tension passes a limit.
+/// The wire feeds through the left mount by Coulomb's law when its tension passes a limit. Without friction at the pusher
+/// the driving force is the same all along the wire, so that it stands for the right mount and for both: theory.md (C.8).
 Effect mount_slip_effect() {
   return {.name = "mount_slip",
           .channel = Channel::mount,
           .meaning = "the wire slips through a mount beyond a certain tension",
-          .numbers = {{tension(), 1e-3, 1e5}},
+          .numbers = {{tension_of_the_feed(), 1e-3, 1e5}},
           .one_sided = true,
-          .trials = trial_tensions,
-          .unobservable = needs_mounts,
+          .trials = trial_slip_tensions,
+          .unobservable = needs_mounts_that_hold,
           .independent_check = "mark the wire at the mounts and look for a shift of the marks after the test"};
 }
 

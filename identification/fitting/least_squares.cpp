@@ -303,6 +303,8 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
   const std::vector<Setting> fixed = optimum.fixed();
   FitOptions options;
   options.max_iterations = 15;
+  // To a fiftieth of the rise that is looked for.
+  options.tolerance = std::clamp(0.02 * rise / std::max(optimum.chi2, 1.0), 1e-6, 1e-3);
   options.progress = progress;
   double step = std::sqrt(rise) * spread;  // where the profile is a parabola
   std::optional<double> end;

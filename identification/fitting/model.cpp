@@ -1,5 +1,6 @@
 #include "identification/fitting/model.hpp"
 #include "base/parallel.hpp"
+#include "identification/fitting/shared_push.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,7 @@ Model::Applied Model::apply(const std::vector<Setting>& settings) const {
   Applied result{series_, std::vector<ReadingModel>(series_.size())};
   for (const Setting& setting : settings) {
     const Parameter& p = *setting.parameter;
+    result.of_all = result.of_all && p.only.empty();
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (!concerns(p, series_[k])) continue;
       // Relative to what the series declares itself.
@@ -129,10 +131,25 @@ Evaluation Model::predict_with(const Applied& model, const PredictionOptions& op
   const std::vector<Series>& series = model.series;
   Evaluation result;
   result.predictions.resize(series.size());
-  base::parallel_for(series.size(), [&](std::size_t k) {
+  // Records of one push share its curve, where no number belongs to one of them alone.
+  std::vector<std::vector<std::size_t>> groups;
+  if (options.thin && model.of_all) {
+    groups = shared_pushes(series_, series, model.reading);
+  } else {
+    for (std::size_t k = 0; k < series.size(); ++k) groups.push_back({k});
+  }
+  base::parallel_for(groups.size(), [&](std::size_t g) {
+    const std::vector<std::size_t>& group = groups[g];
+    const std::size_t first = group.front();
     PredictionOptions own = options;
-    if (!variations.empty()) own.variations = variations[k];
-    result.predictions[k] = predict(series[k], solver_, model.reading[k], own);
+    if (!variations.empty()) own.variations = variations[first];
+    if (group.size() == 1) {
+      result.predictions[first] = predict(series[first], solver_, model.reading[first], own);
+      return;
+    }
+    const Series all = merged(series, group);
+    const Prediction whole = predict(all, solver_, model.reading[first], own);
+    for (const std::size_t k : group) result.predictions[k] = part_of(whole, all, series[k]);
   });
   result.complete = true;
   for (std::size_t k = 0; k < series.size(); ++k) {

@@ -46,6 +46,7 @@ class Model {
   struct Applied {
     std::vector<Series> series;
     std::vector<ReadingModel> reading;  ///< one a series
+    bool of_all = true;                 ///< no setting belongs to one series alone
   };
   [[nodiscard]] Applied apply(const std::vector<Setting>& settings) const;
 

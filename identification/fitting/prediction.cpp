@@ -20,7 +20,6 @@ struct Sampling {
   std::vector<Weights> readings;  // empty: the displacements are the readings
 };
 
-constexpr std::size_t dense_leg = 120;
 constexpr int points_a_leg = 60;
 
 /// Turning points of a record: indices at which it turns back by more than 2 % of its range.

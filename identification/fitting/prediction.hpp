@@ -47,6 +47,9 @@ class SharedPredictions {
   std::shared_ptr<const std::vector<Prediction>> predictions_;
 };
 
+/// Readings of a leg beyond which a record may be thinned, see PredictionOptions.
+inline constexpr std::size_t dense_leg = 120;
+
 /// What a prediction computes besides the force, how densely, and who watches it.
 struct PredictionOptions {
   std::vector<double> shapes_at;                    ///< travels of which to keep the wire's shape [m]

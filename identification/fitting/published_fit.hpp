@@ -39,6 +39,9 @@ struct SummaryStatistics {
   std::vector<FitComparison> series;
 };
 
+/// P of SummaryStatistics below which the numbers do not do. Of a few published fits no more can be told.
+inline constexpr double least_published_p = 0.01;
+
 /// Compares the published fits of `series` with computed forces [N] at their travels, one vector a series; series
 /// without a law are left out. As many lost readings are assumed as there are travels, placed as they are.
 [[nodiscard]] SummaryStatistics summary_statistics(const std::vector<Series>& series,

@@ -106,6 +106,8 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
     for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
       if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
     }
+    if (tables.wire.has("strand_slip_breadth"))
+      tables.wire.fail("strand_slip_breadth", "all strands slide at one curvature in motion");
   }
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("series")) {

@@ -1,5 +1,6 @@
 #include "identification/tracing/residual_tests.hpp"
 
+#include "identification/fitting/published_fit.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/model_error.hpp"
 
@@ -10,9 +11,25 @@ namespace snare::identification {
 
 bool ResidualTests::like_noise() const {
   constexpr double level = 0.002;
+  if (of_published) return lack_of_fit > least_published_p;
   if (against_replicates) return lack_of_fit > level;
   return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > level;
 }
+
+namespace {
+
+/// Of coefficients and scatters, as everywhere where published fits are compared.
+double published_p(const Model& model, const Data& data, const Fit& fit) {
+  std::vector<Series> series;
+  std::vector<std::vector<double>> force;
+  for (const std::size_t k : data.series) {
+    series.push_back(model.series()[k]);
+    force.emplace_back(fit.evaluation.force[k].begin(), fit.evaluation.force[k].end());
+  }
+  return summary_statistics(series, force, fit.free).p;
+}
+
+}  // namespace
 
 ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fit) {
   std::vector<Eigen::VectorXd> pieces;
@@ -28,6 +45,12 @@ ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fi
   tests.rmse = fitted_rmse(data, fit.evaluation);
   tests.noise = data.noise.mean_sigma(model.series());
   tests.left = remainder(model, data, fit);
+  tests.of_published = !data.series.empty() && std::all_of(data.series.begin(), data.series.end(),
+                                                           [&](std::size_t k) { return data.noise.summarised(k); });
+  if (tests.of_published) {
+    tests.lack_of_fit = published_p(model, data, fit);
+    return tests;
+  }
   // Replicates say how much their mean may be off; of the noise from second differences its own degrees of freedom.
   const double dof = std::max(1.0, fit.dof());
   tests.lack_of_fit = tests.against_replicates ? tests.left.p : fisher_tail(fit.chi2 / dof, dof, data.noise.dof);

@@ -11,17 +11,21 @@ struct ResidualTests {
   double ljung_box = 1.0;           ///< p of the autocorrelations
   double lack_of_fit = 1.0;         ///< p of chi2 against the noise; against replicates of the smooth part alone
   bool against_replicates = false;  ///< the noise is that of replicates, which differ smoothly themselves
+  bool of_published = false;        ///< all series are published fits: lack_of_fit is that of their numbers (I.11)
   double rmse = 0.0;                ///< of the residual [N]
   double noise = 0.0;               ///< of a reading [N]
   Remainder left{};                 ///< the smooth part of what is left
 
   /// All three together at 0.2 %, so that a right answer is taken back once in five hundred; against
-  /// replicates the lack of fit alone.
+  /// replicates, and of published fits, the lack of fit alone; of the latter at 1 %.
   [[nodiscard]] bool like_noise() const;
   /// At most this much is left, with 95 % confidence [N].
   [[nodiscard]] bool within(double tolerance) const { return left.upper <= tolerance; }
   /// Nothing worth naming is left: it is like noise, smaller than the noise, or within the tolerance [N].
-  [[nodiscard]] bool acceptable(double tolerance) const { return like_noise() || rmse <= noise || within(tolerance); }
+  /// Published fits must agree with the computed ones: of them there is no reading whose noise could hide anything.
+  [[nodiscard]] bool acceptable(double tolerance) const {
+    return like_noise() || (!of_published && (rmse <= noise || within(tolerance)));
+  }
 };
 
 /// All tests of what this fit leaves in the fitted series.

@@ -2,6 +2,7 @@
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/remainder.hpp"
+#include "identification/tracing/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +86,7 @@ std::string too_small(const Data& data, const Fit& current, const Fit& refitted,
     return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
                        refitted.dof(), refitted.free, fewest_dof(refitted.free));
   }
-  if (tolerance > 0.0 && (before - after <= tolerance || after > least_fall * before)) {
+  if (tolerance > 0.0 && !worth_a_name(before, after, tolerance)) {
     return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
                        before - after, tolerance);
   }
@@ -260,6 +261,22 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
     add_rival(1);
 }
 
+/// Of the best refits in their order; one that could not come near the leader ended before its own bottom.
+std::vector<RefitCurves> best_curves(const Data& data, const std::vector<Candidate>& candidates,
+                                     const std::vector<Fit>& fits) {
+  constexpr std::size_t most = 4;
+  std::vector<RefitCurves> result;
+  for (std::size_t i = 0; i < candidates.size() && result.size() < most; ++i) {
+    if (!candidates[i].refitted) continue;
+    RefitCurves& one = result.emplace_back(RefitCurves{candidates[i].score.effect->name, {}});
+    for (const std::size_t k : data.series) {
+      const Eigen::VectorXd& f = fits[i].evaluation.force[k];
+      one.force.emplace_back(f.data(), f.data() + f.size());
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 double fewest_dof(std::size_t numbers) {
@@ -284,6 +301,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   }
   progress.clock(name + ": refits");
   classify(current, inflation, round, fits);
+  round.curves = best_curves(data, round.candidates, fits);
   if (!round.candidates.empty() && eligible(round.candidates.front(), significance)) {
     add_first(model, data, fits, result);
     return result;

@@ -24,12 +24,19 @@ struct Candidate {
   std::size_t class_index = 0;
 };
 
+/// The forces of a refit, for a look beside others.
+struct RefitCurves {
+  std::string effect;
+  std::vector<std::vector<double>> force;  ///< one vector a fitted series, at its readings [N]
+};
+
 /// One pass over the catalogue.
 struct Round {
   std::vector<Candidate> candidates;              ///< ranked, best first
   std::vector<std::vector<std::string>> classes;  ///< effects that these data cannot tell apart
   std::string added;                              ///< effect that was added, empty for none
   std::string reason;                             ///< why it was, or why none was
+  std::vector<RefitCurves> curves;                ///< of the best refit and its three best rivals, best first
 };
 
 /// A round with the fits behind it.

@@ -260,9 +260,8 @@ void Tracer::conclude() {
     leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));
     result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
     select();
-  } else if (!added_.empty() && !result_.rival_explanation &&
-             tests_.left.upper <= most_force_left * result_.peak_force &&
-             share_left(before, tests_.left) <= most_share_left && rivals().empty()) {
+  } else if (!added_.empty() && !result_.rival_explanation && is_partial(before, tests_.left, result_.peak_force) &&
+             rivals().empty()) {
     leave(tests_.left, share_left(before, tests_.left));
     result_.kind = VerdictKind::partly_explained;
     if (options_.attribute && progress_.go_on("where the rest comes from")) {
@@ -321,22 +320,20 @@ void Tracer::reject() {
 
 // One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
 bool Tracer::decided() const {
-  if (!result_.explained || !result_.alternatives.empty()) return false;
+  if (!result_.explained) return false;
+  Evidence evidence{.dof = final_.dof(),
+                    .classes = result_.selected_classes,
+                    .cause_outside = !result_.alternatives.empty(),
+                    .one_condition = result_.one_condition && !result_.selected.empty(),
+                    .zero_in_doubt = result_.zero && result_.zero->doubtful};
   if (result_.selected.empty()) {
-    return !result_.few_readings &&
+    return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
   }
-  for (const std::vector<std::string>& members : result_.selected_classes) {
-    if (members.size() != 1) return false;
-  }
   if (result_.one_condition) return false;
-  double before = left_out_rmse(model_, data_, base_);
-  for (const RoundFits& round : rounds_) {
-    const double after = left_out_rmse(model_, data_, round.better);
-    if (!(after < before)) return false;
-    before = after;
-  }
-  return true;
+  evidence.left_out.push_back(left_out_rmse(model_, data_, base_));
+  for (const RoundFits& round : rounds_) evidence.left_out.push_back(left_out_rmse(model_, data_, round.better));
+  return is_decided(evidence);
 }
 
 // Errors of the final model, on fitted series, held-out ones, and each of them left out.
@@ -419,6 +416,10 @@ Trace Tracer::run() {
   add_effects();
   conclude();
   compare_models();
+  if (progress_.go_on("zero of the travel")) {
+    result_.zero = check_zero(model_, data_, final_);
+    progress_.clock("zero of the travel");
+  }
   result_.decided = decided();
   tell_part();
   if (options_.intervals && !result_.selected.empty()) find_intervals();

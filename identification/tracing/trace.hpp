@@ -5,6 +5,7 @@
 #include "identification/tracing/residual_tests.hpp"
 #include "identification/tracing/round.hpp"
 #include "identification/tracing/verdict.hpp"
+#include "identification/tracing/zero_check.hpp"
 
 #include <functional>
 #include <optional>
@@ -38,13 +39,15 @@ struct Trace {
   bool rival_explanation = false;  ///< those effects would do, but one function of one channel is the simpler cause
   VerdictKind kind = VerdictKind::not_explained;
   bool explained = false;      ///< nothing is missing, or the selected effects explain what is
-  bool decided = false;        ///< explained, every class of one member, and a condition left out is predicted better
+  bool decided = false;        ///< explained, every class of one member, a condition left out is predicted better, and
+                               ///< the zero of the travel is not in doubt
   bool few_readings = false;   ///< one more number would leave too few degrees of freedom: effects were not asked
   bool one_condition = false;  ///< one position and one slack: channels cannot be told from each other
   double tolerance = 0.0;      ///< error below which nothing is called missing [N]
   double peak_force = 0.0;     ///< largest measured one [N]
   Remaining remaining;
   std::vector<Finding> findings;  ///< of the final model
+  std::optional<ZeroCheck> zero;  ///< beside a final model that has none
   std::string channel;            ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
   std::vector<ChannelFunction>

@@ -46,4 +46,24 @@ double share_left(const Remainder& base, const Remainder& final) {
   return std::min(1.0, std::pow(final.rmse / base.rmse, 2));
 }
 
+bool is_partial(const Remainder& base, const Remainder& final, double peak) {
+  return final.upper <= most_force_left * peak && share_left(base, final) <= most_share_left;
+}
+
+bool worth_a_name(double before, double after, double tolerance) {
+  constexpr double least_fall = 0.9;
+  return before - after > tolerance && after <= least_fall * before;
+}
+
+bool is_decided(const Evidence& e) {
+  constexpr double least_dof = 5.0;
+  if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt) return false;
+  const auto alone = [](const std::vector<std::string>& members) { return members.size() == 1; };
+  if (!std::all_of(e.classes.begin(), e.classes.end(), alone)) return false;
+  for (std::size_t k = 1; k < e.left_out.size(); ++k) {
+    if (!(e.left_out[k] < e.left_out[k - 1])) return false;
+  }
+  return true;
+}
+
 }  // namespace snare::identification

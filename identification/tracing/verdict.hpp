@@ -54,4 +54,24 @@ inline constexpr double usual_tolerance = 0.01;
 /// Share of what `base` leaves beside the noise that `final` still leaves, as mean squares; in [0, 1].
 [[nodiscard]] double share_left(const Remainder& base, const Remainder& final);
 
+/// Whether what is left is small enough for a partial answer: both limits above. peak: largest force [N].
+[[nodiscard]] bool is_partial(const Remainder& base, const Remainder& final, double peak);
+
+/// Whether an effect lowers the error enough to be named, where a size is asked for: by more than a tenth and by more than
+/// the tolerance. before, after, tolerance [N].
+[[nodiscard]] bool worth_a_name(double before, double after, double tolerance);
+
+/// What speaks for an answer being the only one.
+struct Evidence {
+  double dof = 0.0;                                 ///< of the final fit [-]
+  std::vector<std::vector<std::string>> classes{};  ///< one a selected effect
+  bool cause_outside = false;                       ///< one that the catalogue does not have would do as well
+  bool one_condition = false;                       ///< of readings
+  bool zero_in_doubt = false;                       ///< of the travel
+  /// Errors of conditions left out [N]: of the base model, then with one selected effect after the other.
+  std::vector<double> left_out{};
+};
+/// Classes of one member, five degrees of freedom, and conditions left out that every effect predicts better.
+[[nodiscard]] bool is_decided(const Evidence& evidence);
+
 }  // namespace snare::identification

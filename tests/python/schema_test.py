@@ -24,8 +24,8 @@ EVERY_KEY = {"scenario": (["simulate"], ["scenario"]), "arm": (["arm", "show"], 
              "record": (["fit"], ["record"]), "sweep": (["sweep"], ["sweep", "sweep_grid", "sweep_table"]), "benchmark": (["benchmark"], ["benchmark"])}
 KINDS = [*READERS, *EVERY_KEY]
 # Keys of a wire and its mounts that motion refuses, which its readers know.
-REFUSED = {"natural_curvature_1_m", "yield_stress_MPa", "hardening_ratio",
-           "slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", "support_radius_mm"}
+REFUSED = {"natural_curvature_1_m", "strand_slip_breadth", "yield_stress_MPa", "hardening_ratio",
+           "slip_tension_N", "slip", "slip_at", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", "support_radius_mm"}
 
 
 def schema_of(kind):

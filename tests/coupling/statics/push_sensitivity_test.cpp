@@ -1,6 +1,7 @@
 #include "coupling/statics/push_solver.hpp"
 #include "tests/support/declared_wire.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -124,6 +125,38 @@ TEST(PushSensitivity, GoAlongWithASlippingMount) {
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
   all.push_back({"slip", {[](PushProblem& t, double a) { *t.mount.slip_tension += a; }, 1e-2, 0.0}, 0.1});
+  expect_derivatives(test, all, 1e-3);
+}
+
+TEST(PushSensitivity, GoAlongWithAnyMountThatSlips) {
+  for (const wire::MountSlip kind : {wire::MountSlip::feeds, wire::MountSlip::slides}) {
+    for (const wire::SlipPlace place : {wire::SlipPlace::left, wire::SlipPlace::right, wire::SlipPlace::both}) {
+      SCOPED_TRACE(fmt::format("kind {} place {}", static_cast<int>(kind), static_cast<int>(place)));
+      PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
+      test.mount.slip_tension = 36.0;  // above the compression of the loose wire
+      test.mount.slip = kind;
+      test.mount.slip_at = place;
+      test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
+      std::vector<Number> all = numbers(test);
+      all.push_back({"slip", {[](PushProblem& t, double a) { *t.mount.slip_tension += a; }, 1e-2, 0.0}, 0.1});
+      expect_derivatives(test, all, 1e-3);
+    }
+  }
+}
+
+TEST(PushSensitivity, GoAlongWithStrandsThatSlideOneAfterTheOther) {
+  PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
+  test.wire.length = 175.5 * mm;
+  test.wire.strand_friction = wire::StrandFriction{0.02, 0.8, 1.5};
+  test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
+  std::vector<Number> all = numbers(test);
+  all.push_back(
+      {"extra", {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
+  all.push_back(
+      {"slip", {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
+  all.push_back({"breadth", {[](PushProblem& t, double a) { t.wire.strand_friction->breadth += a; }, 1e-5, 0.0}, 1e-4});
+  // Vertex by vertex the sliders switch between two curves of the differences.
+  for (Number& n : all) n.difference *= 0.1;
   expect_derivatives(test, all, 1e-3);
 }
 

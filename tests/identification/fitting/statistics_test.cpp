@@ -183,6 +183,23 @@ TEST(Noise, OfReplicatesWithPeakTravelsApart) {
   EXPECT_GE(near, 26);                  // two of three: 1.1 deviations and their scatter over 40 sets
 }
 
+// Of six readings each too, where the information of the readings allows a fifth in two of three sets.
+TEST(Noise, OfReplicatesWithFewReadings) {
+  double mean = 0.0;
+  int near = 0;
+  constexpr int sets = 60;
+  for (unsigned seed = 1; seed <= sets; ++seed) {
+    const Replicates r = replicates_of(seed, 0.3, 0.05, 6);
+    const Noise noise = noise_from_residuals(r.series, r.residuals, r.computed);
+    ASSERT_EQ(noise.source, "replicates");
+    const double ratio = noise.sigma[0] / std::hypot(0.3, 0.05);
+    mean += ratio / sets;
+    near += std::abs(ratio - 1.0) < 0.2 ? 1 : 0;
+  }
+  EXPECT_NEAR(mean, 1.0, 0.1);
+  EXPECT_GE(near, 33);
+}
+
 TEST(Noise, OfReplicatesWithoutASmoothPartIsWhite) {
   const Replicates r = replicates_of(3, 0.0, 0.05, 60);
   const Noise noise = noise_from_residuals(r.series, r.residuals, r.computed);

@@ -151,5 +151,76 @@ TEST(Verdict, StiffnessesBeyondTheSolidSectionAreFindings) {
   EXPECT_TRUE(beyond_construction(model, {n}).empty());
 }
 
+// Two percent of what the base model leaves, and three of the largest force with 95 % confidence: both.
+TEST(Verdict, APartialAnswerLeavesLittle) {
+  const Remainder base{.rmse = 10.0, .upper = 11.0};
+  EXPECT_TRUE(is_partial(base, {.rmse = 1.4, .upper = 2.9}, 100.0));   // 0.0196 of the squares
+  EXPECT_FALSE(is_partial(base, {.rmse = 1.4, .upper = 3.1}, 100.0));  // 3.1 % of the force
+  EXPECT_FALSE(is_partial(base, {.rmse = 1.5, .upper = 2.9}, 100.0));  // 0.0225
+}
+
+TEST(Verdict, AnEffectThatLowersTheErrorByLittleHasNoName) {
+  EXPECT_TRUE(worth_a_name(1.0, 0.85, 0.1));
+  EXPECT_FALSE(worth_a_name(1.0, 0.95, 0.01));  // less than a tenth
+  EXPECT_FALSE(worth_a_name(1.0, 0.85, 0.2));   // less than the tolerance
+}
+
+TEST(Verdict, IsDecidedByAllThatIsAsked) {
+  const Evidence good{.dof = 5.0, .classes = {{"span"}}, .left_out = {2.0, 1.0}};
+  EXPECT_TRUE(is_decided(good));
+  Evidence e = good;
+  e.dof = 4.0;
+  EXPECT_FALSE(is_decided(e));
+  e = good;
+  e.classes = {{"span", "wire_length"}};
+  EXPECT_FALSE(is_decided(e));
+  e = good;
+  e.left_out = {1.0, 1.0};
+  EXPECT_FALSE(is_decided(e));
+  e = good;
+  e.classes.push_back({"gravity"});
+  e.left_out = {2.0, 1.0, 1.5};  // the second one does not help
+  EXPECT_FALSE(is_decided(e));
+  for (bool Evidence::*what : {&Evidence::cause_outside, &Evidence::one_condition, &Evidence::zero_in_doubt}) {
+    e = good;
+    e.*what = true;
+    EXPECT_FALSE(is_decided(e));
+  }
+}
+
+// Readings that begin late, their zero off by 0.1 mm: the stiffnesses take it up, the error is below what has a name, and
+// the zero is still found.
+TEST(Verdict, AZeroIsLookedForWhereTheTouchIsNotSeen) {
+  for (const double zero : {0.0, 0.1 * mm}) {
+    Experiment e = computed(40, {65.0 * mm, 90.0 * mm});
+    add_noise(e, 0.02, 3);
+    for (Series& s : e.series) {
+      for (double& d : s.readings->displacement) d += zero;
+      s.test.travel = s.readings->displacement;
+      s.test.wire.bending_stiffness_override = 1.05 * s.test.wire.bending_stiffness();
+    }
+    e.model_tolerance = 0.02;
+    TraceOptions options;
+    options.intervals = false;
+    const Trace t = trace(e, options);
+    ASSERT_EQ(t.kind, VerdictKind::nothing_missing) << t.base.rmse;
+    ASSERT_TRUE(t.zero.has_value());
+    EXPECT_NEAR(t.zero->offset, zero / mm, 0.02);
+    EXPECT_EQ(t.zero->doubtful, zero > 0.0) << t.zero->p << " " << t.zero->without << " " << t.zero->with;
+    if (zero > 0.0) EXPECT_FALSE(t.decided);
+  }
+}
+
+// Beside a fitted zero no other is asked for.
+TEST(Verdict, NoZeroIsLookedForBesideAFittedOne) {
+  const Experiment e = computed(40, {65.0 * mm});
+  Fitted f = fitted(e, 0.05);
+  EXPECT_TRUE(check_zero(f.model, f.data, f.fit).has_value());
+  f.fit = fit(
+      f.model, f.data,
+      {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("reading.displacement_offset_mm"), 0.0}});
+  EXPECT_FALSE(check_zero(f.model, f.data, f.fit).has_value());
+}
+
 }  // namespace
 }  // namespace snare::identification
