@@ -99,6 +99,20 @@ json profiles_json(const MotionTrace& trace) {
   return all;
 }
 
+json families_json(const MotionTrace& trace) {
+  json all = json::array();
+  for (const identification::ModelFamily& f : trace.families) {
+    json numbers = json::object();
+    for (const TracedNumber& n : f.numbers) numbers[n.key] = number_json(n);
+    all.push_back({{"name", f.name},
+                   {"chi2_dof", f.failure.empty() ? finite(f.chi2_dof) : json()},
+                   {"parameters", numbers},
+                   {"simulations", f.simulations},
+                   {"failure", f.failure}});
+  }
+  return all;
+}
+
 json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
   const identification::MotionEffect& effect = trace.effects[c.score.effect];
   json value = json::object();
@@ -131,6 +145,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
           {"profiles", profiles_json(trace)},
+          {"families", families_json(trace)},
           {"simulations",
            {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
 }

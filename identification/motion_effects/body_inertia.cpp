@@ -17,7 +17,7 @@ std::vector<MotionEffect> body_inertia_effects(const MotionModel& model) {
     factor.lower = 0.01;
     factor.upper = 100.0;
     factor.unit = "";
-    factor.overrides = [moments](double f, const DeclaredScenario& record) {
+    factor.overrides = [moments](double f, const StandingNumbers& record) {
       std::vector<base::Override> overrides;
       for (const auto& [moment, declared] : moments)
         overrides.push_back({moment, exact_text(f * record.number(moment).value_or(declared))});

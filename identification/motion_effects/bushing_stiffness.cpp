@@ -10,7 +10,7 @@ MotionNumber compliance_of(const std::string& key, const std::string& name, cons
   const double null = 1.0 / stiffness;
   MotionNumber number = number_at(name, null, 0.02 * null);
   number.unit = unit;
-  number.overrides = [key, stiffness, null](double value, const DeclaredScenario& record) {
+  number.overrides = [key, stiffness, null](double value, const StandingNumbers& record) {
     return std::vector<base::Override>{{key, exact_text(record.number(key).value_or(stiffness) * (null / value))}};
   };
   number.lower = 0.01 * null;

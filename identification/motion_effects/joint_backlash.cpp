@@ -12,7 +12,7 @@ std::vector<MotionEffect> joint_backlash_effects(const MotionModel& model) {
     MotionNumber number = number_at(key, declared, joint.use.slides ? 1e-3 : 0.01);
     number.lower = declared;
     // Without play the law is the linear one: the backlash law has no gap of zero.
-    number.overrides = [key, law = joint.prefix + "law"](double gap, const DeclaredScenario&) {
+    number.overrides = [key, law = joint.prefix + "law"](double gap, const StandingNumbers&) {
       if (!(gap > 0.0)) return std::vector<base::Override>{};
       return std::vector<base::Override>{{law, "backlash"}, {key, exact_text(gap)}};
     };

@@ -9,6 +9,7 @@ namespace snare::identification {
   EFFECT(joint_viscous_friction)     \
   EFFECT(joint_viscous_asymmetry)    \
   EFFECT(joint_quadratic_drag)       \
+  EFFECT(joint_breakaway)            \
   EFFECT(joint_backlash)             \
   EFFECT(joint_stiffness)            \
   EFFECT(joint_damping)              \

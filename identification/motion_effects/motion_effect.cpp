@@ -11,7 +11,7 @@ constexpr double least_share = 0.2, most_share = 5.0;  // of what is declared
 
 void declare_other(MotionEffect& effect, const std::string& key, double declared) {
   MotionNumber number = number_at(key, declared, 0.02 * declared);
-  number.overrides = [key, declared](double value, const DeclaredScenario& record) {
+  number.overrides = [key, declared](double value, const StandingNumbers& record) {
     const double there = record.number(key).value_or(declared) * (value / declared);
     return std::vector<base::Override>{{key, exact_text(there)}};
   };
@@ -37,7 +37,7 @@ std::vector<JointPlace> joint_places(const MotionModel& model) {
 MotionNumber number_at(const std::string& key, double null, double scale) {
   MotionNumber number = keyed_number(key, null);
   number.scale = scale;
-  number.overrides = [key, null](double value, const DeclaredScenario& record) {
+  number.overrides = [key, null](double value, const StandingNumbers& record) {
     return std::vector<base::Override>{{key, exact_text(value + (record.number(key).value_or(null) - null))}};
   };
   return number;

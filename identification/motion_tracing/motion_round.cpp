@@ -17,14 +17,15 @@ constexpr std::size_t most_refits = 5;  // of effects that come out within their
 constexpr std::size_t most_tried =
     15;  // with those that do not: what is missing may be hidden behind many that imitate it in part
 constexpr double promising = 0.3;     // of the best promise: what falls less is not refitted
+constexpr double good_part = 0.2;     // of the motion, as roots of sums of squares: a fit that leaves it is out of step
 constexpr double least_fall = 1e-4;   // share of the misfit below which a refit has not moved
-constexpr int enough_iterations = 8;  // to compare effects; the one that is named is fitted to the end
+constexpr int enough_iterations = 12;  // to compare effects; the one that is named is fitted to the end
 constexpr double apart = 2.0;         // deviates by which the misfits of two refits must differ to be told apart
 
 /// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
 MotionFit refit(const RoundInput& in, const MotionScore& score) {
   const MotionEffect& effect = in.effects[score.effect];
-  const auto from = [&](const std::function<double(std::size_t)>& value) {
+  const auto from = [&](const std::function<double(std::size_t)>& value, bool at_null) {
     std::vector<MotionSetting> start = in.current.settings;
     for (std::size_t k = 0; k < score.numbers.size(); ++k) {
       MotionNumber number = effect.numbers[score.numbers[k]];
@@ -34,12 +35,17 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
     MotionFitOptions options;
     options.progress = in.progress;
     options.max_iterations = enough_iterations;
+    options.derivatives = FitDerivatives::search;
+    if (at_null) {  // the derivatives are known there: those of the fit and of the score
+      options.first_jacobian.resize(in.data.rows, in.current.jacobian.cols() + score.whole.cols());
+      options.first_jacobian << in.current.jacobian, score.whole;
+    }
     return fit_motion(in.model, in.data, start, options);
   };
-  MotionFit fit = from([&](std::size_t k) { return effect.numbers[score.numbers[k]].declared; });
+  MotionFit fit = from([&](std::size_t k) { return effect.numbers[score.numbers[k]].declared; }, true);
   if (fit.chi2 < (1.0 - least_fall) * in.current.chi2 || in.model.stopped()) return fit;
   // Nothing shows next to null: begin where the score points.
-  MotionFit again = from([&](std::size_t k) { return score.start[k]; });
+  MotionFit again = from([&](std::size_t k) { return score.start[k]; }, false);
   return again.chi2 < fit.chi2 ? again : fit;
 }
 
@@ -117,6 +123,16 @@ std::string objection(const RoundInput& in, const MotionCandidate& c, const Moti
 
 }  // namespace
 
+bool out_of_step(const MotionData& data, const MotionFit& fit) {
+  const Eigen::VectorXd readings = data.signal(fit.predictions) + fit.residual;
+  double moves = 0.0;
+  for (const ResidualPiece& p : data.pieces) {
+    const auto own = readings.segment(p.begin, p.size).array();
+    moves += (own - own.mean()).square().sum();
+  }
+  return fit.residual.squaredNorm() > good_part * good_part * moves;
+}
+
 RoundResult motion_round(const RoundInput& in) {
   RoundResult result;
   std::vector<MotionEffect> asked;
@@ -147,9 +163,10 @@ RoundResult motion_round(const RoundInput& in) {
   const double present = bic(in.data, scores.noise, in.current);
   const double promise = candidates.front().score.fall;
   std::size_t plausible = 0;
-  for (std::size_t k = 0; k < std::min(candidates.size(), most_tried) && plausible < most_refits; ++k) {
+  const bool all = out_of_step(in.data, in.current);
+  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {
     MotionCandidate& c = candidates[k];
-    if (!significant(c) || (plausible > 0 && c.score.fall < promising * promise)) break;
+    if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
     if (in.model.stopped()) return result;
     const MotionFit& fit = fits[k].fit = refit(in, c.score);
     if (fit.residual.size() == 0 || fit.covariance.size() == 0) continue;
@@ -229,11 +246,12 @@ RoundResult motion_round(const RoundInput& in) {
               fits.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
   result.added = candidates.front().score.effect;
   result.better = std::move(fits.front().fit);
-  if (!result.better.report.usable() && !in.model.stopped()) {
+  if (!in.model.stopped()) {  // and with the derivatives of its place
     MotionFitOptions to_the_end;
     to_the_end.progress = in.progress;
+    to_the_end.first_jacobian = result.better.jacobian;
     MotionFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
-    if (fit.chi2 < result.better.chi2) result.better = std::move(fit);
+    if (fit.chi2 <= result.better.chi2) result.better = std::move(fit);
   }
   return result;
 }

@@ -34,7 +34,12 @@ struct RoundResult {
   MotionFit better;
 };
 
-/// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any.    theory.md (I.22)
+/// Whether what a fit leaves is a good part of the motion itself: predictions that have fallen out of step with the readings, and derivatives
+/// there that lead to no better ones.                                                             theory.md (I.29)
+[[nodiscard]] bool out_of_step(const MotionData& data, const MotionFit& fit);
+
+/// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any: theory.md (I.22). Of a
+/// fit that is out of step all effects are refitted that are significant: what their scores promise is little then.
 [[nodiscard]] RoundResult motion_round(const RoundInput& input);
 
 }  // namespace snare::identification

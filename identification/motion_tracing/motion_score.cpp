@@ -74,12 +74,25 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
   }
 }
 
+/// Derivatives by the fitted numbers but those that stand at a bound against which the readings push them: what such a number would take beyond it is
+/// there for effects to take.
+Eigen::MatrixXd free_to_move(const MotionFit& fit) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
+    const MotionSetting& s = fit.settings[static_cast<std::size_t>(k)];
+    const double pull = fit.jacobian.col(k).dot(fit.residual);  // > 0: a larger number leaves less
+    const bool held = (s.value <= s.number.lower && pull <= 0.0) || (s.value >= s.number.upper && pull >= 0.0);
+    if (!held) moving.push_back(k);
+  }
+  return fit.jacobian(Eigen::all, moving);
+}
+
 /// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do. Of a vector the components that
 /// change the records a hundred times less than another one are left out: at sizes that show them the motion is another.
 void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, MotionScore& score) {
   constexpr double absorbed = 1e-3;  // of the change: below it others do the same
   constexpr double hardly = 0.01;
-  std::vector<Eigen::VectorXd> kept, directions;
+  std::vector<Eigen::VectorXd> kept, whole, directions;
   double most = 0.0;
   for (const Trial* t : seen) most = std::max(most, t->column.norm() / t->scale);
   for (const Trial* t : seen) {
@@ -90,11 +103,16 @@ void keep_independent(const Projection& projection, const std::vector<const Tria
     if (left.norm() < absorbed * t->column.norm()) continue;
     directions.push_back(left.normalized());
     kept.push_back(own);
+    whole.push_back(t->column);
     score.numbers.push_back(t->number);
     score.scale.push_back(t->scale);
   }
   score.columns.resize(kept.empty() ? 0 : kept.front().size(), static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t k = 0; k < kept.size(); ++k) score.columns.col(static_cast<Eigen::Index>(k)) = kept[k];
+  score.whole.resize(score.columns.rows(), score.columns.cols());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    score.columns.col(static_cast<Eigen::Index>(k)) = kept[k];
+    score.whole.col(static_cast<Eigen::Index>(k)) = whole[k];
+  }
 }
 
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
@@ -147,7 +165,8 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   for (int pass = 0; pass < most_passes && !model.stopped(); ++pass) try_sizes(model, data, fit, all, effects, trials);
 
   MotionScores result;
-  const Projection projection(fit.jacobian);
+  const Eigen::MatrixXd fitted = free_to_move(fit);
+  const Projection projection(fitted);
   std::vector<Eigen::VectorXd> usable;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     MotionScore score;
@@ -175,10 +194,10 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
     result.scores.push_back(std::move(score));
   }
   // Noise of what no effect can take away.
-  Eigen::MatrixXd everything(data.rows, fit.jacobian.cols() + static_cast<Eigen::Index>(usable.size()));
-  if (fit.jacobian.cols() > 0) everything.leftCols(fit.jacobian.cols()) = fit.jacobian;
+  Eigen::MatrixXd everything(data.rows, fitted.cols() + static_cast<Eigen::Index>(usable.size()));
+  if (fitted.cols() > 0) everything.leftCols(fitted.cols()) = fitted;
   for (std::size_t k = 0; k < usable.size(); ++k)
-    everything.col(fit.jacobian.cols() + static_cast<Eigen::Index>(k)) = usable[k];
+    everything.col(fitted.cols() + static_cast<Eigen::Index>(k)) = usable[k];
   const Eigen::Index columns = std::min(everything.cols(), data.rows / 2);  // each takes a degree of freedom
   const Eigen::VectorXd left = Projection(everything).without(fit.residual);
   result.noise = coloured_noise(data, left, columns);

@@ -24,7 +24,8 @@ struct MotionScore {
   std::vector<double> start;  ///< of these numbers, for a refit
   std::vector<double> scale;  ///< at which they were tried
   std::optional<double> detectable;  ///< size of the first number that would be seen in nine of ten cases, in its unit
-  Eigen::MatrixXd columns;           ///< of the signal by the numbers over their scales, fitted columns out
+  Eigen::MatrixXd whole;             ///< of the signal by the numbers over their scales
+  Eigen::MatrixXd columns;           ///< the same, fitted columns out
 };
 
 /// What the tests of one round rest on.

@@ -64,6 +64,15 @@ struct MotionRound {
   std::string added, reason;
 };
 
+/// What another kind of model, by other keys, takes the free numbers for in the base fit.
+struct ModelFamily {
+  std::string name;
+  std::vector<TracedNumber> numbers;
+  double chi2_dof = 0.0;  ///< against the noise
+  long simulations = 0;
+  std::string failure;  ///< why there are no numbers; empty: there are
+};
+
 /// All that the tracing of a scenario has found, as trace.json tells it.
 struct MotionTrace {
   std::vector<MotionEffect> effects;
@@ -82,6 +91,7 @@ struct MotionTrace {
   std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise
   std::vector<Leftover> leftovers;
   std::vector<Profile> profiles;      ///< of the numbers for which they are asked, in the final model
+  std::vector<ModelFamily> families;  ///< of the base fit, as the file lists them
   std::vector<std::string> warnings;  ///< what of this is doubtful, a sentence each
   std::string next_measurement;
   std::vector<std::string> next_separates;

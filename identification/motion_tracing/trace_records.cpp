@@ -1,6 +1,8 @@
 #include "identification/motion_tracing/trace_records.hpp"
 
 #include "identification/fitting/statistics.hpp"
+#include "identification/motion_tracing/model_family.hpp"
+#include "identification/motion_tracing/motion_beginnings.hpp"
 #include "identification/motion_tracing/motion_round.hpp"
 #include "identification/motion_tracing/motion_stage.hpp"
 
@@ -31,7 +33,7 @@ class Tracer {
     weigh(first_scales(set_, fitted_));
     if (!go_on("declared model")) return end("interrupted before the declared model was simulated");
     MotionFitOptions look;
-    look.derivatives = false;
+    look.derivatives = FitDerivatives::last;
     look.progress = asked();
     // The numbers of every record for itself are no part of the model: also the declared one has its own.
     std::vector<MotionSetting> own, shared;
@@ -41,6 +43,7 @@ class Tracer {
     if (!declared.report.usable()) return end(declared.report.message);
     if (!go_on("base fit")) return end("interrupted before the base fit was finished");
     current_ = base_fit();
+    base_settings_ = current_.settings;
     trace_.fit_simulations = current_.simulations;
     trace_.fit_iterations = current_.iterations;
     if (!current_.report.usable()) return end(current_.report.message);
@@ -53,8 +56,10 @@ class Tracer {
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
     if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
     profile();
+    families();
     warn();
     trace_.simulations = model_.simulations();
+    for (const ModelFamily& f : trace_.families) trace_.simulations += f.simulations;
     trace_.interrupted = stop_;
     return std::move(trace_);
   }
@@ -97,6 +102,13 @@ class Tracer {
                                                 (upper ? p.points.back() : p.points.front()).value, p.unit));
     }
   }
+  /// What other kinds of models take the numbers of the base for.
+  void families() {
+    if (set_.families.empty() || !go_on("families")) return;
+    trace_.families = fit_families(set_, scales_, base_settings_, asked());
+    for (std::string& told : family_differences(trace_.base.numbers, trace_.families))
+      trace_.warnings.push_back(std::move(told));
+  }
   /// Records that are too short, and numbers of the file that they do not show.
   void warn() {
     const std::optional<SlowMode>& slow = model_.slowest();
@@ -130,6 +142,7 @@ class Tracer {
     options_.reached(part);
   }
   void weigh(const ChannelScales& scales) {
+    scales_ = scales;
     data_ = motion_data(set_, fitted_, scales);
     heldout_data_ = motion_data(set_, heldout_, scales);
   }
@@ -145,8 +158,15 @@ class Tracer {
   MotionFit base_fit() {
     MotionFitOptions options;
     options.method = set_.method;
+    options.simplex_change = set_.simplex_change;
     options.progress = asked();
     MotionFit fit = fit_motion(model_, data_, model_.free(fitted_), options);
+    if (fit.report.usable() && !fit.settings.empty() && options.method == FitMethod::gauss_newton &&
+        out_of_step(data_, fit) && !stop_) {
+      MotionFit grown = fit_from_beginnings(model_, data_, model_.free(fitted_), options);
+      grown.simulations += fit.simulations;
+      if (grown.report.usable() && grown.chi2 < fit.chi2) fit = std::move(grown);
+    }
     std::map<std::string, bool> undeclared;
     for (const ResidualPiece& p : data_.pieces) {
       const RecordChannel& c = set_.records[p.record].channels[p.channel];
@@ -176,17 +196,21 @@ class Tracer {
   std::optional<MotionFit> on_heldout(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
     if (heldout_.empty()) return std::nullopt;
     MotionFitOptions options;
-    options.derivatives = false;
+    options.derivatives = FitDerivatives::last;
     options.progress = asked();
     for (const MotionSetting& s : together(fit.settings, fixed))
       if (!s.number.record) options.fixed.push_back(s);
     // From where the first model has led them: the same starts for all others.
+    options.first_jacobian = heldout_jacobian_;
     if (heldout_starts_) return fit_motion(model_, heldout_data_, *heldout_starts_, options);
     std::vector<MotionSetting> own;
     for (const MotionSetting& s : model_.free(heldout_))
       if (s.number.record) own.push_back(s);
     MotionFit fitted = fit_motion(model_, heldout_data_, own, options);
-    if (fitted.report.usable()) heldout_starts_ = fitted.settings;
+    if (fitted.report.usable()) {
+      heldout_starts_ = fitted.settings;
+      heldout_jacobian_ = fitted.jacobian;
+    }
     return fitted;
   }
 
@@ -413,6 +437,12 @@ class Tracer {
         };
       }
       RoundResult round = motion_round(input);
+      if (!round.added && !stop_ && out_of_step(data_, current_)) {
+        // From the declared numbers: those fitted have gone astray with the records.
+        std::vector<MotionSetting> start = current_.settings;
+        for (MotionSetting& s : start) s.value = s.number.declared;
+        if (RoundResult begun = round_from_beginnings(input, start); begun.added) round = std::move(begun);
+      }
       if (stop_) return;
       trace_.rounds.push_back(round.round);
       if (!round.added) break;
@@ -482,8 +512,11 @@ class Tracer {
   bool stop_ = false;
   MotionModel model_;
   std::vector<std::size_t> fitted_, heldout_;
+  ChannelScales scales_;
   MotionData data_, heldout_data_;
+  std::vector<MotionSetting> base_settings_;
   std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
+  Eigen::MatrixXd heldout_jacobian_;  // there
   MotionFit current_;
   std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
   Eigen::VectorXd heldout_residual_;    // of the last stage

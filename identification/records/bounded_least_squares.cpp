@@ -13,8 +13,29 @@ namespace {
 
 // Numbers that hang together need small dampings: along their valley a larger one takes steps of nothing.
 constexpr double least_damping = 1e-12, first_damping = 1e-9;
+constexpr double most_damping = 1e6;
+constexpr double another = 0.3;  // of a step that failed, in what it promises to change: what differs less fails as well
 constexpr int most_tries = 12;
+constexpr double next_to_minimum = 0.1;  // of the fall by chance: a third of a standard error, and a step leads nearer
 constexpr int small_falls_to_end = 2;  // one alone may be a step that was held back
+constexpr double poor_fall = 0.5;      // of what was promised: the derivatives are no longer those of this place
+
+/// Broyden's correction, row by row: the least change, in columns over their norms, with which J tells what the step has shown. What is nought stays
+/// so: a reading that does not hang on a number. A row is left as it is where hardly anything moved on which it hangs.      theory.md (I.28)
+void correct(Eigen::MatrixXd& J, const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
+  constexpr double hardly = 1e-4;
+  const Eigen::VectorXd weighed = J.colwise().squaredNorm().transpose().cwiseProduct(step);
+  const double size = weighed.dot(step);
+  const Eigen::VectorXd missing = change - J * step;
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    double own = 0.0;
+    for (Eigen::Index k = 0; k < J.cols(); ++k)
+      if (J(i, k) != 0.0) own += weighed[k] * step[k];
+    if (!(own > hardly * size)) continue;
+    for (Eigen::Index k = 0; k < J.cols(); ++k)
+      if (J(i, k) != 0.0) J(i, k) += missing[i] * weighed[k] / own;
+  }
+}
 
 /// Step that lowers |r + J s|^2 + mu |D s|^2 with s on the bounds where it would cross them; `held` numbers do not move.
 Eigen::VectorXd step_within(const BoundedProblem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& r,
@@ -67,6 +88,8 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
   result.chi2 = r.squaredNorm();
   double damping = first_damping;
   int small_falls = 0;
+  Eigen::MatrixXd& J = result.jacobian = problem.first_jacobian;
+  bool asked = false;  // for the derivatives here, which are then those of this place
   while (true) {
     if (problem.progress && !problem.progress(result.iterations, result.chi2)) {
       result.end = BoundedEnd::stopped;
@@ -76,8 +99,10 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
       result.end = BoundedEnd::iteration_limit;
       return result;
     }
-    ++result.iterations;
-    const Eigen::MatrixXd J = problem.residual_jacobian(result.x);
+    if (J.cols() == 0) {
+      J = problem.residual_jacobian(result.x);
+      asked = true;
+    }
     const Eigen::VectorXd slope = J.transpose() * r;
     std::vector<bool> held;
     for (Eigen::Index k = 0; k < slope.size(); ++k)
@@ -85,24 +110,50 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
                      (result.x[k] >= problem.upper[k] && slope[k] <= 0.0) || !(J.col(k).norm() > 0.0));
     // What a whole step promises: at a minimum no simulation is spent on falls that are below those that end the search.
     const Eigen::VectorXd whole = step_within(problem, result.x, r, J, held, least_damping);
-    if (result.chi2 - (r + J * whole).squaredNorm() <= tolerance * result.chi2) return result;
-    double fall = 0.0;
-    for (int attempt = 0; attempt < most_tries && !(fall > 0.0); ++attempt) {
-      const Eigen::VectorXd there = result.x + step_within(problem, result.x, r, J, held, damping);
-      Eigen::VectorXd next = problem.residual(there.cwiseMax(problem.lower).cwiseMin(problem.upper));
+    const double whole_fall = result.chi2 - (r + J * whole).squaredNorm();
+    if (whole_fall <= tolerance * result.chi2) {
+      if (asked) return result;
+      J.resize(0, 0);
+      continue;
+    }
+    const bool last_step = asked && whole_fall <= next_to_minimum * problem.by_chance * result.chi2;
+    ++result.iterations;
+    double fall = 0.0, promised = 0.0;
+    const Eigen::VectorXd norms = J.colwise().norm().transpose();
+    Eigen::VectorXd failed = Eigen::VectorXd::Zero(norms.size());
+    for (int attempt = 0; attempt < (asked ? most_tries : 1) && !(fall > 0.0); ++attempt) {
+      Eigen::VectorXd there, step;
+      for (; damping <= most_damping; damping *= 10.0) {  // to a step that is another than the one that failed
+        const Eigen::VectorXd moved = result.x + step_within(problem, result.x, r, J, held, damping);
+        there = moved.cwiseMax(problem.lower).cwiseMin(problem.upper);
+        step = there - result.x;
+        if (attempt == 0 || norms.cwiseProduct(step - failed).norm() > another * norms.cwiseProduct(failed).norm()) break;
+      }
+      promised = result.chi2 - (r + J * step).squaredNorm();
+      if (promised <= tolerance * result.chi2) break;  // worth no simulation
+      Eigen::VectorXd next = problem.residual(there);
       const double chi2 = next.size() == 0 ? std::numeric_limits<double>::infinity() : next.squaredNorm();
       if (!(chi2 < result.chi2)) {
+        failed = step;
         damping *= 10.0;
         continue;
       }
       fall = result.chi2 - chi2;
       damping = std::max(0.1 * damping, least_damping);
-      result.x = there.cwiseMax(problem.lower).cwiseMin(problem.upper);
+      correct(J, step, next - r);
+      result.x = there;
       r = std::move(next);
       result.chi2 = chi2;
     }
-    small_falls = fall > tolerance * result.chi2 ? 0 : small_falls + 1;
-    if (!(fall > 0.0) || small_falls == small_falls_to_end) return result;
+    if (fall > 0.0) {
+      small_falls = fall > tolerance * result.chi2 || !asked ? 0 : small_falls + 1;
+      if (last_step || small_falls == small_falls_to_end) return result;
+      if (fall < poor_fall * promised || fall <= tolerance * result.chi2) J.resize(0, 0);
+      asked = false;
+      continue;
+    }
+    if (asked) return result;
+    J.resize(0, 0);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "scenario/composed_scenario.hpp"
 #include "scenario/include.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -61,6 +62,28 @@ const TomlNode* DeclaredScenario::find(const std::string& key) const {
 std::optional<double> DeclaredScenario::number(const std::string& key) const {
   const TomlNode* found = find(key);
   return found != nullptr && found->kind == TomlNode::Kind::number ? std::optional(found->number) : std::nullopt;
+}
+
+std::string DeclaredScenario::key_of(const std::string& key) const {
+  constexpr std::string_view joint = "].joint.";
+  const std::size_t at = key.find(joint), dot = key.find_last_of('.');
+  constexpr std::string_view list = "arms[";
+  if (!key.starts_with(list) || at == std::string::npos || dot < at + joint.size()) return key;
+  const auto arm = arms.find(key.substr(list.size(), at - list.size()));
+  if (arm == arms.end() || follow(&arm->second, std::string_view(key).substr(at + 2)) != nullptr) return key;
+  return key.substr(0, at + 2) + "every_joint" + key.substr(dot);
+}
+
+std::optional<double> StandingNumbers::number(const std::string& key) const {
+  for (const std::string& one : {key, declared.key_of(key)}) {
+    const auto last = std::find_if(set.rbegin(), set.rend(), [&](const base::Override& o) { return o.key == one; });
+    double value = 0.0;
+    if (last == set.rend()) continue;
+    const char* const end = last->value.data() + last->value.size();
+    const auto [stop, error] = std::from_chars(last->value.data(), end, value);
+    if (error == std::errc() && stop == end) return value;
+  }
+  return declared.number(key);
 }
 
 std::optional<std::string> DeclaredScenario::text(const std::string& key) const {

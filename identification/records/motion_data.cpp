@@ -14,10 +14,10 @@ Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPredicti
                                              data.records.begin());
     const RecordPrediction& p = predictions[at];
     if (!p.usable()) return {};
-    all.segment(piece.begin, piece.size) = p.channels[piece.channel] / piece.scale;
+    all.segment(piece.begin, piece.size) = p.channels[piece.channel].head(piece.size) / piece.scale;
     if (residual)
       all.segment(piece.begin, piece.size) =
-          data.set->records[piece.record].channels[piece.channel].values / piece.scale -
+          data.set->records[piece.record].channels[piece.channel].values.head(piece.size) / piece.scale -
           all.segment(piece.begin, piece.size);
   }
   return all;
@@ -52,6 +52,18 @@ MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& rec
     }
   }
   return data;
+}
+
+std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen::Index fewest) {
+  MotionData part = data;
+  part.rows = 0;
+  for (ResidualPiece& piece : part.pieces) {
+    piece.begin = part.rows;
+    piece.size = static_cast<Eigen::Index>(std::ceil(share * static_cast<double>(piece.size)));
+    if (piece.size < fewest) return std::nullopt;
+    part.rows += piece.size;
+  }
+  return part;
 }
 
 ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records) {

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace snare::identification {
 /// Standard deviations by which the channels are weighed, by sensor.
 using ChannelScales = std::map<std::string, double>;
 
-/// One stretch of a stacked residual: a fitted channel of a record.
+/// One stretch of a stacked residual: a fitted channel of a record, from its first reading on.
 struct ResidualPiece {
   std::size_t record = 0, channel = 0;  ///< indices in the set
   Eigen::Index begin = 0, size = 0;
@@ -37,6 +38,9 @@ struct MotionData {
 [[nodiscard]] MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records,
                                      const ChannelScales& scales);
 
+/// The same with the first readings of every piece only, a share > 0 of them [-]; nothing where a piece has fewer than `fewest` of them.
+[[nodiscard]] std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen::Index fewest);
+
 /// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones stay.
 [[nodiscard]] ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records);
 
@@ -45,7 +49,7 @@ struct MotionFit {
   std::vector<MotionSetting> settings;
   std::vector<RecordPrediction> predictions;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale
+  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale: as MotionFitOptions::derivatives
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
   double chi2 = 0.0;           ///< sum of squares of the residual
   long simulations = 0;        ///< that it took
@@ -53,12 +57,21 @@ struct MotionFit {
   numerics::SolveReport report;
 };
 
+/// Derivatives that a fit gives beside its numbers.
+enum class FitDerivatives {
+  last,    ///< those with which the search ended, which cost nothing, without a covariance
+  search,  ///< the same, and the covariance by them: to compare models
+  central  ///< central differences at its end, and the covariance by them
+};
+
 /// How records are fitted, when that ends, and who watches it.
 struct MotionFitOptions {
   FitMethod method = FitMethod::gauss_newton;
-  int max_iterations = 30;
+  int max_iterations = 60;
   double tolerance = 1e-5;                                   ///< relative fall of chi2 below which the fit ends
-  bool derivatives = true;                                   ///< also where nothing is fitted any more: `jacobian`
+  double simplex_change = 0.0;                               ///< as RecordSet::simplex_change; 0: by `tolerance`
+  FitDerivatives derivatives = FitDerivatives::central;
+  Eigen::MatrixXd first_jacobian;                            ///< of the signal at the start, where known; else empty
   std::vector<MotionSetting> fixed;                          ///< beside the fitted ones
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops
 };

@@ -49,8 +49,11 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
   problem.progress = [&](int iteration, double chi2) {
     return !model.stopped() && (!options.progress || options.progress(iteration, chi2));
   };
+  problem.by_chance = static_cast<double>(count) / std::max(1.0, static_cast<double>(data.rows));
+  problem.first_jacobian = -options.first_jacobian;
   const BoundedResult result = bounded_least_squares(problem, start, options.max_iterations, options.tolerance);
   fit.settings = at(result.x);
+  fit.jacobian = -result.jacobian;
   fit.iterations = result.iterations;
   if (result.end == BoundedEnd::stopped)
     static_cast<void>(fit.report.end(numerics::Termination::interrupted, "interrupted"));
@@ -128,8 +131,10 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
     return fit;
   }
   fit.chi2 = fit.residual.squaredNorm();
-  if (options.derivatives && data.rows > 0 && !model.stopped()) {
-    fit.jacobian = signal_derivatives(model, data, fit.settings, fit.predictions, options.fixed);
+  const auto numbers = static_cast<Eigen::Index>(fit.settings.size());
+  if (options.derivatives != FitDerivatives::last && data.rows > 0 && !model.stopped()) {
+    if (options.derivatives == FitDerivatives::central || fit.jacobian.cols() != numbers)
+      fit.jacobian = signal_derivatives(model, data, fit.settings, fit.predictions, options.fixed);
     const ColouredNoise noise = coloured_noise(data, fit.residual, fit.jacobian.cols());
     fit.covariance = sandwich(data, noise, fit.jacobian);
     for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)

@@ -84,6 +84,16 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
           {set.file.string(), 0, fmt::format("records[{}].set", r.name), "", error.problems().front().message()});
     }
   }
+  for (const RecordFamily& family : set.families) {
+    try {
+      std::vector<base::Override> overrides = set.set;
+      overrides.insert(overrides.end(), family.set.begin(), family.set.end());
+      static_cast<void>(scenario::read_scenario(set.scenario, overrides));
+    } catch (const base::InputError& error) {
+      problems.push_back({set.file.string(), 0, fmt::format("fit.families[{}].set", family.name), "",
+                          error.problems().front().message()});
+    }
+  }
   if (!problems.empty()) throw base::InputError(problems);
   for (const MotionRecord& r : set.records) declared_in_.push_back(declared_scenario(set, r.set));
   for (const FreeNumber& f : set.free) bounds_[f.key] = lower_bound(f);
@@ -141,9 +151,16 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
   std::vector<base::Override> overrides = set_.set;
   const MotionRecord& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
+  std::vector<std::pair<std::size_t, std::string>> counted_above;  // an override, and the key above which it is counted
   for (const MotionSetting& s : settings) {
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
-    for (base::Override& one : s.number.overrides(s.value, declared_in_[record])) overrides.push_back(std::move(one));
+    if (!s.number.above.empty()) counted_above.emplace_back(overrides.size(), s.number.above);
+    for (base::Override& one : s.number.overrides(s.value, {declared_in_[record], overrides}))
+      overrides.push_back(std::move(one));
+  }
+  for (const auto& [at, key] : counted_above) {
+    const double other = StandingNumbers{declared_in_[record], overrides}.number(key).value_or(0.0);
+    overrides[at].value = exact_text(std::stod(overrides[at].value) + other);
   }
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
   overrides.push_back({"duration_s", exact_text(duration_for(r, interval))});

@@ -55,7 +55,7 @@ MotionNumber keyed_number(const std::string& key, double declared) {
   number.unit = unit_of_key(key);
   number.declared = declared;
   if (declared != 0.0) number.scale = 0.01 * std::abs(declared);
-  number.overrides = [key](double value, const DeclaredScenario&) {
+  number.overrides = [key](double value, const StandingNumbers&) {
     return std::vector<base::Override>{{key, exact_text(value)}};
   };
   return number;

@@ -33,9 +33,11 @@ struct MotionNumber {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   double scale = 1.0;                 ///< a change of this size is small and can be seen, > 0
   std::optional<std::size_t> record;  ///< the one to which it belongs; none: all
-  /// Keys of the scenario with this value, in a record that declares them as `record` says. Either this or `signal`.
-  std::function<std::vector<base::Override>(double value, const DeclaredScenario& record)> overrides;
+  /// Keys of the scenario with this value, in a record where numbers stand as `record` says: as it declares them, or as those before this one set
+  /// them. Either this or `signal`.
+  std::function<std::vector<base::Override>(double value, const StandingNumbers& record)> overrides;
   std::function<void(SignalChanges&, double value)> signal;
+  std::string above;  ///< key of the number above which the first of `overrides` is counted: that number as it stands is added; empty: none
 };
 
 /// A number, of any unit, as text that reads back to the same double.

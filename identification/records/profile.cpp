@@ -58,7 +58,7 @@ class Side {
         direction_(direction),
         others_(fit.settings) {
     others_.erase(others_.begin() + static_cast<std::ptrdiff_t>(number));
-    options_.derivatives = false;
+    options_.derivatives = FitDerivatives::last;
     options_.fixed.push_back(fit.settings[number]);
   }
 
@@ -114,6 +114,7 @@ class Side {
     const MotionFit there = fit_motion(model_, data_, others_, options_);
     if (there.residual.size() == 0) return std::nullopt;
     others_ = there.settings;
+    options_.first_jacobian = there.jacobian;
     const double rise = (there.chi2 - fit_.chi2) / unit_;
     fall = std::max(fall, -rise);
     points.push_back({value, std::max(0.0, rise)});

@@ -119,10 +119,29 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
   set.records.push_back(std::move(record));
 }
 
-void read_fit(const TomlTable& table, RecordSet& set) {
+void read_families(const TomlTable& table, const TomlNode* node, RecordSet& set) {
+  const TomlNode* list = node == nullptr ? nullptr : node->find("families");
+  const std::vector<TomlTable> tables = table.tables("families");
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    RecordFamily family;
+    family.name = tables[k].text("name");
+    base::require_plain_name(tables[k], "name", family.name);
+    for (const RecordFamily& other : set.families)
+      if (other.name == family.name) tables[k].fail("name", "is taken by another family");
+    family.set = read_set(tables[k], list != nullptr && k < list->items.size() ? &list->items[k] : nullptr);
+    if (!tables[k].has("set")) tables[k].fail("set", "must be given: what is otherwise in this family");
+    set.families.push_back(std::move(family));
+  }
+}
+
+void read_fit(const TomlTable& table, const TomlNode* node, RecordSet& set) {
   static constexpr base::Choice<FitMethod> methods[] = {{"gauss_newton", FitMethod::gauss_newton},
                                                         {"nelder_mead", FitMethod::nelder_mead}};
   if (table.has("method")) set.method = table.choice("method", methods).value_or(FitMethod::gauss_newton);
+  if (table.has("simplex_change")) {
+    set.simplex_change = table.number("simplex_change", Range::above(0.0, 1.0));
+    if (set.method != FitMethod::nelder_mead) table.fail("simplex_change", "only with method = \"nelder_mead\"");
+  }
   std::set<std::string> keys;
   for (const bool each : {false, true}) {
     const char* list = each ? "free_each" : "free";
@@ -174,6 +193,7 @@ void read_fit(const TomlTable& table, RecordSet& set) {
       table.fail("heldout", fmt::format("must name {}, or its `watched` must leave a column to be fitted", r.name));
   if (!set.records.empty() && set.used(false).empty()) table.fail("heldout", "must leave a record to be fitted");
   set.tolerance = table.optional_number("model_tolerance", Range::from(0.0, 1.0));
+  read_families(table, node, set);
   set.most_effects = table.integer_or("most_effects", set.most_effects, 0, 10);
 }
 
@@ -225,7 +245,7 @@ RecordSet read_records(const std::filesystem::path& file, const std::vector<base
   for (std::size_t k = 0; k < tables.size(); ++k)
     read_record(tables[k], list != nullptr && k < list->items.size() ? &list->items[k] : nullptr, folder, set);
   if (tables.empty()) root.fail("records", "must be given, one table or more");
-  read_fit(root.table("fit"), set);
+  read_fit(root.table("fit"), root_node.find("fit"), set);
   document.finish();
   return set;
 }

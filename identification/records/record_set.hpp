@@ -47,6 +47,12 @@ struct FreeNumber {
   bool profile = false;  ///< its profile likelihood is asked
 };
 
+/// Other keys of the scenario under which the base fit is done once more: another kind of model of the same records.
+struct RecordFamily {
+  std::string name;
+  std::vector<base::Override> set;
+};
+
 enum class FitMethod { gauss_newton, nelder_mead };
 
 /// A record file: records in time of runs of one scenario.                                     docs/record_file.md
@@ -57,8 +63,10 @@ struct RecordSet {
   std::vector<MotionRecord> records;
   std::vector<FreeNumber> free;
   FitMethod method = FitMethod::gauss_newton;
+  double simplex_change = 0.0;      ///< relative change of the numbers with which the simplex ends, (I.30); 0: none
   std::optional<double> tolerance;  ///< share of a channel's rms below which nothing is called missing
   int most_effects = 4;
+  std::vector<RecordFamily> families;
 
   [[nodiscard]] std::vector<std::size_t> used(bool heldout) const;  ///< indices of the records of one kind
 };

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """How often the tracing of records in time names the right class: blind_records.py SNARE [--kinds a,b] [--effects TEXT] [--seeds N] [--first SEED]
-[--sizes 5,10,30] [--nothing N] [--sets FILE] [--out FILE] [--require] [--keep FOLDER].
+[--sizes 5,10,30] [--nothing N] [--sets FILE] [--out FILE] [--fresh SEED] [--require] [--keep FOLDER].
 
 Machines of plants.py, which share no code with the solver, give two records each, one of which is held out; the declared model lacks one effect, or
 none, or something that is in no catalogue, and its fitted numbers are up to a tenth off. Prints a line a set and the figures with their bounds of
 95 % (Clopper and Pearson). --sets keeps every set's answer, a line of JSON each; a run that finds the file goes on where it ended.
---require ends with 1 where a figure is worse than asked.
+--fresh gives the figures of the sets from that seed on besides, as those of one state of the tracing. --require ends with 1 where a figure is worse
+than asked.
 """
 
 import argparse
@@ -156,6 +157,7 @@ def main():
     parser.add_argument("--nothing", type=int, default=None, help="sets of a kind without an effect (3 times the seeds)")
     parser.add_argument("--sets", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("--fresh", type=int)
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--require", action="store_true")
     options = parser.parse_args()
@@ -169,7 +171,7 @@ def main():
         kind = KINDS[name]
         seeds = range(options.first, options.first + options.seeds)
         cases = [(None, 0, seed) for seed in range(options.first, options.first + nothing)]
-        cases += [(effect, int(size), seed) for seed in seeds for effect in kind.effects for size in options.sizes.split(",")]
+        cases += [(effect, int(size), seed) for seed in seeds for effect in kind.effects for size in options.sizes.split(",") if size]
         cases += [(effect, size, seed) for seed in seeds for effect in kind.outside for size in OUTSIDE_SIZES]
         cases = [case for case in cases if (name, case[0].label if case[0] else "none", case[1], case[2]) not in known]
         if options.effects:
@@ -200,9 +202,13 @@ def main():
                 with options.sets.open("a") as out:
                     out.write(json.dumps(line) + "\n")
     result = summary(lines)
+    if options.fresh is not None:
+        some = [line for line in lines if line["seed"] >= options.fresh]
+        result[f"seeds_from_{options.fresh}"] = summary(some) if some else None
     if options.out:
         options.out.write_text(json.dumps(result, indent=1) + "\n")
-    print(json.dumps({key: value for key, value in result.items() if key != "matrix"}, indent=1))
+    told = result if options.fresh is None else result[f"seeds_from_{options.fresh}"] or {}
+    print(json.dumps({key: value for key, value in told.items() if key != "matrix"}, indent=1))
     return 1 if options.require and not good(result) else 0
 
 
