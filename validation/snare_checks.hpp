@@ -1,0 +1,16 @@
+#pragma once
+
+#include "validation/suite.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace snare::validation {
+
+/// The ring of a snare by a joint and by mounts that run its course.
+[[nodiscard]] std::vector<Check> snare_checks(const std::filesystem::path& data);
+
+/// Rows of `snare_checks`. model: "stretched" or "quasi_static".
+[[nodiscard]] std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std::string& model);
+
+}  // namespace snare::validation
