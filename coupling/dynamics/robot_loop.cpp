@@ -24,20 +24,22 @@ MotionBody RobotLoop::moved() const {
   return body;
 }
 
-// A state that is measured again at the same time, behind what begins there, comes behind the one before: its force counts from there on, the
-// other's up to there.
+// A force that jumps does so where a step ends: at both of its ends the force is that from within it, so that two records of one time have the
+// force before and behind.
 void RobotLoop::measure(double from, double to, const Force& force) {
   constexpr int pieces = 4;
+  constexpr double within = 1e-6;  // of a piece
   Vector3d impulse = records_.empty() ? Vector3d::Zero() : records_.back().impulse;
   if (!(to > from)) {
     records_.push_back({to, impulse, force(to)});
     return;
   }
-  Vector3d before = force(from);
   const double h = (to - from) / pieces;
+  Vector3d before = force(from + within * h);
+  records_.push_back({from, impulse, before});
   for (int k = 1; k <= pieces; ++k) {
     const double time = k == pieces ? to : from + k * h;
-    const Vector3d now = force(time);
+    const Vector3d now = force(k == pieces ? to - within * h : time);
     impulse += h / 6.0 * (before + 4.0 * force(time - 0.5 * h) + now);
     records_.push_back({time, impulse, now});
     before = now;

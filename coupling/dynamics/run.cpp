@@ -339,7 +339,6 @@ MotionResult MotionRun::go(double limit) {
     } else if (changed) {
       settle();
     }
-    if (phase || changed) measure(time_);
   }
   if (broken_) {
     report.termination = numerics::Termination::iteration_limit;
