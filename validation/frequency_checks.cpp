@@ -65,9 +65,9 @@ MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState&
   coupling::MotionOptions options = asked.options;
   options.output_interval = watch.every;
   options.duration = state.time + watch.to;
-  options.relative_tolerance = 1e-8;
-  options.body_position_tolerance = options.angle_tolerance = 1e-11;
-  options.body_velocity_tolerance = options.spin_tolerance = 1e-10;
+  options.relative_tolerance = 1e-7;
+  options.body_position_tolerance = options.angle_tolerance = 1e-10;
+  options.body_velocity_tolerance = options.spin_tolerance = 1e-8;
   options.newton_share = 1e-3;
   options.max_order = 5;
   coupling::MotionState from = state;
@@ -150,10 +150,10 @@ std::vector<Row> held_frequency_rows(const std::filesystem::path& data) {
       run_of(data / "scenarios/ssrms_htv_held.toml", {"duration_s=1.0", "loads[thruster].moment_Nm=[0.0,0.0,0.0]"});
   const std::vector<coupling::MotionMode> modes =
       coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes;
-  Watch watch{0.1, 0.5, 24.5, 0.1, 1e-6, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
+  Watch watch{0.1, 0.5, 20.5, 0.1, 1e-5, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
   const MatrixXd signals =
       answer(run.asked, run.result.last,
-             push_on_body(run.asked.motion, "htv", {20.0, 15.0, 10.0}, {500.0, 300.0, -400.0}), watch);
+             push_on_body(run.asked.motion, "htv", {200.0, 150.0, 100.0}, {5000.0, 3000.0, -4000.0}), watch);
   std::vector<Row> rows;
   compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, rows);
   if (!run.result.report.usable() || rows.empty())
@@ -170,21 +170,21 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
       coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes;
   std::vector<Row> rows;
   const auto angles = [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<8>(); };
-  const Watch slow{0.05, 0.3, 2.7, 0.02, 1e-7, angles};
+  const Watch slow{0.05, 0.3, 2.7, 0.02, 1e-5, angles};
   compare("visitor of 16 t in strings", modes, 2.5, 4.0,
           answer(run.asked, run.result.last,
-                 push_on_body(run.asked.motion, "htv", {5.0, 5.0, 5.0}, {50.0, 30.0, -40.0}), slow),
+                 push_on_body(run.asked.motion, "htv", {50.0, 50.0, 50.0}, {500.0, 300.0, -400.0}), slow),
           slow, rows);
   const coupling::MotionArm& arm = run.asked.motion.arms[0];
   const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0,
                                      arm.arm.tree.find_frame("snare::turning")};
-  const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-7,
+  const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5,
                    [](const MotionSample& s) -> VectorXd {
                      const multibody::ArmState& a = s.arms[0].state;
                      return (VectorXd(2) << a.q[a.q.size() - 1], a.v[a.v.size() - 1]).finished();
                    }};
   compare("visitor of 16 t in strings", modes, 200.0, 600.0,
-          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.01, 0.01, 0.01}), fast), fast, rows);
+          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, rows);
   return rows;
 }
 

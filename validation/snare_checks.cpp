@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace snare::validation {
@@ -93,11 +94,37 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   return rows;
 }
 
+// The arm's end counts as 50 kg, 200 kg m^2 at 2 m; its spring does next to nothing in the 0.15 s of the contact.
+std::vector<Row> bench_rows(const std::filesystem::path& data) {
+  constexpr double k = 1.0e4, m = 40.0, speed = 0.05, pi = 3.14159265358979323846;
+  const auto restitution = [&](double delay, bool fixed) {
+    std::vector<std::string> settings{fmt::format("bodies[robot].robot.delay_s={}", delay), "duration_s=0.4"};
+    if (fixed) settings.emplace_back("arms[mockup].every_joint.stiffness_Nm_rad=1.0e12");
+    double leaves = 0.0;
+    const ScenarioRun run = run_of(data / "scenarios/bench_in_the_loop.toml", settings, [&](const coupling::MotionSample& s) {
+      const double tip = 2.0 * s.arms[0].state.v[0] * std::cos(s.arms[0].state.q[0]);
+      leaves = std::max(leaves, tip - s.bodies[0].velocity.y());
+    });
+    return leaves / speed + run.usable();
+  };
+  std::vector<Row> rows;
+  for (const double delay : {0.001, 0.002, 0.004}) {
+    const std::string name = fmt::format("hardware in the loop, {:g} ms late, restitution ", 1e3 * delay);
+    rows.push_back(row(name + "on a rigid arm", "", "exp(pi omega tau/2)", std::exp(0.5 * pi * std::sqrt(k / m) * delay),
+                       restitution(delay, true), ErrorKind::relative, 0.02));
+    const double omega = std::sqrt(k * (1.0 / m + 1.0 / 50.0));
+    rows.push_back(row(name + "on a passive arm", "", "exp(pi k tau/(2 m omega))",
+                       std::exp(pi * k * delay / (2.0 * m * omega)), restitution(delay, false), ErrorKind::relative, 0.02));
+  }
+  return rows;
+}
+
 std::vector<Check> snare_checks(const std::filesystem::path& data) {
   std::vector<Check> checks;
   for (const char* model : {"stretched", "quasi_static"})
     checks.push_back({fmt::format("ring two ways, {}", model),
                       [data, model = std::string(model)] { return ring_two_ways_rows(data, model); }});
+  checks.push_back({"hardware in the loop", [data] { return bench_rows(data); }});
   return checks;
 }
 
