@@ -176,7 +176,8 @@ Reach reach_pose(const Tree& tree, int frame, const Pose& X_WF, const VectorXd& 
       }
       continue;
     }
-    if (std::ranges::any_of(known, [&](const VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < same; })) continue;
+    if (std::ranges::any_of(known, [&](const VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < same; }))
+      continue;
     known.push_back(q);
     if (way < nearest) {
       nearest = way;

@@ -17,12 +17,13 @@ struct ReachingJoint {
 
 /// Where joints must be for a frame to be somewhere.
 struct Reach {
-  Eigen::VectorXd q;        ///< coordinates of the tree; where nothing was found, of the nearest try
-  int solutions = 0;        ///< different ones found within the limits
-  double distance = 0.0;    ///< left at q: of the origins [m]
-  double angle = 0.0;       ///< left at q: between the axes [rad]
-  int beyond = -1;          ///< where all solutions lie beyond limits: of the nearest one, index of the joint that is farthest beyond
-  double beyond_at = 0.0;   ///< and its coordinate [rad, m]
+  Eigen::VectorXd q;      ///< coordinates of the tree; where nothing was found, of the nearest try
+  int solutions = 0;      ///< different ones found within the limits
+  double distance = 0.0;  ///< left at q: of the origins [m]
+  double angle = 0.0;     ///< left at q: between the axes [rad]
+  int beyond =
+      -1;  ///< where all solutions lie beyond limits: of the nearest one, index of the joint that is farthest beyond
+  double beyond_at = 0.0;  ///< and its coordinate [rad, m]
   [[nodiscard]] bool found() const { return solutions > 0; }
 };
 

@@ -122,9 +122,11 @@ void reach(const Aim& aim, int tip, const Pose& X_WT, coupling::MotionArm& arm) 
     const multibody::ReachingJoint& joint = aim.joints[at(r.beyond)];
     const bool turns = tree.body(joint.body).joint == multibody::JointKind::revolute;
     const double unit = turns ? base::degree : base::mm;
-    aim.table.fail("reach_frame", fmt::format("is reached only beyond limits: nearest with {} at {:.6g} {}, allowed are {:.6g} to {:.6g}",
-                                              aim.names[at(r.beyond)], r.beyond_at / unit, turns ? "deg" : "mm",
-                                              joint.lower / unit, joint.upper / unit));
+    aim.table.fail(
+        "reach_frame",
+        fmt::format("is reached only beyond limits: nearest with {} at {:.6g} {}, allowed are {:.6g} to {:.6g}",
+                    aim.names[at(r.beyond)], r.beyond_at / unit, turns ? "deg" : "mm", joint.lower / unit,
+                    joint.upper / unit));
     return;
   }
   for (int j = 0; j < arm.arm.motors(); ++j) {
@@ -208,12 +210,13 @@ void read_arms(Composition& c) {
             add_frames(name, index, tip, c.motion.arms[at(index)], placement);
             return;
           }
-          placement.stand(table, "reach_frame", name, [&c, name, index, aim, tip](const PlacedFrame& at_tip, Placement& p) {
-            const TomlTable& asked = aim->table;
-            if (p.find(asked.text_or("reach_frame", "world")) && p.find(asked.text_or("base_frame", "world")))
-              reach(*aim, tip, at_tip.X_WF * aim->X_FT, c.motion.arms[at(index)]);
-            add_frames(name, index, tip, c.motion.arms[at(index)], p);
-          });
+          placement.stand(
+              table, "reach_frame", name, [&c, name, index, aim, tip](const PlacedFrame& at_tip, Placement& p) {
+                const TomlTable& asked = aim->table;
+                if (p.find(asked.text_or("reach_frame", "world")) && p.find(asked.text_or("base_frame", "world")))
+                  reach(*aim, tip, at_tip.X_WF * aim->X_FT, c.motion.arms[at(index)]);
+                add_frames(name, index, tip, c.motion.arms[at(index)], p);
+              });
         });
   }
 }

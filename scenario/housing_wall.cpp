@@ -11,13 +11,14 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 coupling::MotionWire at_rest_in_wall(DeclaredWire w, PressedRests& known) {
-  const Matrix3d R = (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
+  const Matrix3d R =
+      (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
   coupling::RoundWall wall = *w.wall;
   wall.centre = R.transpose() * (wall.centre - w.from);
   const wire::RodInMotion& rod = w.wire.rod;
   const double radius = 0.5 * w.specification.diameter;
-  const std::string key = fmt::format("{:.9g} {:.9g} {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", w.span, rod.length,
-                                      rod.elements, static_cast<int>(rod.formulation), radius,
+  const std::string key = fmt::format("{:.9g} {:.9g} {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", w.span,
+                                      rod.length, rod.elements, static_cast<int>(rod.formulation), radius,
                                       rod.properties.bending_stiffness, rod.properties.axial_stiffness, wall.centre.x(),
                                       wall.centre.y(), wall.inner_radius, wall.foundation.modulus);
   auto found = known.find(key);

@@ -29,7 +29,8 @@ struct DeclaredWire {
   std::optional<coupling::LawWire> law;  ///< stands for it
   /// What carries the ends; the world: they stand still.
   coupling::MotionCarrier from_carrier, to_carrier;
-  std::optional<coupling::RoundWall> wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
+  std::optional<coupling::RoundWall>
+      wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
 };
 
 /// The wire for which a law stands, in its place but without a shaft.

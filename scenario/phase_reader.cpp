@@ -94,8 +94,7 @@ void read_sensed(const TomlTable& table, Sensed& sensed, std::vector<coupling::S
     if (!name.empty()) table.fail("sensor", sensed.requirement());
     return;
   }
-  if (table.has("axis") && sensor->components() == 1)
-    table.fail("axis", "only of a sensor that reads three numbers");
+  if (table.has("axis") && sensor->components() == 1) table.fail("axis", "only of a sensor that reads three numbers");
   coupling::SensedBound b;
   b.sensed = sensed.index(*sensor);
   b.component = sensor->components() == 1 ? 0 : axis.value_or(-1);
@@ -180,7 +179,8 @@ void read_phases(Composition& c, const std::vector<Sensor>& sensors) {
     last = std::max(last, phase.not_before);
     phase.after_previous = table.number_or("after_s", 0.0, Range::from(0.0, 1e6));
     for (const TomlTable& condition : table.tables("when")) read_condition(c, condition, sensed, phase);
-    if (table.has("hold_s") && phase.bounds.empty() && phase.sensed.empty()) table.fail("hold_s", "only beside conditions, when = [...]");
+    if (table.has("hold_s") && phase.bounds.empty() && phase.sensed.empty())
+      table.fail("hold_s", "only beside conditions, when = [...]");
     phase.hold = table.number_or("hold_s", 0.0, Range::from(0.0, 1e6));
     for (const TomlTable& drive : table.tables("drives")) {
       for (const MotorJoint& j : read_joints(c, drive))

@@ -259,7 +259,8 @@ void Snares::add_walls() {
     const double mass = table.number_or("mass_kg", 5.0, Range::above(0.0, 1e6));
     // Where pinned wires bow beyond it, they begin pressed by it; others must clear it.
     const double half = 0.5 * item.wire->specification.diameter;
-    const bool may_press = !item.wire->law && item.wire->wire.rod.properties.left.kind == wire::SpatialEnd::Kind::twisting_pin;
+    const bool may_press =
+        !item.wire->law && item.wire->wire.rod.properties.left.kind == wire::SpatialEnd::Kind::twisting_pin;
     const double bow = item.radius * std::cos(0.5 * item.ring.start) + arc_bow(item.radius, item.ring.start);
     const double least = (may_press ? item.radius : std::max(item.radius, bow)) + half;
     if (!(inner > least))
@@ -272,8 +273,7 @@ void Snares::add_walls() {
     wall.shape = coupling::hollow_cylinder(inner, inner + thickness, length, 0.0);
     c_.add_shape(item.name + "::wall", wall, *housing, mass, c_.snares[item.name].wires);
     for (const int w : c_.snares[item.name].wires) {
-      if (may_press)
-        c_.wires[at(w)].wall = {housing->X_WF.p, inner, inner + thickness, length, wall.foundation};
+      if (may_press) c_.wires[at(w)].wall = {housing->X_WF.p, inner, inner + thickness, length, wall.foundation};
     }
     c_.drawn.push_back({item.name + "::wall", housing->carrier, housing->X_WF, wall.shape->drawing()});
   }

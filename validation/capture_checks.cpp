@@ -53,11 +53,12 @@ std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
 // The shipped rigidizing by a snare that stands still and a stiff ball joint: the carriage's quintic by 125 mm in 2 s brings the plate
 // over the 120 mm to the face.
 std::vector<Row> rigidizing_rows(const std::filesystem::path& data) {
-  const ScenarioRun run = run_of(data / "scenarios/ssrms_rigidize.toml",
-                         {"snares[snare].frame=\"world\"", "bodies[visitor].velocity_m_s=[0.0,0.0,0.0]",
-                          "bodies[visitor].spin_rad_s=[0.0,0.0,0.0]",
-                          "bushings[ball joint].translational_stiffness_N_m=[1.0e8,1.0e8,1.0e8]",
-                          "bushings[ball joint].translational_damping_Ns_m=[1.0e5,1.0e5,1.0e5]", "duration_s=7.0"});
+  const ScenarioRun run =
+      run_of(data / "scenarios/ssrms_rigidize.toml",
+             {"snares[snare].frame=\"world\"", "bodies[visitor].velocity_m_s=[0.0,0.0,0.0]",
+              "bodies[visitor].spin_rad_s=[0.0,0.0,0.0]",
+              "bushings[ball joint].translational_stiffness_N_m=[1.0e8,1.0e8,1.0e8]",
+              "bushings[ball joint].translational_damping_Ns_m=[1.0e5,1.0e5,1.0e5]", "duration_s=7.0"});
   const double share =
       zero_of([](double s) { return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s) - 120.0 / 125.0; }, 0.5, 1.0);
   return {row("rigidizing, the plate meets the face", "s", "5 s + 2 s of the quintic's share", 5.0 + 2.0 * share,
@@ -69,11 +70,12 @@ std::vector<Row> snare_capture_rows(const std::filesystem::path& data) {
   const std::filesystem::path file = data / "scenarios/ssrms_htv_capture.toml";
   const ScenarioRun coarse = run_of(file, {as_strings});
   const coupling::MotionOptions& o = coarse.asked.options;
-  const ScenarioRun fine = run_of(file, {as_strings, fmt::format("solver.relative_tolerance={}", 0.1 * o.relative_tolerance),
-                                 fmt::format("solver.body_position_tolerance_m={}", 0.1 * o.body_position_tolerance),
-                                 fmt::format("solver.body_velocity_tolerance_m_s={}", 0.1 * o.body_velocity_tolerance),
-                                 fmt::format("solver.body_angle_tolerance_rad={}", 0.1 * o.angle_tolerance),
-                                 fmt::format("solver.body_spin_tolerance_rad_s={}", 0.1 * o.spin_tolerance)});
+  const ScenarioRun fine =
+      run_of(file, {as_strings, fmt::format("solver.relative_tolerance={}", 0.1 * o.relative_tolerance),
+                    fmt::format("solver.body_position_tolerance_m={}", 0.1 * o.body_position_tolerance),
+                    fmt::format("solver.body_velocity_tolerance_m_s={}", 0.1 * o.body_velocity_tolerance),
+                    fmt::format("solver.body_angle_tolerance_rad={}", 0.1 * o.angle_tolerance),
+                    fmt::format("solver.body_spin_tolerance_rad_s={}", 0.1 * o.spin_tolerance)});
   const std::string source = "tolerances a tenth";
   std::vector<Row> rows;
   for (int k = 0; k < 3; ++k) {

@@ -53,9 +53,9 @@ Eigen::VectorXcd exponents(const MatrixXd& signals, double interval, double keep
 
 /// What is watched, and how.
 struct Watch {
-  double pulse = 0.0;                         ///< duration of the disturbance [s]
-  double from = 0.0, to = 0.0, every = 0.0;   ///< behind its beginning [s]
-  double keep = 1e-7;                         ///< see `exponents`
+  double pulse = 0.0;                        ///< duration of the disturbance [s]
+  double from = 0.0, to = 0.0, every = 0.0;  ///< behind its beginning [s]
+  double keep = 1e-7;                        ///< see `exponents`
   std::function<VectorXd(const MotionSample&)> see;
 };
 
@@ -139,8 +139,8 @@ int body_called(const coupling::Motion& motion, const std::string& name) {
 coupling::FrameLoad push_on_body(const coupling::Motion& motion, const std::string& name, const Eigen::Vector3d& force,
                                  const Eigen::Vector3d& moment) {
   const int index = body_called(motion, name);
-  return push_on({coupling::MotionCarrier::Kind::body, index, 0},
-                 scenario::pose_of(motion.bodies[at(index)].start), force, moment);
+  return push_on({coupling::MotionCarrier::Kind::body, index, 0}, scenario::pose_of(motion.bodies[at(index)].start),
+                 force, moment);
 }
 
 }  // namespace
@@ -176,10 +176,8 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
                  push_on_body(run.asked.motion, "htv", {50.0, 50.0, 50.0}, {500.0, 300.0, -400.0}), slow),
           slow, rows);
   const coupling::MotionArm& arm = run.asked.motion.arms[0];
-  const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0,
-                                     arm.arm.tree.find_frame("snare::turning")};
-  const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5,
-                   [](const MotionSample& s) -> VectorXd {
+  const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0, arm.arm.tree.find_frame("snare::turning")};
+  const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5, [](const MotionSample& s) -> VectorXd {
                      const multibody::ArmState& a = s.arms[0].state;
                      return (VectorXd(2) << a.q[a.q.size() - 1], a.v[a.v.size() - 1]).finished();
                    }};
@@ -192,11 +190,11 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
 std::vector<Row> bushing_frequency_rows(const std::filesystem::path& data) {
   constexpr double K = 1.0e8, I = 38700.0;
   const auto roll = [&](double joints, double bushing) {
-    const ScenarioRun run = run_of(data / "scenarios/ssrms_htv_held.toml",
-                                   {"duration_s=0.02", fmt::format("arms[rms].every_joint.stiffness_Nm_rad={}", joints),
-                                    "arms[rms].every_joint.damping_Nms_rad=0.0",
-                                    "bushings[gf].rotational_damping_Nms_rad=0.0",
-                                    fmt::format("bushings[gf].rotational_stiffness_Nm_rad={}", bushing)});
+    const ScenarioRun run =
+        run_of(data / "scenarios/ssrms_htv_held.toml",
+               {"duration_s=0.02", fmt::format("arms[rms].every_joint.stiffness_Nm_rad={}", joints),
+                "arms[rms].every_joint.damping_Nms_rad=0.0", "bushings[gf].rotational_damping_Nms_rad=0.0",
+                fmt::format("bushings[gf].rotational_stiffness_Nm_rad={}", bushing)});
     double frequency = not_computed, most = 0.0;
     for (const coupling::MotionMode& m :
          coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes) {

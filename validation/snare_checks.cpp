@@ -59,7 +59,8 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   by_joint.motion.arms.front().drives = {multibody::Drive::on_course(course)};
   // A place that errs by 1e-7 m is worth 0.1 N of a taut wire.
   coupling::MotionOptions& o = by_joint.options;
-  for (double* tolerance : {&o.body_position_tolerance, &o.body_velocity_tolerance, &o.angle_tolerance, &o.spin_tolerance})
+  for (double* tolerance :
+       {&o.body_position_tolerance, &o.body_velocity_tolerance, &o.angle_tolerance, &o.spin_tolerance})
     *tolerance *= 1e-3;
   for (double* tolerance : {&o.relative_tolerance, &o.position_tolerance, &o.velocity_tolerance}) *tolerance *= 0.1;
   scenario::NamedMotion by_machines = by_joint;
@@ -101,20 +102,23 @@ std::vector<Row> bench_rows(const std::filesystem::path& data) {
     std::vector<std::string> settings{fmt::format("bodies[robot].robot.delay_s={}", delay), "duration_s=0.4"};
     if (fixed) settings.emplace_back("arms[mockup].every_joint.stiffness_Nm_rad=1.0e12");
     double leaves = 0.0;
-    const ScenarioRun run = run_of(data / "scenarios/bench_in_the_loop.toml", settings, [&](const coupling::MotionSample& s) {
-      const double tip = 2.0 * s.arms[0].state.v[0] * std::cos(s.arms[0].state.q[0]);
-      leaves = std::max(leaves, tip - s.bodies[0].velocity.y());
-    });
+    const ScenarioRun run =
+        run_of(data / "scenarios/bench_in_the_loop.toml", settings, [&](const coupling::MotionSample& s) {
+          const double tip = 2.0 * s.arms[0].state.v[0] * std::cos(s.arms[0].state.q[0]);
+          leaves = std::max(leaves, tip - s.bodies[0].velocity.y());
+        });
     return leaves / speed + run.usable();
   };
   std::vector<Row> rows;
   for (const double delay : {0.001, 0.002, 0.004}) {
     const std::string name = fmt::format("hardware in the loop, {:g} ms late, restitution ", 1e3 * delay);
-    rows.push_back(row(name + "on a rigid arm", "", "exp(pi omega tau/2)", std::exp(0.5 * pi * std::sqrt(k / m) * delay),
-                       restitution(delay, true), ErrorKind::relative, 0.02));
+    rows.push_back(row(name + "on a rigid arm", "", "exp(pi omega tau/2)",
+                       std::exp(0.5 * pi * std::sqrt(k / m) * delay), restitution(delay, true), ErrorKind::relative,
+                       0.02));
     const double omega = std::sqrt(k * (1.0 / m + 1.0 / 50.0));
     rows.push_back(row(name + "on a passive arm", "", "exp(pi k tau/(2 m omega))",
-                       std::exp(pi * k * delay / (2.0 * m * omega)), restitution(delay, false), ErrorKind::relative, 0.02));
+                       std::exp(pi * k * delay / (2.0 * m * omega)), restitution(delay, false), ErrorKind::relative,
+                       0.02));
   }
   return rows;
 }

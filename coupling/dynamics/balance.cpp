@@ -171,7 +171,8 @@ void MotionRun::measure(double from) {
       Vector3d force = Vector3d::Zero();
       for (const MotionRobot::Measured& m : l.robot().measured) {
         const std::size_t k = base::at(m.contact);
-        force += m.sign * (k >= first_press() ? presses_[k - first_press()]->pressing(y).sample.force : contacts_[k].sums(y).force);
+        force += m.sign * (k >= first_press() ? presses_[k - first_press()]->pressing(y).sample.force
+                                              : contacts_[k].sums(y).force);
       }
       return force;
     });

@@ -11,8 +11,9 @@ struct MotionRobot {
   double delay = 0.0;  ///< tau [s], > 0
   /// One of the contacts whose force on the body is measured.
   struct Measured {
-    int contact = 0;    ///< index as Motion::contact_names counts them
-    double sign = 1.0;  ///< of the force on the body over that which results give: -1 where they give that on the other side
+    int contact = 0;  ///< index as Motion::contact_names counts them
+    double sign =
+        1.0;  ///< of the force on the body over that which results give: -1 where they give that on the other side
   };
   std::vector<Measured> measured;
 };

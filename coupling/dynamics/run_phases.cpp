@@ -65,8 +65,7 @@ PhaseWatch::Kept MotionRun::kept() const {
 }
 
 void MotionRun::sense() {
-  if (phases_.asks_for_readings())
-    sensed_.pass(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
+  if (phases_.asks_for_readings()) sensed_.pass(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
 }
 
 // The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has not gone on behind a reading.

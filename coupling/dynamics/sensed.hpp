@@ -15,9 +15,9 @@ struct MotionSample;
 /// the output time there, between two output times straight.                                           theory.md (M.23)
 struct SensedSignal {
   using Sight = std::function<Eigen::Vector3d(const MotionSample& sample)>;
-  std::function<Sight(const Motion& motion)> make;     ///< what it sees, in the unit of its readings
-  double interval = 0.0;                               ///< between two readings, a whole multiple of that of the output [s], > 0
-  double delay = 0.0;                                  ///< [s], >= 0
+  std::function<Sight(const Motion& motion)> make;  ///< what it sees, in the unit of its readings
+  double interval = 0.0;  ///< between two readings, a whole multiple of that of the output [s], > 0
+  double delay = 0.0;     ///< [s], >= 0
   std::function<Eigen::Vector3d(long reading)> noise;  ///< added to a reading; empty: none
 };
 

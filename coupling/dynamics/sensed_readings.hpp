@@ -38,10 +38,10 @@ class SensedReadings {
   struct Signal {
     const SensedSignal* what = nullptr;
     SensedSignal::Sight sight;
-    long seen = 0;                              // readings of which all that they tell has been seen
-    long read = 0;                              // readings that have come
-    std::optional<Eigen::Vector3d> first;       // of reading `seen`, at the earlier of its two output times
-    std::deque<Eigen::Vector3d> waiting;        // readings seen that have not come
+    long seen = 0;                         // readings of which all that they tell has been seen
+    long read = 0;                         // readings that have come
+    std::optional<Eigen::Vector3d> first;  // of reading `seen`, at the earlier of its two output times
+    std::deque<Eigen::Vector3d> waiting;   // readings seen that have not come
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
   };
   /// The output time that a reading tells, or the first of two, as a number of intervals, and the share of the second.

@@ -28,8 +28,10 @@ Tree six_hinges() {
   const auto point = SpatialInertia::about_centre(1.0, Vector3d::Zero(), Matrix3d::Identity());
   int frame = tree.add_moving(0, "base", JointKind::revolute, Vector3d::UnitZ(), {}, point);
   frame = tree.add_moving(frame, "upper", JointKind::revolute, Vector3d::UnitY(), {}, point);
-  frame = tree.add_moving(frame, "fore", JointKind::revolute, Vector3d::UnitY(), {Matrix3d::Identity(), {1.0, 0.0, 0.0}}, point);
-  frame = tree.add_moving(frame, "roll", JointKind::revolute, Vector3d::UnitX(), {Matrix3d::Identity(), {0.8, 0.0, 0.0}}, point);
+  frame = tree.add_moving(frame, "fore", JointKind::revolute, Vector3d::UnitY(),
+                          {Matrix3d::Identity(), {1.0, 0.0, 0.0}}, point);
+  frame = tree.add_moving(frame, "roll", JointKind::revolute, Vector3d::UnitX(),
+                          {Matrix3d::Identity(), {0.8, 0.0, 0.0}}, point);
   frame = tree.add_moving(frame, "bend", JointKind::revolute, Vector3d::UnitY(), {}, point);
   frame = tree.add_moving(frame, "turn", JointKind::revolute, Vector3d::UnitX(), {}, point);
   tree.add_fixed(frame, "tip", {Matrix3d::Identity(), {0.2, 0.0, 0.0}});
@@ -90,7 +92,8 @@ TEST(InverseKinematics, TakesTheSolutionNextToThePosture) {
   EXPECT_LT((there.p - X.p).norm(), 1e-9);
   EXPECT_LT((there.R - X.R).norm(), 1e-9);
   // Turned over: (a + pi, -b, c - pi) of the wrist's three angles.
-  const Reach over = reach_pose(tree, tree.find_frame("tip"), X, angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi}), all(2.0 * pi));
+  const Reach over =
+      reach_pose(tree, tree.find_frame("tip"), X, angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi}), all(2.0 * pi));
   ASSERT_TRUE(over.found());
   EXPECT_LT((over.q - angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi})).cwiseAbs().maxCoeff(), 1e-8);
 }

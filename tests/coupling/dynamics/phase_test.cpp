@@ -157,10 +157,15 @@ SensedBound sensed_above(double bound) {
 TEST(Phases, BeginWithAReadingNotBetween) {
   const struct {
     double interval, delay, hold, begins;
-  } cases[] = {{0.05, 0.0, 0.0, 0.65}, {0.05, 0.12, 0.0, 0.80}, {0.05, 0.12, 0.12, 0.92}, {0.1, 0.0, 0.0, 0.7}, {0.01, 0.005, 0.0, 0.66}};
+  } cases[] = {{0.05, 0.0, 0.0, 0.65},
+               {0.05, 0.12, 0.0, 0.80},
+               {0.05, 0.12, 0.12, 0.92},
+               {0.1, 0.0, 0.0, 0.7},
+               {0.01, 0.005, 0.0, 0.66}};
   for (const auto& c : cases) {
     // A little before 1 rad, as what swings in the gear may be behind by a few microradians.
-    const MotionResult result = simulate(turning_disc(angle_of_disc(c.interval, c.delay), sensed_above(0.999), c.hold), fine(1.2));
+    const MotionResult result =
+        simulate(turning_disc(angle_of_disc(c.interval, c.delay), sensed_above(0.999), c.hold), fine(1.2));
     ASSERT_TRUE(result.report.usable()) << result.report.message;
     ASSERT_EQ(result.phases.size(), 2u) << c.delay;
     EXPECT_NEAR(result.phases[1].time, c.begins, 1e-12) << c.interval << " " << c.delay << " " << c.hold;
@@ -198,7 +203,9 @@ TEST(Phases, OneReadingBreaksTheHold) {
 
 TEST(Phases, ReadingsGoOnFromACheckpointWithTheSameBits) {
   Motion motion = turning_disc(angle_of_disc(0.03, 0.077), sensed_above(1.5), 0.05);
-  motion.sensed[0].noise = [](long reading) { return Vector3d(0.01 * std::sin(static_cast<double>(reading)), 0.0, 0.0); };
+  motion.sensed[0].noise = [](long reading) {
+    return Vector3d(0.01 * std::sin(static_cast<double>(reading)), 0.0, 0.0);
+  };
   MotionOptions options;
   options.duration = 1.2;
   options.output_interval = 0.01;
