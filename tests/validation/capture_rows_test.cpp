@@ -24,6 +24,10 @@ TEST(CaptureRows, RigidizingMeetsTheFaceInTime) {
 TEST(CaptureRows, RingTurnsTheSameTwoWays) {
   expect_within(ring_two_ways_rows(data, "stretched"));
 }
+TEST(CaptureRows, FrequenciesAreThoseOfASmallDisturbance) {
+  expect_within(held_frequency_rows(data));
+  expect_within(capture_frequency_rows(data));
+}
 TEST(CaptureRows, RollOnABushing) {
   expect_within(bushing_frequency_rows(data));
 }
