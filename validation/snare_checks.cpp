@@ -123,11 +123,45 @@ std::vector<Row> bench_rows(const std::filesystem::path& data) {
   return rows;
 }
 
+// Smooth friction mu(s)/s with mu(s) = mu x (3 - x^2)/2, x = s/s_static, below the static speed (M.9): the shaft creeps where it is the pull over the
+// sum of the normal forces.
+std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
+  struct Course {
+    double least = 1e9, most = -1e9, at_60 = 0.0, at_120 = 0.0, normal = 0.0;
+  };
+  const auto held = [&](const std::string& law) {
+    Course c;
+    const ScenarioRun run = run_of(
+        data / "scenarios/held_shaft.toml", {"shapes[pin].law=\"" + law + "\""}, [&](const coupling::MotionSample& s) {
+          if (s.time < 59.99) return;
+          const double z = s.arms[1].state.q.size() == 1 ? s.arms[1].state.q[0] : s.arms[0].state.q[0];
+          c.least = std::min(c.least, z);
+          c.most = std::max(c.most, z);
+          if (s.time < 60.01) c.at_60 = z;
+          c.at_120 = z;
+          c.normal = 0.0;
+          for (std::size_t k = 0; k < 3; ++k) c.normal += s.contacts[k].normal_force;
+        });
+    c.at_120 += run.usable();
+    c.most += run.usable();
+    return c;
+  };
+  const Course sticks = held("stick_slip"), creeps = held("smooth");
+  constexpr double pull = 5.0, friction = 0.3, static_speed = 1e-4;
+  double x = 0.0;
+  for (int k = 0; k < 60; ++k) x = 2.0 * pull / (friction * creeps.normal) / (3.0 - x * x);
+  return {row("shaft held by three wires, way from 60 to 120 s, stick_slip", "m", "rests", 0.0,
+              sticks.most - sticks.least, ErrorKind::absolute, 1e-5),
+          row("shaft held by three wires, way from 60 to 120 s, smooth", "m", "mu N x (3 - x^2)/2 = F",
+              60.0 * static_speed * x, creeps.at_120 - creeps.at_60, ErrorKind::relative, 0.05)};
+}
+
 std::vector<Check> snare_checks(const std::filesystem::path& data) {
   std::vector<Check> checks;
   for (const char* model : {"stretched", "quasi_static"})
     checks.push_back({fmt::format("ring two ways, {}", model),
                       [data, model = std::string(model)] { return ring_two_ways_rows(data, model); }});
+  checks.push_back({"held shaft", [data] { return held_shaft_rows(data); }});
   checks.push_back({"hardware in the loop", [data] { return bench_rows(data); }});
   return checks;
 }

@@ -34,6 +34,9 @@ TEST(CaptureRows, RollOnABushing) {
 TEST(CaptureRows, HardwareInTheLoopBouncesOffFaster) {
   expect_within(bench_rows(data));
 }
+TEST(SlowCaptureRows, ShaftIsHeldForMinutes) {
+  expect_within(held_shaft_rows(data));
+}
 TEST(SlowCaptureRows, RingOfWiresTurnsTheSameTwoWays) {
   expect_within(ring_two_ways_rows(data, "quasi_static"));
 }
