@@ -9,12 +9,14 @@
 #include "validation/capture_checks.hpp"
 #include "validation/contact_law_checks.hpp"
 #include "validation/distil_checks.hpp"
+#include "validation/frequency_checks.hpp"
 #include "validation/friction_checks.hpp"
 #include "validation/linked_motion_checks.hpp"
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"
 #include "validation/push_checks.hpp"
 #include "validation/record_checks.hpp"
+#include "validation/snare_checks.hpp"
 #include "validation/trace_checks.hpp"
 
 #include <fmt/format.h>
@@ -115,6 +117,7 @@ std::vector<validation::Check> all_checks() {
         validation::motion_accuracy_checks(), validation::friction_checks(), validation::contact_law_checks(),
         validation::air_table_checks(data_directory()), validation::arm_checks(data_directory() / "arms"),
         validation::linked_motion_checks(data_directory()), validation::capture_checks(data_directory()),
+        validation::snare_checks(data_directory()), validation::frequency_checks(data_directory()),
         validation::tracing_checks(measured), validation::record_checks(data_directory(), measured)}) {
     checks.insert(checks.end(), some.begin(), some.end());
   }

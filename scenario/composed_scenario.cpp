@@ -9,10 +9,12 @@
 #include "scenario/capture_reader.hpp"
 #include "scenario/composition.hpp"
 #include "scenario/drive_reader.hpp"
+#include "scenario/housing_wall.hpp"
 #include "scenario/law_wire_reader.hpp"
 #include "scenario/load_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/phase_reader.hpp"
+#include "scenario/robot_reader.hpp"
 #include "scenario/sensor_reader.hpp"
 #include "scenario/snare_items.hpp"
 
@@ -297,27 +299,29 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   read_loads(c);
   read_welds(c);
   order_welds(c);
+  read_robots(c);
   read_drives(c);
-  read_phases(c);
+  WireMotions motions;
+  motions.sensors = read_sensors(c, run.options.output_interval);
+  read_phases(c, motions.sensors);
   add_mounts(c);
   if (c.motion.arms.empty() && c.motion.bodies.empty() && c.wires.empty())
     root.fail("", "must list something that moves: [[arms]], [[bodies]], [[snares]] or [[wires]]");
-  WireMotions motions;
   const TomlTable output = root.table("output");
   motions.output = read_motion_output(output, run.options);
   motions.output.modes = output.boolean_or("modes", false);
   if (output.has("swings")) {
     if (const MotorJoint* joint = c.joint(output, "swings")) motions.swinging.emplace(joint->arm, joint->joint);
   }
-  motions.sensors = read_sensors(c, run.options.output_interval);
   motions.capture = read_capture(c);
   motions.input = c.input + document.canonical(least_advance_key);
   motions.duration = run.options.duration;
   document.finish();
   complete_pushes(c, run.options);
   for (DeclaredWire& w : c.wires) w.wire.rod.strands.time = c.strand_time;
+  PressedRests pressed;
   for (DeclaredWire& w : c.wires)
-    if (!w.law) c.motion.wires.push_back(at_rest(std::move(w)));
+    if (!w.law) c.motion.wires.push_back(w.wall ? at_rest_in_wall(std::move(w), pressed) : at_rest(std::move(w)));
   motions.model_keys = std::move(c.model_keys);
   motions.law_models.assign(c.law_models.begin(), c.law_models.end());
   motions.drawn = std::move(c.drawn);

@@ -143,10 +143,10 @@ coupling::LawWire law_in_place(const DeclaredWire& w) {
 }
 
 // The wire of its own frame (chord along x, bulge to y) turned to where its mounts are.
-coupling::MotionWire at_rest(DeclaredWire w) {
+coupling::MotionWire at_rest(DeclaredWire w, const Eigen::Matrix3Xd* shape) {
   const Matrix3d rest_frame =
       (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
-  const Eigen::Matrix3Xd rest = coupling::resting_wire(w.wire.rod);
+  const Eigen::Matrix3Xd rest = shape != nullptr ? *shape : coupling::resting_wire(w.wire.rod);
   w.wire.positions = (rest_frame * rest).colwise() + w.from;
   for (auto* end : {&w.wire.rod.properties.left, &w.wire.rod.properties.right}) {
     end->position = rest_frame * end->position + w.from;
@@ -165,6 +165,7 @@ coupling::MotionBody read_body(const TomlTable& table) {
     for (const char* key : {"mass_kg", "inertia_kg_m2", "spin_rad_s", "drag_Ns_m", "drag_Nms_rad", "force_N"}) {
       if (table.has(key)) table.fail(key, "a driven body moves at a constant velocity_m_s whatever it meets");
     }
+    static_cast<void>(table.has("robot"));  // of a composed scenario, which reads it behind the contacts
   } else {
     body.properties = read_body_properties(table);
     body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);

@@ -2,6 +2,7 @@
 
 #include "base/toml_reader.hpp"
 #include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/pressed_start.hpp"
 #include "scenario/names.hpp"
 #include "scenario/placement.hpp"
 #include "scenario/push_law.hpp"
@@ -30,6 +31,8 @@ struct DeclaredWire {
   std::optional<PushModel> push;         ///< of a law of pushes
   /// What carries the ends; the world: they stand still.
   coupling::MotionCarrier from_carrier, to_carrier;
+  std::optional<coupling::RoundWall>
+      wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
 };
 
 /// The wire for which a law stands, in its place but without a shaft.
@@ -46,8 +49,9 @@ void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string
 /// A wire of the list, with its ends on frames.
 [[nodiscard]] DeclaredWire read_listed_wire(const base::TomlTable& table, Names& names, const Placement& placement,
                                             const wire::RodDamping& damping, const BesideScenario& beside);
-/// The wire at rest where its mounts are. Throws InputError when it finds no rest.
-[[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire);
+/// The wire at rest where its mounts are. Throws InputError when it finds no rest. shape: where it rests in its own frame, chord along x and bulge
+/// to y, (3, vertices) [m]; none: it is looked for.
+[[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire, const Eigen::Matrix3Xd* shape = nullptr);
 
 /// A body but for the frame on which its place counts.
 [[nodiscard]] coupling::MotionBody read_body(const base::TomlTable& table);

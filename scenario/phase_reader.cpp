@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -57,7 +58,56 @@ void read_frames(const Composition& c, const TomlTable& table, const char* key, 
   }
 }
 
-void read_condition(const Composition& c, const TomlTable& table, std::vector<SignalBound>& bounds) {
+/// Index among what the motion senses, where the sensor is added if it is not there yet.
+class Sensed {
+ public:
+  Sensed(Composition& c, const std::vector<Sensor>& sensors) : c_(c), sensors_(sensors) {}
+
+  [[nodiscard]] const Sensor* find(const std::string& name) const {
+    const auto found = std::ranges::find(sensors_, name, &Sensor::name);
+    return found == sensors_.end() ? nullptr : &*found;
+  }
+  [[nodiscard]] std::string requirement() const {
+    std::string known;
+    for (const Sensor& s : sensors_) known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", s.name);
+    return known.empty() ? "must be a sensor; there is none" : "must be a sensor: " + known;
+  }
+  [[nodiscard]] int index(const Sensor& sensor) {
+    const auto [place, added] = indices_.try_emplace(sensor.name, static_cast<int>(c_.motion.sensed.size()));
+    if (added) c_.motion.sensed.push_back(sensed_by(sensor));
+    return place->second;
+  }
+
+ private:
+  Composition& c_;
+  const std::vector<Sensor>& sensors_;
+  std::map<std::string, int> indices_;
+};
+
+/// `above_UNIT` or `below_UNIT`, in the unit of the sensor's columns, of one of its numbers or of their size.
+void read_sensed(const TomlTable& table, Sensed& sensed, std::vector<coupling::SensedBound>& bounds) {
+  const std::string name = table.text("sensor");
+  const Sensor* sensor = sensed.find(name);
+  static constexpr base::Choice<int> axes[] = {{"x", 0}, {"y", 1}, {"z", 2}};
+  const std::optional<int> axis = table.has("axis") ? table.choice("axis", axes) : std::nullopt;
+  if (sensor == nullptr) {
+    if (!name.empty()) table.fail("sensor", sensed.requirement());
+    return;
+  }
+  if (table.has("axis") && sensor->components() == 1) table.fail("axis", "only of a sensor that reads three numbers");
+  coupling::SensedBound b;
+  b.sensed = sensed.index(*sensor);
+  b.component = sensor->components() == 1 ? 0 : axis.value_or(-1);
+  const std::string above = "above_" + sensor->unit_name(), below = "below_" + sensor->unit_name();
+  b.above = table.has(above);
+  if (b.above == table.has(below))
+    table.fail(b.above ? below : above, fmt::format("must have either {} or {}", above, below));
+  b.bound = table.number_or(b.above ? above : below, 0.0, Range::from(-1e12, 1e12));
+  bounds.push_back(b);
+}
+
+void read_condition(const Composition& c, const TomlTable& table, Sensed& sensed, coupling::MotionPhase& phase) {
+  std::vector<SignalBound>& bounds = phase.bounds;
   const Quantity* asked = nullptr;
   std::string known;
   for (const Quantity& q : quantities) {
@@ -76,8 +126,13 @@ void read_condition(const Composition& c, const TomlTable& table, std::vector<Si
     }
     return;
   }
+  if (table.has("sensor")) {
+    if (asked != nullptr) table.fail("sensor", fmt::format("cannot stand beside {}", asked->key));
+    read_sensed(table, sensed, phase.sensed);
+    return;
+  }
   if (asked == nullptr) {
-    table.fail("", "must have one of touch, " + known);
+    table.fail("", "must have one of touch, sensor, " + known);
     return;
   }
   SignalBound b;
@@ -110,7 +165,8 @@ void read_condition(const Composition& c, const TomlTable& table, std::vector<Si
 
 }  // namespace
 
-void read_phases(Composition& c) {
+void read_phases(Composition& c, const std::vector<Sensor>& sensors) {
+  Sensed sensed(c, sensors);
   Names names("phase");
   double last = 0.0;
   for (const TomlTable& table : c.document.root().tables("phases")) {
@@ -122,8 +178,9 @@ void read_phases(Composition& c) {
                  fmt::format("must not be before that of an earlier phase, {:.9g}: phases begin in their order", last));
     last = std::max(last, phase.not_before);
     phase.after_previous = table.number_or("after_s", 0.0, Range::from(0.0, 1e6));
-    for (const TomlTable& condition : table.tables("when")) read_condition(c, condition, phase.bounds);
-    if (table.has("hold_s") && phase.bounds.empty()) table.fail("hold_s", "only beside conditions, when = [...]");
+    for (const TomlTable& condition : table.tables("when")) read_condition(c, condition, sensed, phase);
+    if (table.has("hold_s") && phase.bounds.empty() && phase.sensed.empty())
+      table.fail("hold_s", "only beside conditions, when = [...]");
     phase.hold = table.number_or("hold_s", 0.0, Range::from(0.0, 1e6));
     for (const TomlTable& drive : table.tables("drives")) {
       for (const MotorJoint& j : read_joints(c, drive))

@@ -54,7 +54,9 @@ void Placement::resolve() {
                  waits ? "must not stand on itself by way of others, nor on a frame that they lack" : requirement());
   }
   // So that what names them is not reported as well.
-  for (const Waiting& w : std::exchange(waiting_, {})) w.place({}, *this);
+  while (!waiting_.empty()) {
+    for (const Waiting& w : std::exchange(waiting_, {})) w.place({}, *this);
+  }
 }
 
 std::optional<PlacedFrame> Placement::find(const std::string& name) const {

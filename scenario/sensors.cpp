@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 
 namespace snare::scenario {
 
@@ -114,7 +116,47 @@ class Sight {
   FrameTrack frame_, other_;
 };
 
+/// Noise of the readings of a sensor, one after the other: one stream a sensor, so that what others there are makes no difference to it.
+class NoiseStream {
+ public:
+  explicit NoiseStream(const Sensor& sensor)
+      : components_(sensor.components()), size_(sensor.noise), engine_(sensor.seed) {}
+
+  [[nodiscard]] Vector3d of(long reading) {
+    while (static_cast<long>(drawn_.size()) <= reading) {
+      Vector3d& noise = drawn_.emplace_back(Vector3d::Zero());
+      for (int a = 0; a < components_; ++a) noise[a] = size_ * normal_(engine_);
+    }
+    return drawn_[static_cast<std::size_t>(reading)];
+  }
+
+ private:
+  int components_;
+  double size_;
+  boost::random::mt19937_64 engine_;
+  boost::random::normal_distribution<double> normal_{0.0, 1.0};
+  std::vector<Vector3d> drawn_;
+};
+
 }  // namespace
+
+coupling::SensedSignal sensed_by(const Sensor& sensor) {
+  coupling::SensedSignal signal;
+  signal.interval = sensor.interval;
+  signal.delay = sensor.delay;
+  const auto kept = std::make_shared<const Sensor>(sensor);
+  signal.make = [kept](const coupling::Motion& motion) -> coupling::SensedSignal::Sight {
+    const auto sight = std::make_shared<const Sight>(*kept, motion);
+    return [kept, sight](const MotionSample& s) -> Vector3d { return sight->of(s) / unit_of(*kept).size; };
+  };
+  if (sensor.noise > 0.0)
+    signal.noise = [stream = std::make_shared<NoiseStream>(sensor)](long reading) { return stream->of(reading); };
+  return signal;
+}
+
+std::string Sensor::unit_name() const {
+  return unit_of(*this).suffix;
+}
 
 int Sensor::components() const {
   return kind <= Kind::rate ? 3 : 1;
@@ -138,9 +180,7 @@ Readings read_off(const Sensor& sensor, const coupling::Motion& motion, const st
   if (samples.empty()) return readings;
   const Sight sight(sensor, motion);
   const Unit unit = unit_of(sensor);
-  // One stream a sensor: what others there are makes no difference to its noise.
-  boost::random::mt19937_64 engine(sensor.seed);
-  boost::random::normal_distribution<double> noise(0.0, 1.0);
+  NoiseStream noise(sensor);
   std::size_t k = 0;
   const double last = samples.back().time;
   for (long i = 0;; ++i) {
@@ -153,9 +193,8 @@ Readings read_off(const Sensor& sensor, const coupling::Motion& motion, const st
     if (k + 1 < samples.size() && beyond > 1e-9 * sensor.interval)
       value += beyond / (samples[k + 1].time - samples[k].time) * (sight.of(samples[k + 1]) - value);
     readings.times.push_back(time);
-    for (int a = 0; a < sensor.components(); ++a)
-      readings.values[at(a)].push_back(value[a] / unit.size +
-                                       (sensor.noise > 0.0 ? sensor.noise * noise(engine) : 0.0));
+    const Vector3d error = sensor.noise > 0.0 ? noise.of(i) : Vector3d::Zero();
+    for (int a = 0; a < sensor.components(); ++a) readings.values[at(a)].push_back(value[a] / unit.size + error[a]);
   }
   return readings;
 }

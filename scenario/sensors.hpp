@@ -2,6 +2,7 @@
 
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/sensed.hpp"
 #include "scenario/placement.hpp"
 
 #include <string>
@@ -40,9 +41,14 @@ struct Sensor {
   [[nodiscard]] int components() const;
   /// SI units in one unit of its columns, 1e-3 for mm.
   [[nodiscard]] double unit() const;
+  /// Unit in which it reads, as names of columns and keys have it: "mm", "deg_s".
+  [[nodiscard]] std::string unit_name() const;
   /// Names of its columns, with units.
   [[nodiscard]] std::vector<std::string> columns() const;
 };
+
+/// What the sensor tells phases while the motion runs: the readings of `read_off`, in the unit of its columns.
+[[nodiscard]] coupling::SensedSignal sensed_by(const Sensor& sensor);
 
 /// Readings of a sensor, in the units of its columns.
 struct Readings {

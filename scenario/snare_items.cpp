@@ -257,9 +257,12 @@ void Snares::add_walls() {
     const double length = table.number_or("length_mm", 60.0 * mm, Range::above(0.0, 1e5), mm);
     const double thickness = table.number_or("thickness_mm", 5.0 * mm, Range::above(0.0, 1e3), mm);
     const double mass = table.number_or("mass_kg", 5.0, Range::above(0.0, 1e6));
-    const double least =
-        std::max(item.radius, item.radius * std::cos(0.5 * item.ring.start) + arc_bow(item.radius, item.ring.start)) +
-        0.5 * item.wire->specification.diameter;
+    // Where pinned wires bow beyond it, they begin pressed by it; others must clear it.
+    const double half = 0.5 * item.wire->specification.diameter;
+    const bool may_press =
+        !item.wire->law && item.wire->wire.rod.properties.left.kind == wire::SpatialEnd::Kind::twisting_pin;
+    const double bow = item.radius * std::cos(0.5 * item.ring.start) + arc_bow(item.radius, item.ring.start);
+    const double least = (may_press ? item.radius : std::max(item.radius, bow)) + half;
     if (!(inner > least))
       table.fail("radius_mm", fmt::format("must be > {:.6g}, that of the ring with half a wire", least / mm));
     coupling::MotionContact wall;
@@ -269,6 +272,9 @@ void Snares::add_walls() {
     if (!housing || !(inner > 0.0) || !(length > 0.0) || !(thickness > 0.0)) continue;
     wall.shape = coupling::hollow_cylinder(inner, inner + thickness, length, 0.0);
     c_.add_shape(item.name + "::wall", wall, *housing, mass, c_.snares[item.name].wires);
+    for (const int w : c_.snares[item.name].wires) {
+      if (may_press) c_.wires[at(w)].wall = {housing->X_WF.p, inner, inner + thickness, length, wall.foundation};
+    }
     c_.drawn.push_back({item.name + "::wall", housing->carrier, housing->X_WF, wall.shape->drawing()});
   }
 }

@@ -1,12 +1,10 @@
 #include "validation/capture_checks.hpp"
 
-#include "base/toml_tree.hpp"
-#include "scenario/scenario.hpp"
+#include "validation/scenario_run.hpp"
 
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -14,41 +12,11 @@ namespace snare::validation {
 
 namespace {
 
-using coupling::MotionEvent;
-using coupling::MotionResult;
 using coupling::MotionSample;
-using Eigen::Vector3d;
 
 Row row(const std::string& name, const std::string& unit, const std::string& source, double reference, double value,
         ErrorKind kind, double limit) {
   return {"capture", name, unit, source, reference, value, kind, limit};
-}
-
-/// A run of a shipped scenario with some of its keys changed.
-struct Run {
-  scenario::NamedMotion asked;
-  MotionResult result;
-  MotionSample last;
-  [[nodiscard]] double usable() const { return result.report.usable() ? 0.0 : not_computed; }
-};
-
-Run run_of(const std::filesystem::path& file, const std::vector<std::string>& settings) {
-  std::vector<base::Override> overrides;
-  for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
-  Run run;
-  run.asked = scenario::read_scenario(file, overrides).motions.runs.front();
-  run.result = coupling::simulate(run.asked.motion, run.asked.options, [&run](const MotionSample& s) {
-    run.last = s;
-    return false;
-  });
-  return run;
-}
-
-double first_touch(const MotionResult& result, int contact) {
-  const auto found = std::find_if(result.events.begin(), result.events.end(), [contact](const MotionEvent& e) {
-    return e.kind == MotionEvent::Kind::touch && e.contact == contact;
-  });
-  return found == result.events.end() ? not_computed : found->time;
 }
 
 /// Where a function that rises passes zero.
@@ -60,14 +28,12 @@ double zero_of(const Function& f, double low, double high) {
   return 0.5 * (a + b);
 }
 
-const std::string as_strings = "snares[snare].wire.model=\"stretched\"";
-
 }  // namespace
 
 // Tangent to a shaft of radius r (with the wire's) at theta_t = 2 acos(r/R), a wire is 2 sqrt(R^2 - r^2) + r (theta - theta_t) long
 // when it is taut; its tension gives the angle of the ring, and n of them its torque, n T r.                        (M.24)
 std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
-  const Run run =
+  const ScenarioRun run =
       run_of(data / "scenarios/snare_on_pin.toml",
              {as_strings, "duration_s=2.0", "damping.axial_time_s=0.001", "snares[snare].ring.damping_Nms_rad=500.0"});
   constexpr double R = 0.1, r = 6.75e-3;
@@ -87,11 +53,12 @@ std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
 // The shipped rigidizing by a snare that stands still and a stiff ball joint: the carriage's quintic by 125 mm in 2 s brings the plate
 // over the 120 mm to the face.
 std::vector<Row> rigidizing_rows(const std::filesystem::path& data) {
-  const Run run = run_of(data / "scenarios/ssrms_rigidize.toml",
-                         {"snares[snare].frame=\"world\"", "bodies[visitor].velocity_m_s=[0.0,0.0,0.0]",
-                          "bodies[visitor].spin_rad_s=[0.0,0.0,0.0]",
-                          "bushings[ball joint].translational_stiffness_N_m=[1.0e8,1.0e8,1.0e8]",
-                          "bushings[ball joint].translational_damping_Ns_m=[1.0e5,1.0e5,1.0e5]", "duration_s=7.0"});
+  const ScenarioRun run =
+      run_of(data / "scenarios/ssrms_rigidize.toml",
+             {"snares[snare].frame=\"world\"", "bodies[visitor].velocity_m_s=[0.0,0.0,0.0]",
+              "bodies[visitor].spin_rad_s=[0.0,0.0,0.0]",
+              "bushings[ball joint].translational_stiffness_N_m=[1.0e8,1.0e8,1.0e8]",
+              "bushings[ball joint].translational_damping_Ns_m=[1.0e5,1.0e5,1.0e5]", "duration_s=7.0"});
   const double share =
       zero_of([](double s) { return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s) - 120.0 / 125.0; }, 0.5, 1.0);
   return {row("rigidizing, the plate meets the face", "s", "5 s + 2 s of the quintic's share", 5.0 + 2.0 * share,
@@ -101,13 +68,14 @@ std::vector<Row> rigidizing_rows(const std::filesystem::path& data) {
 // The shipped capture of 16 t with strings: tolerances a tenth, and a minute of it.
 std::vector<Row> snare_capture_rows(const std::filesystem::path& data) {
   const std::filesystem::path file = data / "scenarios/ssrms_htv_capture.toml";
-  const Run coarse = run_of(file, {as_strings});
+  const ScenarioRun coarse = run_of(file, {as_strings});
   const coupling::MotionOptions& o = coarse.asked.options;
-  const Run fine = run_of(file, {as_strings, fmt::format("solver.relative_tolerance={}", 0.1 * o.relative_tolerance),
-                                 fmt::format("solver.body_position_tolerance_m={}", 0.1 * o.body_position_tolerance),
-                                 fmt::format("solver.body_velocity_tolerance_m_s={}", 0.1 * o.body_velocity_tolerance),
-                                 fmt::format("solver.body_angle_tolerance_rad={}", 0.1 * o.angle_tolerance),
-                                 fmt::format("solver.body_spin_tolerance_rad_s={}", 0.1 * o.spin_tolerance)});
+  const ScenarioRun fine =
+      run_of(file, {as_strings, fmt::format("solver.relative_tolerance={}", 0.1 * o.relative_tolerance),
+                    fmt::format("solver.body_position_tolerance_m={}", 0.1 * o.body_position_tolerance),
+                    fmt::format("solver.body_velocity_tolerance_m_s={}", 0.1 * o.body_velocity_tolerance),
+                    fmt::format("solver.body_angle_tolerance_rad={}", 0.1 * o.angle_tolerance),
+                    fmt::format("solver.body_spin_tolerance_rad_s={}", 0.1 * o.spin_tolerance)});
   const std::string source = "tolerances a tenth";
   std::vector<Row> rows;
   for (int k = 0; k < 3; ++k) {
@@ -125,7 +93,7 @@ std::vector<Row> snare_capture_rows(const std::filesystem::path& data) {
                        first_touch(coarse.result, k) + usable, ErrorKind::absolute, 1e-3));
     rows.push_back(row(wire + "tight", "s", source, b.tight_at, a.tight_at + usable, ErrorKind::absolute, 1e-3));
   }
-  const Run minute = run_of(file, {as_strings, "duration_s=60.0", "output_interval_s=0.05"});
+  const ScenarioRun minute = run_of(file, {as_strings, "duration_s=60.0", "output_interval_s=0.05"});
   const double brought = 16000.0 * 0.01;  // momentum of the visitor at the start [N s]
   rows.push_back(row("capture of 16 t by strings over 60 s, momentum not accounted for over the visitor's", "",
                      "conservation", 0.0, minute.result.momentum_error.norm() / brought + minute.usable(),

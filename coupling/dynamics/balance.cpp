@@ -160,7 +160,23 @@ double MotionRun::longest_step() const {
   double step = std::numeric_limits<double>::infinity();
   for (const ContactGroup& c : contacts_) step = std::min(step, c.longest_step());
   for (const WirePairPart& p : pairs_) step = std::min(step, p.search().longest_step());
+  for (const RobotLoop& l : loops_) step = std::min(step, l.longest_step());
   return step;
+}
+
+void MotionRun::measure(double from) {
+  for (RobotLoop& l : loops_) {
+    l.measure(from, time_, [&](double time) {
+      const VectorXd y = time == time_ ? y_ : ida_->interpolate(time);
+      Vector3d force = Vector3d::Zero();
+      for (const MotionRobot::Measured& m : l.robot().measured) {
+        const std::size_t k = base::at(m.contact);
+        force += m.sign * (k >= first_press() ? presses_[k - first_press()]->pressing(y).sample.force
+                                              : contacts_[k].sums(y).force);
+      }
+      return force;
+    });
+  }
 }
 
 // Extremes over the accepted steps, and what happened since the last one.

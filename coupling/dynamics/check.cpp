@@ -137,6 +137,17 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
               "must be positive definite");
     c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
               b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
+    if (b.robot) {
+      c.require(b.driven && !b.course_velocity, b.name + ".robot", 0.0, "must be of a driven body without a course");
+      positive(b.name + ".robot.mass", b.robot->mass);
+      positive(b.name + ".robot.delay", b.robot->delay);
+      for (const MotionRobot::Measured& m : b.robot->measured)
+        c.require(
+            m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
+                (base::at(m.contact) < motion.contacts.size() ||
+                 base::at(m.contact) >= motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size()),
+            b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
+    }
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
               "must be a unit quaternion");
   }
@@ -178,6 +189,16 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     c.require(m.carrier.kind == MotionCarrier::Kind::world || w.rod.damping.mass_rate == 0.0,
               w.name + ".damping.mass_rate", w.rod.damping.mass_rate,
               fmt::format("must be 0: it drags against the world, which {} leaves", m.name));
+  }
+  for (const SensedSignal& s : motion.sensed) {
+    positive("sensed.interval", s.interval);
+    c.require(s.delay >= 0.0, "sensed.delay", s.delay, "must be >= 0");
+    c.require(static_cast<bool>(s.make), "sensed.make", 0.0, "must be given");
+  }
+  for (const MotionPhase& p : motion.phases) {
+    for (const SensedBound& b : p.sensed)
+      c.require(b.sensed >= 0 && b.sensed < static_cast<int>(motion.sensed.size()), p.name + ".sensed", b.sensed,
+                "must be the index of a sensed signal");
   }
   ConstraintSet::check(motion, c);
   validate_laws(motion, c);

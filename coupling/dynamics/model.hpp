@@ -10,6 +10,7 @@
 #include "coupling/dynamics/frame_load.hpp"
 #include "coupling/dynamics/law_wire.hpp"
 #include "coupling/dynamics/phase.hpp"
+#include "coupling/dynamics/robot.hpp"
 #include "coupling/dynamics/strength.hpp"
 #include "coupling/dynamics/tightness.hpp"
 #include "multibody/rigid_body.hpp"
@@ -21,6 +22,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,8 @@ struct MotionBody {
   bool driven = false;
   /// Of a driven body: velocity [m/s] at a time [s], continuous, and its derivative [m/s^2]. Both or none.
   std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
+  /// Of a driven body without a course: a robot plays a body that is free.
+  std::optional<MotionRobot> robot;
 };
 
 /// A shape that belongs to a body and may touch a wire, at several points at a time.
@@ -108,6 +112,7 @@ struct Motion {
   std::vector<BodyContact> body_contacts;
   std::vector<FrameLoad> loads;
   std::vector<MotionPhase> phases;                    ///< in their order
+  std::vector<SensedSignal> sensed;                   ///< for the phases
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 
   /// Of all wires, in the order in which results count them: those of the list, then those that laws stand for.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/sensed.hpp"
 #include "multibody/spatial.hpp"
 
 #include <functional>
@@ -47,7 +48,8 @@ struct MotionPhase {
   std::string name = "phase";
   double not_before = 0.0;          ///< [s], from the start of the motion
   double after_previous = 0.0;      ///< least time from the beginning of the phase before [s], >= 0
-  std::vector<SignalBound> bounds;  ///< all must hold; none: the times decide
+  std::vector<SignalBound> bounds;  ///< all must hold, and all of the next; none: the times decide
+  std::vector<SensedBound> sensed;  ///< of the readings that have come
   double hold = 0.0;                ///< for so long without a break [s], >= 0
   std::vector<PhaseDrive> drives;
   bool ends_run = false;  ///< the run is over where it begins

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace snare::coupling {
 
@@ -34,21 +35,31 @@ double PhaseWatch::margin(const Signals& signals) const {
   return least;
 }
 
-void PhaseWatch::start(double time, const Signals& signals) {
+bool PhaseWatch::keeps_readings(const Kept& kept) const {
+  return std::ranges::all_of(phases_[next_].sensed, kept);
+}
+
+bool PhaseWatch::asks_for_readings() const {
+  return std::any_of(phases_.begin() + static_cast<std::ptrdiff_t>(next_), phases_.end(),
+                     [](const MotionPhase& p) { return !p.sensed.empty(); });
+}
+
+void PhaseWatch::start(double time, const Signals& signals, const Kept& kept) {
   last_time_ = time;
   if (pending() == nullptr) return;
   last_margin_ = margin(signals);
-  if (last_margin_ < 0.0)
+  if (last_margin_ < 0.0 || !keeps_readings(kept))
     kept_since_.reset();
   else if (!kept_since_)
     kept_since_ = time;
 }
 
-// Straight between the steps; a phase does not begin before its time, whatever its signals did until then.
-std::optional<double> PhaseWatch::look(double time, const Signals& signals) {
+// Straight between the steps; a phase does not begin before its time, whatever its signals did until then. A reading holds until the next
+// one comes, and steps end where one does.
+std::optional<double> PhaseWatch::look(double time, const Signals& signals, const Kept& kept) {
   if (pending() == nullptr) return std::nullopt;
   const double now = margin(signals);
-  if (now >= 0.0) {
+  if (now >= 0.0 && keeps_readings(kept)) {
     if (!kept_since_) {
       const double share = std::isfinite(now) && now > last_margin_ ? -last_margin_ / (now - last_margin_) : 0.0;
       kept_since_ = last_time_ + std::clamp(share, 0.0, 1.0) * (time - last_time_);
@@ -65,11 +76,21 @@ std::optional<double> PhaseWatch::look(double time, const Signals& signals) {
   return std::max(begins, before);
 }
 
-void PhaseWatch::begin(double time, const Signals& signals) {
+bool PhaseWatch::read(double time, const Kept& kept) {
+  if (pending() == nullptr || phases_[next_].sensed.empty()) return false;
+  if (!keeps_readings(kept)) {
+    kept_since_.reset();
+    return false;
+  }
+  if (!kept_since_ && last_margin_ >= 0.0) kept_since_ = time;
+  return kept_since_ && std::max(earliest(), *kept_since_ + phases_[next_].hold) <= time;
+}
+
+void PhaseWatch::begin(double time, const Signals& signals, const Kept& kept) {
   begun_ = time;
   ++next_;
   kept_since_.reset();
-  start(time, signals);
+  start(time, signals, kept);
 }
 
 void PhaseWatch::save_state(std::vector<double>& memory) const {

@@ -34,6 +34,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
       options_(options),
       observer_(observer),
       phases_(motion.phases),
+      sensed_(motion, options.output_interval),
       progress_(options.least_advance) {
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
@@ -43,8 +44,9 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
         wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
   }
   for (int b = 0; b < static_cast<int>(motion.bodies.size()); ++b) {
+    const MotionBody& body = motion.bodies[base::at(b)];
     const bool welded = std::ranges::any_of(motion.welds, [b](const MotionWeld& w) { return w.body == b; });
-    bodies_.emplace_back(motion.bodies[base::at(b)], motion.gravity, options, welded);
+    bodies_.emplace_back(body.robot ? loops_.emplace_back(body).moved() : body, motion.gravity, options, welded);
   }
   for (const MotionContact& c : motion.contacts) {
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
@@ -225,7 +227,8 @@ void MotionRun::begin() {
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
   settle();
-  phases_.start(0.0, [this](const MotionSignal& s) { return signal(s); });
+  sense();
+  phases_.start(0.0, signals(), kept());
 }
 
 void MotionRun::resume(const MotionState& from) {
@@ -245,6 +248,7 @@ void MotionRun::resume(const MotionState& from) {
   peak_.restore_state(memory);
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
   restore_phases(memory);
+  for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
   for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
   system_->restore_state(y_, memory);
@@ -271,10 +275,13 @@ MotionResult MotionRun::go(double limit) {
   integrands({time_, y_, rate_}, rates);
   const auto of_contacts = integrals_.size() - integral::contacts;
   forces_.add(time_, rates.tail(of_contacts));
+  measure(time_);
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
     double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
     for (const LoadPart& l : loads_) stop = std::min(stop, l.next_break(time_));
+    for (const RobotLoop& l : loops_) stop = std::min(stop, l.next_break(time_));
+    if (phases_.asks_for_readings()) stop = std::min(stop, sensed_.limit(time_));
     if (reached(time_, stop)) {
       pass(stop);
       continue;
@@ -290,6 +297,7 @@ MotionResult MotionRun::go(double limit) {
     integrals_ = ida_->integrals();
     const bool phase = look_for_phase();
     forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(of_contacts));
+    measure(before);
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
     const long evaluations = ida_->statistics().residuals - evaluated;
@@ -312,6 +320,7 @@ MotionResult MotionRun::go(double limit) {
       break;
     }
     std::size_t event = 0;
+    bool touch_or_lift = false;
     for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
       if (behind || found[event] == 0) continue;
       changed = true;
@@ -322,10 +331,12 @@ MotionResult MotionRun::go(double limit) {
     for (std::size_t k = 0; k < presses_.size(); ++k, ++event) {
       if (behind || found[event] == 0) continue;
       changed = changed || presses_[k]->jumps();
+      touch_or_lift = true;
       sums_.events.push_back({time_, static_cast<int>(first_press() + k), 0, presses_[k]->sample(y_).arc,
                               found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
     for (LoadPart& l : loads_) changed = l.enter(time_) || changed;
+    for (RobotLoop& l : loops_) changed = l.enter(time_, changed || phase || touch_or_lift) || changed;
     if (phase) {
       over_ = begin_phases();
     } else if (changed) {
@@ -374,6 +385,8 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
   phases_.save_state(memory);
+  sensed_.save_state(memory);
+  for (const RobotLoop& l : loops_) l.save_state(memory);
   constraints_->save_state(memory);
   const std::vector<double> parts = system_->memory();
   memory.insert(memory.end(), parts.begin(), parts.end());

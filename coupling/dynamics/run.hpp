@@ -14,6 +14,8 @@
 #include "coupling/dynamics/peak_force.hpp"
 #include "coupling/dynamics/phase_watch.hpp"
 #include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/robot_loop.hpp"
+#include "coupling/dynamics/sensed_readings.hpp"
 #include "coupling/dynamics/wire_pair_part.hpp"
 #include "numerics/ida.hpp"
 #include "numerics/progress.hpp"
@@ -83,6 +85,10 @@ class MotionRun {
 
   // Phases (run_phases.cpp).
   [[nodiscard]] double signal(const MotionSignal& signal);
+  [[nodiscard]] PhaseWatch::Signals signals();
+  [[nodiscard]] PhaseWatch::Kept kept() const;
+  /// What sensors see and read now, for the phases that ask for it.
+  void sense();
   /// See end_tension, now [N].
   [[nodiscard]] double tension(int wire);
   /// After a step: goes back to where a phase begins within it. Whether one does.
@@ -103,6 +109,8 @@ class MotionRun {
   void watch(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
   [[nodiscard]] double longest_step() const;
+  /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
+  void measure(double from);
   /// Number of all that presses.
   [[nodiscard]] std::size_t touching() const {
     return contacts_.size() + springs_.size() + pairs_.size() + presses_.size();
@@ -119,6 +127,7 @@ class MotionRun {
   MotionOptions options_;
   const MotionObserver& observer_;
   std::deque<wire::RodPart> rods_;
+  std::deque<RobotLoop> loops_;  // of bodies that robots move: before these
   std::deque<BodyPart> bodies_;
   std::deque<ContactGroup> contacts_;
   std::deque<LawPart> springs_;
@@ -129,6 +138,7 @@ class MotionRun {
   std::vector<PressPart*> presses_;  // both of them
   std::deque<LoadPart> loads_;
   PhaseWatch phases_;
+  SensedReadings sensed_;
   std::unique_ptr<numerics::DaeSystem> system_;
   std::unique_ptr<numerics::Ida> ida_;
   Eigen::VectorXd y_, rate_;

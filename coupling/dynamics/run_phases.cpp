@@ -56,17 +56,30 @@ double MotionRun::signal(const MotionSignal& s) {
   return 0.0;
 }
 
-// The integrator has gone on behind the beginning of the phase: its polynomial gives the state there.
+PhaseWatch::Signals MotionRun::signals() {
+  return [this](const MotionSignal& s) { return signal(s); };
+}
+
+PhaseWatch::Kept MotionRun::kept() const {
+  return [this](const SensedBound& b) { return b.kept_by(sensed_.last(b.sensed)); };
+}
+
+void MotionRun::sense() {
+  if (phases_.asks_for_readings()) sensed_.pass(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
+}
+
+// The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has not gone on behind a reading.
 bool MotionRun::look_for_phase() {
-  const std::optional<double> begins = phases_.look(time_, [this](const MotionSignal& s) { return signal(s); });
-  if (!begins) return false;
-  if (*begins < time_) {
+  const std::optional<double> begins = phases_.look(time_, signals(), kept());
+  if (begins && *begins < time_) {
     time_ = *begins;
     y_ = ida_->interpolate(time_);
     rate_ = ida_->interpolate(time_, 1);
     integrals_ = ida_->interpolate_integrals(time_);
+    return true;
   }
-  return true;
+  sense();
+  return begins || phases_.read(time_, kept());
 }
 
 bool MotionRun::begin_phases() {
@@ -79,8 +92,8 @@ bool MotionRun::begin_phases() {
     }
     sums_.phases.push_back(std::move(begun));
     if (phase.ends_run) return true;
-    phases_.begin(time_, [this](const MotionSignal& s) { return signal(s); });
-    another = phases_.look(time_, [this](const MotionSignal& s) { return signal(s); }).has_value();
+    phases_.begin(time_, signals(), kept());
+    another = phases_.look(time_, signals(), kept()).has_value();
   }
   settle();
   return false;
@@ -88,6 +101,7 @@ bool MotionRun::begin_phases() {
 
 void MotionRun::restore_phases(std::span<const double>& memory) {
   phases_.restore_state(memory);
+  sensed_.restore_state(memory);
   for (const PhaseBeginning& begun : sums_.phases) {
     const std::vector<PhaseDrive>& drives = motion_.phases[at(begun.phase)].drives;
     for (std::size_t k = 0; k < drives.size(); ++k)

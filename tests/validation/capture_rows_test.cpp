@@ -1,6 +1,8 @@
 // The rows of the captures by snares; `snare validate` has all.
 
 #include "validation/capture_checks.hpp"
+#include "validation/frequency_checks.hpp"
+#include "validation/snare_checks.hpp"
 
 #include "tests/validation/row_checks.hpp"
 
@@ -18,6 +20,25 @@ TEST(CaptureRows, RingIsTightAsTheClosedForm) {
 }
 TEST(CaptureRows, RigidizingMeetsTheFaceInTime) {
   expect_within(rigidizing_rows(data));
+}
+TEST(CaptureRows, RingTurnsTheSameTwoWays) {
+  expect_within(ring_two_ways_rows(data, "stretched"));
+}
+TEST(CaptureRows, FrequenciesAreThoseOfASmallDisturbance) {
+  expect_within(held_frequency_rows(data));
+  expect_within(capture_frequency_rows(data));
+}
+TEST(CaptureRows, RollOnABushing) {
+  expect_within(bushing_frequency_rows(data));
+}
+TEST(CaptureRows, HardwareInTheLoopBouncesOffFaster) {
+  expect_within(bench_rows(data));
+}
+TEST(SlowCaptureRows, ShaftIsHeldForMinutes) {
+  expect_within(held_shaft_rows(data));
+}
+TEST(SlowCaptureRows, RingOfWiresTurnsTheSameTwoWays) {
+  expect_within(ring_two_ways_rows(data, "quasi_static"));
 }
 TEST(SlowCaptureRows, StringsKeepTheirNumbersAndBalances) {
   expect_within(snare_capture_rows(data));
