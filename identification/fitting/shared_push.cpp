@@ -5,6 +5,8 @@
 
 namespace snare::identification {
 
+using coupling::PushProblem;
+
 namespace {
 
 // Every member, by structured bindings: one that is added does not compile until it is compared.
