@@ -118,6 +118,7 @@ MOTION = {
     "contact_friction": ("Coulomb's coefficient, 0 or more", signed([lambda t: 0.3 * sign(t), lambda t: 0.7 * sign(t)], "slip speed", "friction")),
     "joint_back_drive": ("0 or more; added to the dry friction while the joint is limp", signed([lambda t: 0.2 * sign(t), lambda t: 0.7 * sign(t)], "speed", "torque")),
     "joint_backlash": ("half the gap, 0 or more; larger: more free play", signed([lambda t: 0.9 * t, lambda t: 0.9 * sign(t) * max(0, abs(t) - 0.3)], "deflection", "torque")),
+    "joint_breakaway": ("0 or more; beside the dry friction, and gone at speed", signed([lambda t: 0.4 * sign(t), lambda t: sign(t) * (0.4 + 0.5 * math.exp(-20 * t * t))], "speed", "resistance")),
     "joint_coulomb_friction": ("0 or more; it resists the motion either way", signed([lambda t: 0, lambda t: 0.6 * sign(t)], "speed", "resistance")),
     "joint_damping": ("larger: vibrations die faster", plot([wave, lambda t: 0.5 + 0.3 * math.exp(-3 * t) * math.sin(7 * t)], "time", "deflection")),
     "joint_friction_asymmetry": ("positive: more resistance forward than backward", signed([lambda t: 0.5 * sign(t), lambda t: 0.5 * sign(t) + 0.25], "speed", "resistance")),

@@ -69,10 +69,11 @@ std::vector<std::string> family_differences(const std::vector<TracedNumber>& bas
           std::find_if(base.begin(), base.end(), [&](const TracedNumber& n) { return n.key == there.key; });
       if (here == base.end() || !shown(*here) || !shown(there)) continue;
       if (there.value >= *here->lower && there.value <= *here->upper) continue;
-      told.push_back(fmt::format("{} is {:.5g} {} [{:.5g}, {:.5g}], and {:.5g} with the models of family {}: a "
-                                 "systematic difference between models of {:.2g} %, which no interval holds",
-                                 here->key, here->value, here->unit, *here->lower, *here->upper, there.value,
-                                 family.name, 100.0 * (there.value / here->value - 1.0)));
+      told.push_back(
+          fmt::format("{} is {:.5g} {} [{:.5g}, {:.5g}], and {:.5g} with the models of family {}: a "
+                      "systematic difference between models of {:.2g} %, which no interval holds",
+                      here->key, here->value, here->unit, *here->lower, *here->upper, there.value, family.name,
+                      100.0 * (there.value / here->value - 1.0)));
     }
   }
   return told;

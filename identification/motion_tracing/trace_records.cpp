@@ -516,7 +516,7 @@ class Tracer {
   MotionData data_, heldout_data_;
   std::vector<MotionSetting> base_settings_;
   std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
-  Eigen::MatrixXd heldout_jacobian_;  // there
+  Eigen::MatrixXd heldout_jacobian_;                          // there
   MotionFit current_;
   std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
   Eigen::VectorXd heldout_residual_;    // of the last stage

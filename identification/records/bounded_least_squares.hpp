@@ -35,7 +35,7 @@ enum class BoundedEnd {
 struct BoundedResult {
   Eigen::VectorXd x;
   Eigen::MatrixXd jacobian;  ///< the last one that was used: asked for at x or near it, and corrected on the way
-  double chi2 = 0.0;  ///< sum of squares, a number without unit
+  double chi2 = 0.0;         ///< sum of squares, a number without unit
   int iterations = 0;
   BoundedEnd end = BoundedEnd::converged;
 };

@@ -68,8 +68,8 @@ enum class FitDerivatives {
 struct MotionFitOptions {
   FitMethod method = FitMethod::gauss_newton;
   int max_iterations = 60;
-  double tolerance = 1e-5;                                   ///< relative fall of chi2 below which the fit ends
-  double simplex_change = 0.0;                               ///< as RecordSet::simplex_change; 0: by `tolerance`
+  double tolerance = 1e-5;      ///< relative fall of chi2 below which the fit ends
+  double simplex_change = 0.0;  ///< as RecordSet::simplex_change; 0: by `tolerance`
   FitDerivatives derivatives = FitDerivatives::central;
   Eigen::MatrixXd first_jacobian;                            ///< of the signal at the start, where known; else empty
   std::vector<MotionSetting> fixed;                          ///< beside the fitted ones

@@ -37,7 +37,8 @@ struct MotionNumber {
   /// them. Either this or `signal`.
   std::function<std::vector<base::Override>(double value, const StandingNumbers& record)> overrides;
   std::function<void(SignalChanges&, double value)> signal;
-  std::string above;  ///< key of the number above which the first of `overrides` is counted: that number as it stands is added; empty: none
+  std::string
+      above;  ///< key of the number above which the first of `overrides` is counted: that number as it stands is added; empty: none
 };
 
 /// A number, of any unit, as text that reads back to the same double.
