@@ -131,17 +131,17 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
   };
   const auto held = [&](const std::string& law) {
     Course c;
-    const ScenarioRun run = run_of(
-        data / "scenarios/held_shaft.toml", {"shapes[pin].law=\"" + law + "\""}, [&](const coupling::MotionSample& s) {
-          if (s.time < 59.99) return;
-          const double z = s.arms[0].state.q[0];  // of the slide
-          c.least = std::min(c.least, z);
-          c.most = std::max(c.most, z);
-          if (s.time < 60.01) c.at_60 = z;
-          c.at_120 = z;
-          c.normal = 0.0;
-          for (std::size_t k = 0; k < 3; ++k) c.normal += s.contacts[k].normal_force;
-        });
+    const ScenarioRun run = run_of(data / "scenarios/held_shaft.toml", {"shapes[pin].law=\"" + law + "\""},
+                                   [&](const coupling::MotionSample& s) {
+                                     if (s.time < 59.99) return;
+                                     const double z = s.arms[0].state.q[0];  // of the slide
+                                     c.least = std::min(c.least, z);
+                                     c.most = std::max(c.most, z);
+                                     if (s.time < 60.01) c.at_60 = z;
+                                     c.at_120 = z;
+                                     c.normal = 0.0;
+                                     for (std::size_t k = 0; k < 3; ++k) c.normal += s.contacts[k].normal_force;
+                                   });
     c.at_120 += run.usable();
     c.most += run.usable();
     return c;

@@ -41,13 +41,14 @@ class RobotLoop {
   [[nodiscard]] Eigen::Vector3d velocity(double time) const;      ///< [m/s]
   [[nodiscard]] Eigen::Vector3d acceleration(double time) const;  ///< [m/s^2]
 
-  /// See DaePart.
+  /// Appends the records that are kept, in SI units.
   void save_state(std::vector<double>& memory) const;
+  /// Takes them, in SI units, from the front of `memory`.
   void restore_state(std::span<const double>& memory);
 
  private:
   struct Record {
-    double time = 0.0;
+    double time = 0.0;  ///< [s]
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
   };
   /// The stretch of the records about a time, and the share of it that has passed; nothing before the first.

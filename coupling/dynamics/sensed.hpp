@@ -28,7 +28,7 @@ struct SensedBound {
   bool above = true;   ///< must be at least the bound; false: at most
   double bound = 0.0;  ///< in the unit of the readings
 
-  /// Whether a reading keeps it.
+  /// Whether a reading, in the unit of the bound, keeps it.
   [[nodiscard]] bool kept_by(const Eigen::Vector3d& reading) const {
     const double value = component < 0 ? reading.norm() : reading[component];
     return above ? value >= bound : value <= bound;

@@ -22,16 +22,18 @@ class SensedReadings {
   /// The motion stays the caller's and outlives it. output_interval [s].
   SensedReadings(const Motion& motion, double output_interval);
 
+  /// Whether nothing is sensed.
   [[nodiscard]] bool empty() const { return signals_.empty(); }
   /// The first time behind a time at which something is seen or read, at which the integration must stop [s]; infinite: none.
   [[nodiscard]] double limit(double time) const;
   /// The integration stands at a time [s]: what is seen or read there.
   void pass(double time, const Sampler& sample);
-  /// The last reading of a signal; there is one from the start on.
+  /// The last reading of a signal, in the unit of its kind; there is one from the start on.
   [[nodiscard]] const Eigen::Vector3d& last(int signal) const;
 
-  /// See DaePart.
+  /// Appends what is seen and not yet read, in SI units.
   void save_state(std::vector<double>& memory) const;
+  /// Takes it, in SI units, from the front of `memory`.
   void restore_state(std::span<const double>& memory);
 
  private:

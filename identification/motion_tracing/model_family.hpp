@@ -9,7 +9,7 @@
 namespace snare::identification {
 
 /// The base fit once more under other keys, RecordSet::families: what another kind of model takes the same numbers for.
-/// scales: by which the channels are weighed, as for the base. progress: false stops, and the families that are done come back.
+/// scales: by which the channels are weighed, as for the base, in the unit of each channel. progress: false stops, and the families that are done come back.
 [[nodiscard]] std::vector<ModelFamily> fit_families(const RecordSet& set, const ChannelScales& scales,
                                                     const std::vector<MotionSetting>& base,
                                                     const std::function<bool(int iteration, double chi2)>& progress);

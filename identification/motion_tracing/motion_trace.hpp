@@ -68,7 +68,7 @@ struct MotionRound {
 struct ModelFamily {
   std::string name;
   std::vector<TracedNumber> numbers;
-  double chi2_dof = 0.0;  ///< against the noise
+  double chi2_dof = 0.0;  ///< against the noise [-]
   long simulations = 0;
   std::string failure;  ///< why there are no numbers; empty: there are
 };
