@@ -31,8 +31,6 @@ struct DaeBlock {
   int first = 0;                     ///< set by DaeLayout
   /// Whether the relative tolerance acts on them: not on places and angles, whose origin says nothing.
   bool relative = true;
-  /// Whether the error test looks at them: not at what follows others that are tested.
-  bool tested = true;
 };
 
 /// The unknowns of all parts, one block behind another.

@@ -100,9 +100,8 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   int blocks = 0;
   for (const DaeBlock& block : system.layout().blocks()) {
     tolerance.segment(block.first, block.count).setConstant(block.absolute_tolerance);
-    const bool differential = block.kind == DaeKind::differential && block.tested;
-    identity.segment(block.first, block.count).setConstant(differential ? 1.0 : 0.0);
-    if (differential || options.test_algebraic) {
+    identity.segment(block.first, block.count).setConstant(block.kind == DaeKind::differential ? 1.0 : 0.0);
+    if (block.kind == DaeKind::differential || options.test_algebraic) {
       tested += block.count;
       ++blocks;
     }
@@ -111,7 +110,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   callbacks.scale = Eigen::VectorXd::Ones(system.size());
   for (const DaeBlock& block : system.layout().blocks()) {
     if (block.relative) callbacks.relative.segment(block.first, block.count).setConstant(options.relative_tolerance);
-    if ((block.kind == DaeKind::differential && block.tested) || options.test_algebraic) {
+    if (block.kind == DaeKind::differential || options.test_algebraic) {
       callbacks.scale.segment(block.first, block.count)
           .setConstant(std::sqrt(static_cast<double>(block.count) * blocks / tested));
     }

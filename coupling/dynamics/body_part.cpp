@@ -10,21 +10,20 @@ using Eigen::Vector4d;
 using numerics::DaeKind;
 using numerics::DaePoint;
 
-BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const MotionOptions& options, bool follows)
+BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const MotionOptions& options)
     : body_(body),
       force_(body.force + body.properties.mass * gravity),
       options_(options),
-      follows_(follows),
       inverse_inertia_(body.properties.inertia.inverse()) {}
 
 void BodyPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::string& name = body_.name;
-  constexpr DaeKind kind = DaeKind::differential;
-  first_ = layout.add({name + " position", axes, 3, kind, options_.body_position_tolerance, 0, false, !follows_});
-  layout.add({name + " quaternion", {"w", "x", "y", "z"}, 4, kind, options_.angle_tolerance, 0, false, !follows_});
-  layout.add({name + " velocity", axes, 3, kind, options_.body_velocity_tolerance, 0, true, !follows_});
-  layout.add({name + " angular velocity", axes, 3, kind, options_.spin_tolerance, 0, true, !follows_});
+  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0, false});
+  layout.add(
+      {name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0, false});
+  layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.body_velocity_tolerance, 0});
+  layout.add({name + " angular velocity", axes, 3, DaeKind::differential, options_.spin_tolerance, 0});
   layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, numerics::no_tolerance, 0});
 }
 

@@ -14,9 +14,8 @@ namespace snare::coupling {
 /// which vanishes but for the integrator's error, keeps the quaternion's length.
 class BodyPart final : public numerics::DaePart {
  public:
-  /// The body stays as given; gravity in the world [m/s^2]. follows: it is welded to something that is tested for errors, and so
-  /// need not be tested itself.
-  BodyPart(const MotionBody& body, const Eigen::Vector3d& gravity, const MotionOptions& options, bool follows = false);
+  /// The body stays as given; gravity in the world [m/s^2].
+  BodyPart(const MotionBody& body, const Eigen::Vector3d& gravity, const MotionOptions& options);
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
@@ -55,7 +54,6 @@ class BodyPart final : public numerics::DaePart {
   MotionBody body_;
   Eigen::Vector3d force_;
   MotionOptions options_;
-  bool follows_;
   Eigen::Matrix3d inverse_inertia_;
   int first_ = 0;
   std::vector<int> slots_;  // of Local::count rows and columns, row by row

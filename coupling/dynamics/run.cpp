@@ -43,11 +43,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
         w.name, rod,
         wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
   }
-  for (int b = 0; b < static_cast<int>(motion.bodies.size()); ++b) {
-    const MotionBody& body = motion.bodies[base::at(b)];
-    const bool welded = std::ranges::any_of(motion.welds, [b](const MotionWeld& w) { return w.body == b; });
-    bodies_.emplace_back(body.robot ? loops_.emplace_back(body).moved() : body, motion.gravity, options, welded);
-  }
+  for (const MotionBody& b : motion.bodies)
+    bodies_.emplace_back(b.robot ? loops_.emplace_back(b).moved() : b, motion.gravity, options);
   for (const MotionContact& c : motion.contacts) {
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }

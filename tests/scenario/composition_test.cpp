@@ -364,7 +364,8 @@ TEST_F(Compositions, SayWhatIsWrong) {
             "\"visitor\""),
        "must not hold each other in a circle"},
       {with("[[drives]]", "[[drives]]\njoint = \"rms\"\nmode = \"locked\"\n[[drives]]"), "is driven already"},
-      {with("{ touch = [\"pin on snare::wire_1\"] }", "{ above_N = 1.0 }"), "must have one of touch, contact, tension"},
+      {with("{ touch = [\"pin on snare::wire_1\"] }", "{ above_N = 1.0 }"),
+       "must have one of touch, sensor, contact, tension"},
       {"schema = \"snare-scenario/2\"\ntitle = \"nothing\"\nduration_s = 1.0\n", "must list something that moves"},
       {"schema = \"snare-scenario/3\"\ntitle = \"later\"\n", "must be \"snare-scenario/2\""},
   };

@@ -115,7 +115,7 @@ TEST(MotionFriction, SlidesAlongItsVelocity) {
   s.normal = 10.0;
   for (const Vector2d& w : {Vector2d(0.3, 0.0), Vector2d(-0.1, 0.2)}) {
     s.sliding = w;
-    const double dt = 1e-4 * f.bristle_displacement / w.norm();
+    const double dt = 1e-4 * f.bristle_time;
     for (int k = 0; k < 400000; ++k) s.bristle += dt * bristle_rate(f, s).rate;
     EXPECT_LT((tangent_force(f, s).force - slip_coefficient(f, w.norm()) * s.normal * w.normalized()).norm(), 1e-6);
   }
@@ -178,11 +178,13 @@ struct Touching {
 };
 
 TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
-  for (const double stretch : {0.3, 0.9995}) {
+  for (const double stretch :
+       {0.3, 1.5}) {  // all that touches sticks, or slides: a derivative is not asked for where one becomes the other
+    SCOPED_TRACE(stretch);
     MotionFriction soft = papers_friction();
     // A bristle as soft as the wire's axial stiffness of 1e3/0.025, so that no row drowns the others.
     soft.bristle_displacement = 1e-4;
-    soft.bristle_time = 1e-3;
+    soft.bristle_time = 1e-4;
     Touching t(soft);
     for (int i = 0; i < t.rod.vertices(); ++i)
       t.y.segment<2>(t.contact.bristle_of(i)) = stretch * soft.bristle_displacement * Vector2d(0.6, -0.8);

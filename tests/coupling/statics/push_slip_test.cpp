@@ -73,8 +73,12 @@ TEST_P(SlipOfAMount, CapsTheForceAndBalancesTheEnergy) {
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const PushPoint& p = curve.points[i];
     highest = std::max(highest, p.tension_left);
-    if (i > 0) EXPECT_GE(p.dissipated, curve.points[i - 1].dissipated);
-    if (p.in_contact) EXPECT_LT(p.imbalance, 1e-6) << "at a travel of " << p.travel / mm << " mm";
+    if (i > 0) {
+      EXPECT_GE(p.dissipated, curve.points[i - 1].dissipated);
+    }
+    if (p.in_contact) {
+      EXPECT_LT(p.imbalance, 1e-6) << "at a travel of " << p.travel / mm << " mm";
+    }
   }
   // Without friction at the pusher one mount that slips holds the tension of the whole wire, but for the bending at the
   // clamp and the pusher's lean.

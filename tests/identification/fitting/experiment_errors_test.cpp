@@ -197,7 +197,8 @@ const WrongFile wrong_files[] = {
      "x.toml:8: wire.colour = \"red\", unknown key; known here: axial_stiffness_N, bending_stiffness_Nm2, "
      "construction, "
      "density_kg_m3, diameter_mm, hardening_ratio, length_mm, natural_curvature_1_m, poisson_ratio, "
-     "strand_extra_stiffness_Nm2, strand_slip_curvature_1_m, torsional_stiffness_Nm2, yield_stress_MPa, "
+     "strand_extra_stiffness_Nm2, strand_slip_breadth, strand_slip_curvature_1_m, torsional_stiffness_Nm2, "
+     "yield_stress_MPa, "
      "youngs_modulus_GPa"},
 };
 

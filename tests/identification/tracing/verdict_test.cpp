@@ -207,7 +207,9 @@ TEST(Verdict, AZeroIsLookedForWhereTheTouchIsNotSeen) {
     ASSERT_TRUE(t.zero.has_value());
     EXPECT_NEAR(t.zero->offset, zero / mm, 0.02);
     EXPECT_EQ(t.zero->doubtful, zero > 0.0) << t.zero->p << " " << t.zero->without << " " << t.zero->with;
-    if (zero > 0.0) EXPECT_FALSE(t.decided);
+    if (zero > 0.0) {
+      EXPECT_FALSE(t.decided);
+    }
   }
 }
 
