@@ -24,18 +24,23 @@ void whole_trace(benchmark::State& state, const char* effect) {
   for (const auto& [what, time] : seconds) state.counters[what] = time / static_cast<double>(state.iterations());
 }
 
-/// Six series of 499 readings, with intervals; `processor` is the CPU time of all threads [s].
-void long_records(benchmark::State& state, const char* effect, double size) {
-  const validation::BlindSet set = validation::make_blind_set(effect, size, 1, {.readings_a_leg = 250});
+/// `processor` is the CPU time of all threads [s].
+void time_traces(benchmark::State& state, const identification::Experiment& experiment) {
   double processor = 0.0;
   for (auto _ : state) {
     const std::clock_t before = std::clock();
-    const identification::Trace t = identification::trace(set.experiment);
+    const identification::Trace t = identification::trace(experiment);
     benchmark::DoNotOptimize(t.final.rmse);
     processor += static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
     state.SetLabel(to_string(t.kind));
   }
   state.counters["processor"] = processor / static_cast<double>(state.iterations());
+}
+
+/// Six series of 499 readings, with intervals.
+void long_records(benchmark::State& state, const char* effect, double size) {
+  const validation::BlindSet set = validation::make_blind_set(effect, size, 1, {.readings_a_leg = 250});
+  time_traces(state, set.experiment);
 }
 
 /// Six replicates of 500 readings, loading, of which nothing or the strands are missing.
@@ -49,15 +54,7 @@ void replicates(benchmark::State& state, const char* effect, double size) {
     r.time.resize(500);
     s.test.travel = r.displacement;
   }
-  double processor = 0.0;
-  for (auto _ : state) {
-    const std::clock_t before = std::clock();
-    const identification::Trace t = identification::trace(set.experiment);
-    benchmark::DoNotOptimize(t.final.rmse);
-    processor += static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
-    state.SetLabel(to_string(t.kind));
-  }
-  state.counters["processor"] = processor / static_cast<double>(state.iterations());
+  time_traces(state, set.experiment);
 }
 
 void force_and_derivatives(benchmark::State& state) {
