@@ -4,6 +4,8 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
+#include "identification/motion_tracing/trace_records.hpp"
+#include "identification/records/record_file.hpp"
 #include "identification/tracing/trace.hpp"
 #include "reduction/distil.hpp"
 #include "results/curves.hpp"
@@ -11,6 +13,7 @@
 #include "results/motion_history.hpp"
 #include "results/motion_summary.hpp"
 #include "results/push_result.hpp"
+#include "results/record_json.hpp"
 #include "results/trace_json.hpp"
 #include "scenario/scenario.hpp"
 
@@ -85,6 +88,19 @@ CaseEnd trace(const identification::Experiment& experiment, bool whole, const St
   return {};
 }
 
+CaseEnd trace_records(const identification::RecordSet& set, bool whole, const Stop& stop, json& result,
+                      TableSink* history) {
+  identification::MotionTraceOptions options;
+  options.effects = whole;
+  options.progress = [&](const std::string&) { return !stop(); };
+  const identification::MotionTrace traced = identification::trace_records(set, options);
+  if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
+  if (traced.interrupted) return {Status::stopped, "interrupted"};
+  if (history != nullptr) give_record_curves(*history, set, traced);
+  result = whole ? record_trace_json(set, traced) : record_fit_json(set, traced);
+  return {};
+}
+
 CaseEnd distil(const reduction::WireFile& wire, const Stop& stop, json& result) {
   const reduction::Distillation distilled =
       reduction::distil(wire, {}, [&](std::size_t, std::size_t) { return !stop(); });
@@ -111,6 +127,7 @@ std::vector<std::string> verbs_of(const std::string& schema) {
   if (schema.starts_with("snare-scenario/")) return {"simulate"};
   if (schema.starts_with("snare-experiment/")) return {"push", "fit", "trace"};
   if (schema.starts_with("snare-wire/")) return {"distil"};
+  if (schema.starts_with("snare-record/")) return {"fit", "trace"};
   return {};
 }
 
@@ -150,10 +167,12 @@ void add_contents(const fs::path& file, std::set<fs::path>& seen, std::string& a
 
 CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& asked_by) : file_(std::move(file)) {
   const std::string schema = schema_of(file_);
+  of_records_ = schema.starts_with("snare-record/");
   const std::vector<std::string> verbs = verbs_of(schema);
   if (verbs.empty()) {
-    throw base::InputError({file_.string(), 0, "schema", schema,
-                            "must be that of a scenario, an experiment or a wire file, to be a case of a sweep"});
+    throw base::InputError(
+        {file_.string(), 0, "schema", schema,
+         "must be that of a scenario, an experiment, a wire or a record file, to be a case of a sweep"});
   }
   verb_ = verb.empty() ? verbs.front() : verb;
   if (std::ranges::find(verbs, verb_) == verbs.end()) {
@@ -169,6 +188,9 @@ void CaseRunner::check(const Overrides& overrides, TableSink* names) const {
     give_history(*names, asked.motions.runs.front().motion, {});
   } else if (verb_ == "distil") {
     static_cast<void>(reduction::read_wire_file(file_, overrides));
+  } else if (of_records_) {
+    static_cast<void>(identification::read_records(file_, overrides));
+    if (names != nullptr) give_record_curves(*names, {}, {});
   } else {
     const identification::Experiment experiment =
         identification::read_experiment(file_, identification::parameters(), overrides);
@@ -184,6 +206,9 @@ CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& resu
       return simulate(scenario::read_scenario(file_, overrides), stop, result, history);
     }
     if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), stop, result);
+    if (of_records_) {
+      return trace_records(identification::read_records(file_, overrides), verb_ == "trace", stop, result, history);
+    }
     const identification::Experiment experiment =
         identification::read_experiment(file_, identification::parameters(), overrides);
     if (verb_ == "push") return push(experiment, stop, result, history);

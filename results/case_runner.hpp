@@ -53,6 +53,7 @@ class CaseRunner {
  private:
   std::filesystem::path file_;
   std::string verb_;
+  bool of_records_ = false;  // in time, which fit and trace read as they read experiments
 };
 
 /// Text that is equal for equal contents of a file and of all files that it and these name, in TOML and in URDF.

@@ -90,6 +90,16 @@ void walk(const json& node, const Collected& field, std::size_t step, std::vecto
   walk(*next, field, step + 1, found);
 }
 
+/// Of the bracket that a text begins with: what is between may be a key that has brackets itself.
+std::size_t closing_bracket(std::string_view text) {
+  int open = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (text[k] == '[') ++open;
+    if (text[k] == ']' && --open == 0) return k;
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 std::optional<Collected> parse_collected(std::string name, std::string_view text) {
@@ -107,7 +117,7 @@ std::optional<Collected> parse_collected(std::string name, std::string_view text
     field.path.push_back({std::string(text.substr(0, at)), false});
     text.remove_prefix(at);
     while (text.starts_with('[')) {
-      const std::size_t end = text.find(']');
+      const std::size_t end = closing_bracket(text);
       if (end == std::string_view::npos || end == 1) return std::nullopt;
       field.path.push_back({std::string(text.substr(1, end - 1)), true});
       several = several || field.path.back().key == "*";

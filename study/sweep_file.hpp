@@ -35,7 +35,7 @@ struct HistorySettings {
 struct SweepFile {
   std::filesystem::path file;
   std::string title, source;
-  std::filesystem::path case_file;    ///< scenario, experiment or wire file
+  std::filesystem::path case_file;    ///< scenario, experiment, wire or record file
   std::string verb;                   ///< what runs a case; empty: what its file's schema says
   std::vector<base::Override> fixed;  ///< for all cases
   Design design;

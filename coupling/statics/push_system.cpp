@@ -14,6 +14,16 @@ namespace {
 using Eigen::RowVector2d;
 using Eigen::Vector2d;
 
+bool is_pressed(const SlidingContact& contact) {
+  return contact.status == ContactStatus::stick || contact.status == ContactStatus::slip;
+}
+
+/// A wire that has left the pusher lies on supports without friction: nothing else would hold it along them.
+bool keeps_from_afar(const SlidingContact& contact) {
+  const bool apart = contact.status == ContactStatus::open || contact.status == ContactStatus::touching;
+  return apart && contact.holds_material && contact.friction == 0.0;
+}
+
 }  // namespace
 
 PushSystem::PushSystem(const wire::PlanarRod& rod, const wire::Controls& controls)
@@ -160,8 +170,9 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
   Eigen::VectorXd& residual = system.border_residual;
 
   system.columns.emplace_back(rows.coordinate, &assembly_.control_columns[static_cast<std::size_t>(contact.control)]);
-  const bool pressed = contact.status == ContactStatus::stick || contact.status == ContactStatus::slip;
-  if (pressed) {
+  const bool pressed = is_pressed(contact);
+  const bool keeps = keeps_from_afar(contact);
+  if (pressed || keeps) {
     // The rod's equilibrium: dE/dx_i - f = 0.
     system.band_residual.segment<2>(2 * i) -= force;
     for (int a = 0; a < 2; ++a) system.anchors.push_back({2 * i + a, rows.force + a});
@@ -221,6 +232,15 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
     corner(row, rows.gap) = touching ? -contact.approach()[a] : -n[a];
     by_parameter[row] = -contact.motion[a];
     if (index == 0) add_compliance(row, -Vector2d::Unit(a), system);
+  }
+  if (keeps) {
+    // Apart, the material point kept: f.n = 0.                                                theory.md (C.3)
+    residual[rows.slip] = coordinate - contact.last_coordinate;
+    corner(rows.slip, rows.coordinate) = 1.0;
+    residual[rows.closure] = force.dot(n);
+    corner.block<1, 2>(rows.closure, rows.force) = n.transpose();
+    add_angle(rows.closure, force.dot(dn));
+    return;
   }
   if (!pressed) {
     // Apart: f = 0.                                                                           theory.md (C.3)
@@ -381,7 +401,8 @@ double PushSystem::error(const numerics::PathPoint& at, const numerics::Bordered
     const bool apart = contact.status == ContactStatus::open || contact.status == ContactStatus::touching;
     const bool on_arc = contact.status == ContactStatus::wrapped;
     error = std::max(error, residual.segment<2>(rows.position).lpNorm<Eigen::Infinity>() / (on_arc ? force : position));
-    error = std::max(error, std::abs(residual[rows.slip]) / (slides || apart ? force : position));
+    const bool slip_of_force = slides || (apart && !keeps_from_afar(contact));
+    error = std::max(error, std::abs(residual[rows.slip]) / (slip_of_force ? force : position));
     error = std::max(error, std::abs(residual[rows.closure]) / (apart ? force : position));
   }
   for (std::size_t k = 0; k < wrapped.size(); ++k) {

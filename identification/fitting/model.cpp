@@ -85,6 +85,27 @@ Eigen::MatrixXd record_derivatives(const Series& series, const Prediction& predi
   return result;
 }
 
+/// Forces of predictions, and whether every reading of every series has one.
+Evaluation forces_of(const std::vector<Series>& series, const std::vector<Prediction>& predictions) {
+  Evaluation result;
+  result.complete = true;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const Prediction& p = predictions[k];
+    const std::size_t wanted = measured_displacement(series[k]).size();
+    if (p.force.size() != wanted) {
+      result.complete = false;
+      result.message = "series " + series[k].name + ": " + p.curve.curve.report.message;
+    }
+    result.force.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(p.force.data(), static_cast<Eigen::Index>(p.force.size())));
+    if (result.complete && !result.force.back().allFinite()) {
+      result.complete = false;
+      result.message = "series " + series[k].name + ": a computed force is not finite";
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 Model::Model(std::vector<Series> series, const SolverSettings& solver, bool thin)
@@ -126,11 +147,10 @@ Model::Applied Model::apply(const std::vector<Setting>& settings) const {
   return result;
 }
 
-Evaluation Model::predict_with(const Applied& model, const PredictionOptions& options,
-                               const std::vector<std::vector<coupling::PushVariation>>& variations) const {
+std::vector<Prediction> Model::predict_with(const Applied& model, const PredictionOptions& options,
+                                            const std::vector<std::vector<coupling::PushVariation>>& variations) const {
   const std::vector<Series>& series = model.series;
-  Evaluation result;
-  result.predictions.resize(series.size());
+  std::vector<Prediction> predictions(series.size());
   // Records of one push share its curve, where no number belongs to one of them alone.
   std::vector<std::vector<std::size_t>> groups;
   if (options.thin && model.of_all) {
@@ -144,29 +164,14 @@ Evaluation Model::predict_with(const Applied& model, const PredictionOptions& op
     PredictionOptions own = options;
     if (!variations.empty()) own.variations = variations[first];
     if (group.size() == 1) {
-      result.predictions[first] = predict(series[first], solver_, model.reading[first], own);
+      predictions[first] = predict(series[first], solver_, model.reading[first], own);
       return;
     }
     const Series all = merged(series, group);
     const Prediction whole = predict(all, solver_, model.reading[first], own);
-    for (const std::size_t k : group) result.predictions[k] = part_of(whole, all, series[k]);
+    for (const std::size_t k : group) predictions[k] = part_of(whole, all, series[k]);
   });
-  result.complete = true;
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    const Prediction& p = result.predictions[k];
-    const std::size_t wanted = measured_displacement(series[k]).size();
-    if (p.force.size() != wanted) {
-      result.complete = false;
-      result.message = "series " + series[k].name + ": " + p.curve.curve.report.message;
-    }
-    result.force.emplace_back(
-        Eigen::Map<const Eigen::VectorXd>(p.force.data(), static_cast<Eigen::Index>(p.force.size())));
-    if (result.complete && !result.force.back().allFinite()) {
-      result.complete = false;
-      result.message = "series " + series[k].name + ": a computed force is not finite";
-    }
-  }
-  return result;
+  return predictions;
 }
 
 Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<const Parameter*>& by) const {
@@ -188,13 +193,15 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
   }
   std::vector<std::vector<coupling::PushVariation>> variations;
   if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test);
-  Evaluation result = predict_with(applied, options, variations);
-  if (by.empty() || !result.complete) return result;
-
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    result.by.push_back(record_derivatives(series[k], result.predictions[k], result.force[k], applied.reading[k], by));
+  std::vector<Prediction> predictions = predict_with(applied, options, variations);
+  Evaluation result = forces_of(series, predictions);
+  const bool derive = !by.empty() && result.complete;
+  for (std::size_t k = 0; k < series.size() && derive; ++k) {
+    result.by.push_back(record_derivatives(series[k], predictions[k], result.force[k], applied.reading[k], by));
+    predictions[k].force_by.resize(0, 0);  // which `by` has
   }
-  if (!implicit) difference_curves(settings, by, result);
+  result.predictions = std::move(predictions);
+  if (derive && !implicit) difference_curves(settings, by, result);
   return result;
 }
 
@@ -211,7 +218,7 @@ void Model::difference_curves(std::vector<Setting> settings, const std::vector<c
     const double h = s.parameter->parametrisation == Parametrisation::shift ? 100.0 * s.parameter->step : 2e-2;
     const auto curve_at = [&](double coordinate) {
       s.coordinate = std::clamp(coordinate, lower(*s.parameter), upper(*s.parameter));
-      return predict_with(apply(settings), plain, {});
+      return forces_of(series_, predict_with(apply(settings), plain, {}));
     };
     const Evaluation below = curve_at(centre - h);
     const Evaluation above = curve_at(centre + h);
@@ -244,8 +251,10 @@ Evaluation Model::evaluate_windows(const std::vector<Setting>& settings, int win
                                1e-3, 0.0});
     }
   }
-  Evaluation result = predict_with(applied, options, variations);
-  for (const Prediction& p : result.predictions) result.by.push_back(p.force_by);
+  std::vector<Prediction> predictions = predict_with(applied, options, variations);
+  Evaluation result = forces_of(series, predictions);
+  for (Prediction& p : predictions) result.by.push_back(std::move(p.force_by));
+  result.predictions = std::move(predictions);
   return result;
 }
 

@@ -18,7 +18,7 @@ struct Setting {
 
 /// What a model with these settings says of every series.
 struct Evaluation {
-  std::vector<Prediction> predictions;
+  SharedPredictions predictions;
   std::vector<Eigen::VectorXd> force;  ///< one a series, at its readings [N]
   std::vector<Eigen::MatrixXd> by;     ///< d force / d coordinate, a column a parameter asked for
   bool complete = false;               ///< every reading of every series was computed
@@ -60,8 +60,9 @@ class Model {
   [[nodiscard]] Evaluation evaluate_windows(const std::vector<Setting>& settings, int windows) const;
 
  private:
-  [[nodiscard]] Evaluation predict_with(const Applied& model, const PredictionOptions& options,
-                                        const std::vector<std::vector<coupling::PushVariation>>& variations) const;
+  [[nodiscard]] std::vector<Prediction> predict_with(
+      const Applied& model, const PredictionOptions& options,
+      const std::vector<std::vector<coupling::PushVariation>>& variations) const;
   /// Derivatives by the numbers of the test by differences of whole curves, into `result`.
   void difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
                          Evaluation& result) const;

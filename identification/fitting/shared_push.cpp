@@ -123,7 +123,7 @@ Prediction part_of(const Prediction& whole, const Series& merged, const Series& 
     const auto i = static_cast<std::size_t>(row);
     result.force.push_back(whole.force[i]);
     result.tension.push_back(whole.tension[i]);
-    result.viscous_stiffness.push_back(whole.viscous_stiffness[i]);
+    if (!whole.viscous_stiffness.empty()) result.viscous_stiffness.push_back(whole.viscous_stiffness[i]);
   }
   result.force_by = whole.force_by(rows, Eigen::all);
   return result;

@@ -83,7 +83,7 @@ class Tracer {
   void compare_models();
   void find_intervals();
   void propose();
-  [[nodiscard]] ModelError error_of(const Fit& fit, std::vector<Prediction>& predictions) const;
+  [[nodiscard]] ModelError error_of(const Fit& fit, SharedPredictions& predictions) const;
   [[nodiscard]] const std::vector<ChannelFunction>& functions();
   [[nodiscard]] std::vector<ChannelFunction> rivals();
 
@@ -120,7 +120,7 @@ Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Divisi
   result_.heldout = series.is_heldout;
 }
 
-ModelError Tracer::error_of(const Fit& fit, std::vector<Prediction>& predictions) const {
+ModelError Tracer::error_of(const Fit& fit, SharedPredictions& predictions) const {
   predictions = all_.evaluate(fit.settings).predictions;
   return model_error(result_.series, result_.heldout, predictions, model_, fit);
 }
@@ -141,14 +141,13 @@ void Tracer::look_at_base() {
   if (declared.evaluation.complete) {
     declared.residual = data_.residual(declared.evaluation);
     declared.chi2 = declared.residual.squaredNorm();
-    result_.declared = error_of(declared, result_.declared_predictions);
-    result_.declared_predictions = forces_only(result_.declared_predictions);
+    SharedPredictions predictions;
+    result_.declared = error_of(declared, predictions);
+    result_.declared_predictions = forces_only(predictions);
   }
   result_.base_tests = test_residuals(model_, data_, base_);
-  std::vector<Prediction> predictions;
-  result_.base = error_of(base_, predictions);
-  result_.base_predictions = forces_only(predictions);
-  base_predictions_ = std::move(predictions);
+  result_.base = error_of(base_, base_predictions_);
+  result_.base_predictions = forces_only(base_predictions_);
 }
 
 // The trace as it would be without what is still to come.
@@ -346,9 +345,7 @@ void Tracer::compare_models() {
   } else {
     base_predictions_ = {};
     result_.final_tests = test_residuals(model_, data_, final_);
-    std::vector<Prediction> predictions;
-    result_.final = error_of(final_, predictions);
-    result_.final_predictions = std::move(predictions);
+    result_.final = error_of(final_, result_.final_predictions);
   }
   for (const Prediction& p : result_.final_predictions) {
     for (const double e : p.curve.discretisation_error) result_.mesh_error = std::max(result_.mesh_error, e);
@@ -415,6 +412,7 @@ Trace Tracer::run() {
   tell_part();
   add_effects();
   conclude();
+  current_ = {};  // what is selected is in final_
   compare_models();
   if (progress_.go_on("zero of the travel")) {
     result_.zero = check_zero(model_, data_, final_);

@@ -41,6 +41,14 @@ void compare(const Model& model, const Fit& without, const Fit& with, ZeroCheck&
   result.doubtful = result.p < asked && largest > worthwhile;
 }
 
+/// Of the weighed forces by one number more, without what the fitted ones account for; nothing where the model fails.
+std::optional<Eigen::VectorXd> column_beside(const Model& model, const Data& data, const Fit& fit,
+                                             const Parameter& number) {
+  const Evaluation at = model.evaluate(fit.settings, {&number});
+  if (!at.complete) return std::nullopt;
+  return Projection(fit.jacobian).without(data.jacobian(at).col(0));
+}
+
 }  // namespace
 
 std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const Fit& fit_without) {
@@ -48,9 +56,9 @@ std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const 
       std::any_of(data.series.begin(), data.series.end(), [&](std::size_t k) { return !data.noise.summarised(k); });
   if (!read || has_zero(fit_without) || fit_without.dof() < 2.0) return std::nullopt;
   const Parameter& zero = parameters().at(zero_key);
-  const Evaluation at = model.evaluate(fit_without.settings, {&zero});
-  if (!at.complete) return std::nullopt;
-  const Eigen::VectorXd g = Projection(fit_without.jacobian).without(data.jacobian(at).col(0));
+  const std::optional<Eigen::VectorXd> asked_for = column_beside(model, data, fit_without, zero);
+  if (!asked_for) return std::nullopt;
+  const Eigen::VectorXd& g = *asked_for;
   const double norm = g.norm();
   if (!(norm > 0.0)) return std::nullopt;
   // What is left beside the noise makes every number as uncertain as it makes the residual large.

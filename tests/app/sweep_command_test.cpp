@@ -163,6 +163,43 @@ TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
   EXPECT_EQ(cases("a"), cases("whole"));
 }
 
+// A fit of records is a case, too: the one that begins where the record did has its damping, the others are off and say so.
+TEST_F(SweepCommand, RecordsAreCases) {
+  write("records.toml", R"(schema = "snare-sweep/1"
+title = "where the swing began"
+case = ")" SNARE_SOURCE_DIR R"(/tests/ranges/record.toml"
+verb = "trace"
+design = "grid"
+[[vary]]
+key = "scenario.arms[pendulum].angles_deg[1]"
+name = "angle_deg"
+values = [88.0, 90.0]
+[collect]
+damping = "base.parameters[arms[pendulum].joint.bearing.viscous_Nms_rad].value"
+explained = "explained"
+[histories]
+columns = "all"
+)");
+  ASSERT_EQ(run("sweep records.toml --out a"), 0) << contents("err.txt");
+  std::istringstream lines(cases("a"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "case,status,reason,angle_deg,damping,explained");
+  std::getline(lines, line);
+  EXPECT_EQ(line.substr(0, 10), "1,done,,88");
+  EXPECT_EQ(line.back(), '0');
+  std::getline(lines, line);
+  EXPECT_EQ(line.substr(0, 10), "2,done,,90");
+  EXPECT_EQ(line.back(), '1');
+  EXPECT_TRUE(exists("a/histories.h5"));
+  ASSERT_EQ(run("sweep records.toml --out a --case 2 --json"), 0) << contents("err.txt");
+  const nlohmann::json alone = parsed("out.txt");
+  const double damping = alone["base"]["parameters"]["arms[pendulum].joint.bearing.viscous_Nms_rad"]["value"];
+  EXPECT_EQ(line, "2,done,,90," + nlohmann::json(damping).dump() + ",1");
+  EXPECT_EQ(run("sweep records.toml --out b --set verb=push"), 2);
+  EXPECT_THAT(contents("err.txt"), HasSubstr("must be one of fit, trace for a file of snare-record/1"));
+}
+
 TEST_F(SweepCommand, ARareEventByLevels) {
   ASSERT_EQ(run("sweep sweep.toml --out a --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
                 "--set limits[1].above=40"),

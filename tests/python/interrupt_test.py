@@ -11,7 +11,7 @@ import setting
 # Works for much longer than the test waits.
 LONG = {
     "push": ("data/experiments/published_static.toml",
-             '{"solver.elements": 4096, **{f"series[s{k}].law.to_mm": 15.0 for k in (40, 65, 90)}}'),
+             '{"solver.elements": 4096, **{f"series[s{k}].points": 4000 for k in (40, 65, 90)}}'),
     "trace": ("data/experiments/published_static.toml", '{"solver.elements": 4096}'),
     "fit": ("data/experiments/published_static.toml", '{"solver.elements": 4096}'),
     "distil": ("data/wires/traced_published.toml",

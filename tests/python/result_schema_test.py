@@ -1,6 +1,7 @@
 """The schemas of the results: what every verb writes is valid, and every field of a schema is written by one of the runs here."""
 
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -27,6 +28,8 @@ RUNS = {
     "trace_record": ["trace", "tests/ranges/record.toml", "--set", "fit.most_effects=1", "--set",
                      'fit.free=["arms[pendulum].rates_deg_s[1]"]', "--set", "scenario.arms[pendulum].joint.bearing.viscous_Nms_rad=0.0",
                      "--set", 'fit.profile=["arms[pendulum].rates_deg_s[1]"]'],
+    "trace_record_families": ["trace", "WORK/records.toml"],
+    "trace_outside": ["trace", "WORK/outside.toml", "--set", "wire.diameter_mm=1.5"],
     "distil": ["distil", "WORK/wire.toml"],
     "compare": ["compare", "tests/ranges/readings.toml"],
     "compare_motion": ["compare", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
@@ -56,6 +59,12 @@ mass_rate_1_s  = 5.0
 impact_speeds_m_s = [0.1]
 impact_mass_kg = 8.9
 elements       = 20
+"""
+# What a record file says of another kind of model.
+FAMILY = """
+[[fit.families]]
+name = "fine"
+set  = { "solver.relative_tolerance" = 1e-6 }
 """
 # Fields that none of the runs has a reason to write.
 NOT_HERE = {
@@ -132,7 +141,13 @@ def prepare(work):
     ranges = setting.SOURCE / "tests/ranges"
     record = (ranges / "record.toml").read_text().replace('"swing.', f'"{ranges}/swing.')
     second = record.split("[[records]]")[1].split("[fit]")[0].replace('"first"', '"second"')
-    (work / "records.toml").write_text(record.replace("[fit]", f'[[records]]{second}\n[fit]\nheldout = ["second"]\n'))
+    (work / "records.toml").write_text(record.replace("[fit]", f'[[records]]{second}\n[fit]\nheldout = ["second"]\n') + FAMILY)
+    # Forces that nothing in the catalogue has, of a wire three times as stiff as one of its metal can be.
+    lines = (ranges / "readings.csv").read_text().splitlines()
+    rows = [[float(x) for x in line.split(",")] for line in lines if line[0].isdigit()]
+    (work / "outside.csv").write_text("displacement_mm,force_N\n" + "".join(
+        f"{d},{3.0 * f * (1.0 + 0.3 * math.sin(3.0 * d)):.3f}\n" for d, f in rows))
+    (work / "outside.toml").write_text((ranges / "readings.toml").read_text().replace("readings.csv", "outside.csv"))
     wire = (ranges / "wire.toml").read_text()
     (work / "wire.toml").write_text(wire.replace("friction  = 0.0", "friction  = 0.1") + LOSSES)
     sweep = (ranges / "sweep.toml").read_text().replace('"readings.toml"', f'"{ranges}/readings.toml"')

@@ -141,7 +141,7 @@ from_trace = "trace.json"
 TEST(Collect, FieldsOfAResult) {
   const nlohmann::json result =
       nlohmann::json::parse(R"({"outcome": {"caught": true, "tension": {"a::w_1": 3, "a::w_2": 5.5},
-    "late": null}, "series": [{"name": "s", "force": 2}, {"name": "t", "force": null}], "place": [1, 2, 3]})");
+    "late": null}, "numbers": {"arms[rms].rates[1]": 7}, "series": [{"name": "s", "force": 2}, {"name": "t", "force": null}], "place": [1, 2, 3]})");
   const auto get = [&](const char* text) { return collected(parse_collected("x", text).value(), result); };
   EXPECT_EQ(get("outcome.caught"), true);
   EXPECT_EQ(get("outcome.tension[a::w_2]"), 5.5);
@@ -150,6 +150,7 @@ TEST(Collect, FieldsOfAResult) {
   EXPECT_EQ(get("sum outcome.tension[*]"), 8.5);
   EXPECT_EQ(get("mean place[*]"), 2.0);
   EXPECT_EQ(get("place[2]"), 2);
+  EXPECT_EQ(get("numbers[arms[rms].rates[1]]"), 7);
   EXPECT_EQ(get("series[s].force"), 2);
   EXPECT_TRUE(get("series[t].force").is_null());
   EXPECT_TRUE(get("outcome.late.more").is_null());
@@ -158,6 +159,7 @@ TEST(Collect, FieldsOfAResult) {
   EXPECT_FALSE(parse_collected("x", "outcome[*]"));   // several need one
   EXPECT_FALSE(parse_collected("x", "outcome..a"));
   EXPECT_FALSE(parse_collected("x", "a[b"));
+  EXPECT_FALSE(parse_collected("x", "a[b[c]"));
   try {
     static_cast<void>(get("outcome.cought"));
     FAIL() << "found";
