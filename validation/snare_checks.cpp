@@ -44,6 +44,55 @@ coupling::MotionBody machine(const std::string& name, const Vector3d& start, con
   return body;
 }
 
+/// What changes the shipped constraint test into that of the end effector of twice the size, at the same speeds and stresses:
+/// lengths and times by 2, masses and torques by 8, and so on.                                                     (M.34)
+std::vector<std::string> twice_as_large() {
+  std::vector<std::string> settings{
+      "duration_s=19.8",
+      "output_interval_s=0.02",
+      "damping.bending_time_s=2.0e-3",
+      "damping.axial_time_s=2.0e-4",
+      "snares[snare].ring_radius_mm=100.0",
+      "snares[snare].ring.inertia_kg_m2=0.064",
+      "snares[snare].ring.motor_inertia_kg_m2=0.16",
+      "snares[snare].ring.stiffness_Nm_rad=8.0e5",
+      "snares[snare].ring.damping_Nms_rad=1600.0",
+      "snares[snare].wire.diameter_mm=1.5",
+      "snares[snare].wire.length_mm=200.0",
+      "snares[snare].wire.axial_stiffness_N=5.0e4",
+      "snares[snare].wire.bending_stiffness_Nm2=5.0e-3",
+      "snares[snare].wire_contact.bristle_displacement_m=2.0e-6",
+      "snares[snare].wire_contact.bristle_time_s=2.0e-5",
+      "arms[robot].base_mm=[0.0,0.0,240.0]",
+      "bodies[probe].mass_kg=4.0",
+      "bodies[probe].inertia_kg_m2=[0.032,0.032,0.032]",
+      "bushings[sensor].translational_stiffness_N_m=2.0e7",
+      "bushings[sensor].rotational_stiffness_Nm_rad=8.0e5",
+      "bushings[sensor].translational_damping_Ns_m=4.0e3",
+      "bushings[sensor].rotational_damping_Nms_rad=160.0",
+      "shapes[pin].position_mm=[0.0,0.0,-240.0]",
+      "shapes[pin].radius_mm=6.0",
+      "shapes[pin].length_mm=200.0",
+      "shapes[pin].bristle_displacement_m=2.0e-6",
+      "shapes[pin].bristle_time_s=2.0e-5",
+      "phases[close].at_s=0.1",
+      "phases[close].drives[1].duration_s=1.6",
+  };
+  double at = 1.8;
+  for (const char axis : {'x', 'y', 'z'}) {
+    const double way = axis == 'z' ? 20.0 : 6.0;
+    for (const int leg : {1, 2, 3}) {
+      const std::string phase = fmt::format("phases[{}{}].", axis, leg);
+      const double duration = leg == 2 ? 3.0 : 1.5;
+      settings.push_back(fmt::format("{}at_s={:.1f}", phase, at));
+      settings.push_back(fmt::format("{}drives[1].duration_s={:.1f}", phase, duration));
+      settings.push_back(fmt::format("{}drives[1].by_mm={:.1f}", phase, leg == 2 ? -2.0 * way : way));
+      at += duration;
+    }
+  }
+  return settings;
+}
+
 }  // namespace
 
 // The joint's gear is so stiff that the ring is where its motor is: 5 N m turn it by 5e-9 rad.
@@ -156,12 +205,49 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
               60.0 * static_speed * x, creeps.at_120 - creeps.at_60, ErrorKind::relative, 0.05)};
 }
 
+// Sliding back through the middle along its axis, the pin feels nothing but the friction of what the wires press it with.
+std::vector<Row> constraint_test_rows(const std::filesystem::path& data) {
+  struct Reading {
+    multibody::Wrench sensor;
+    double normal = 0.0;
+  };
+  const auto test = [&](const std::vector<std::string>& settings, std::vector<Reading>& readings) {
+    return run_of(data / "scenarios/constraint_test.toml", settings, [&](const coupling::MotionSample& s) {
+      Reading r{s.bushings.front().on_second, 0.0};
+      for (std::size_t k = 0; k < 3; ++k) r.normal += s.contacts[k].normal_force;
+      readings.push_back(r);
+    });
+  };
+  std::vector<Reading> half, full;
+  const double usable = test({}, half).usable() + test(twice_as_large(), full).usable();
+  double force = 0.0, moment = 0.0, most_force = 0.0, most_moment = 0.0;
+  const std::size_t common = std::min(half.size(), full.size());
+  for (std::size_t i = 0; i < common; ++i) {
+    const multibody::Wrench &small = half[i].sensor, &large = full[i].sensor;
+    force = std::max(force, (large.force - 4.0 * small.force).norm());
+    moment = std::max(moment, (large.moment - 8.0 * small.moment).norm());
+    most_force = std::max(most_force, large.force.norm());
+    most_moment = std::max(most_moment, large.moment.norm());
+  }
+  constexpr std::size_t middle = 840;  // of the way back along z: 8.40 s
+  constexpr double friction = 0.1;
+  const Reading sliding = half.size() > middle ? half[middle] : Reading{};
+  const std::string source = "similarity of all terms at the same speeds and stresses";
+  return {row("constraint test at full scale, force less 4 times that at half, over its peak", "", source, 0.0,
+              force / most_force + usable, ErrorKind::absolute, 5e-3),
+          row("constraint test at full scale, moment less 8 times that at half, over its peak", "", source, 0.0,
+              moment / most_moment + usable, ErrorKind::absolute, 5e-3),
+          row("constraint test, force along the pin as it slides through the middle", "N", "mu sum N",
+              friction * sliding.normal, std::abs(sliding.sensor.force.z()) + usable, ErrorKind::relative, 1e-3)};
+}
+
 std::vector<Check> snare_checks(const std::filesystem::path& data) {
   std::vector<Check> checks;
   for (const char* model : {"stretched", "quasi_static"})
     checks.push_back({fmt::format("ring two ways, {}", model),
                       [data, model = std::string(model)] { return ring_two_ways_rows(data, model); }});
   checks.push_back({"held shaft", [data] { return held_shaft_rows(data); }});
+  checks.push_back({"constraint test", [data] { return constraint_test_rows(data); }});
   checks.push_back({"hardware in the loop", [data] { return bench_rows(data); }});
   return checks;
 }

@@ -270,6 +270,8 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"arms[rms].base_frame=\"moon\"", "arms[rms].base_frame = \"moon\", must be the name of a frame: "},
       {"arms[rms].base_frame=\"counterweight\"", "must stand still"},
       {"arms[rms].tip_frame=\"pad\"", "cannot stand beside base_frame"},
+      {"arms[rms].held_joints=[\"joint_1\"]", "held_joints = [\"joint_1\"], only beside reach_frame"},
+      {"arms[rms].reach_frame=\"visitor\"", "bodies[visitor].frame = \"snare::fixed\", must not stand on itself"},
       {"arms[rms].base_mm=[1.0]", "arms[rms].base_mm = [1.0], must be an array of 3 numbers"},
       {"arms[rms].name=\"a::b\"", "must not have \"::\""},
       {"bodies[visitor].name=\"<b>\"", "must be 1 to 64 letters, digits, spaces or \"_-.+()\", the first a letter"},
@@ -302,11 +304,14 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"snares[snare].wire.model=\"table\"",
        "snares[snare].wire.model = \"table\", must be \"full\", \"quasi_static\", \"stretched\", \"rod\" or "
        "\"rod_linear\""},
+      {"snares[snare].wire.strand_slip_breadth=1",
+       "only beside strand_extra_stiffness_Nm2 and strand_slip_curvature_1_m"},
       {"snares[snare].wire.tight_N=0", "snares[snare].wire.tight_N = 0, must be > 0"},
       {"snares[snare].wire.tight_hold_s=-1", "snares[snare].wire.tight_hold_s = -1, must be >= 0"},
       {"snares[snare].wire_contact.friction=9", "snares[snare].wire_contact.friction = 9"},
       {"bodies[visitor].frame=\"shaft\"", "must not stand on itself by way of others"},
       {"bodies[visitor].mass_kg=0", "bodies[visitor].mass_kg = 0, must be > 0"},
+      {"bodies[visitor].robot.mass_kg=5", "bodies[visitor].robot, only of a body with driven = true"},
       {"bodies[fixture].name=\"visitor\"", "is taken by another body"},
       {"shapes[pin].frame=\"axle\"", "shapes[pin].frame = \"axle\", must be the name of a frame"},
       {"shapes[pin].body=\"visitor\"", "cannot stand beside body, which means the same"},
@@ -333,6 +338,7 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"phases[close].drives[1].course_file=\"none.csv\"", "cannot stand beside course_file"},
       {"phases[tight].when[1].above_Nm=\"much\"", "phases[tight].when[1].above_Nm = \"much\""},
       {"phases[tight].when[1].below_Nm=1", "must have either above_Nm or below_Nm"},
+      {"phases[tight].when[3].sensor=\"gyro\"", "cannot stand beside tension"},
       {"phases[tight].when[3].tension=\"rope\"", "must be the name of a wire: \"tether\""},
       {"phases[tight].when[2].touch=[\"pin on rope\"]", "must be a contact: \"pin on tether\""},
       {"phases[tight].when[4].distance=[\"shaft\"]", "must name two frames"},
@@ -354,6 +360,14 @@ TEST_F(Compositions, SayWhatIsWrong) {
   };
   test::expect_refused(wrong, [&](const char* setting) { return read({setting}); });
   EXPECT_NO_THROW((void)read({"frames[shaft].rpy_deg=[0,0,1]"}));
+  const auto reaching = [](const std::string& how) { return with("pose = \"bent\"", "pose = \"bent\"\nreach_" + how); };
+  const auto sensing = [](const std::string& how) {
+    return with("{ tension = \"snare::wire_2\", above_N = 5.0 }", "{ " + how + " }");
+  };
+  const auto robot = [](const std::string& how) {
+    const std::string place = "position_mm = [0.0, 5000.0, 0.0]\n";
+    return with(place, place + "driven = true\n[bodies.robot]\n" + how + "\n");
+  };
   const std::pair<std::string, const char*> texts[] = {
       {with("[[welds]]\nname = \"ballast\"\nbody = \"counterweight\"\nframe = \"visitor\"",
             "[[welds]]\nname = \"a\"\nbody = \"counterweight\"\nframe = \"fixture\"\n[[welds]]\nname = \"b\"\nbody = "
@@ -366,6 +380,23 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {with("[[drives]]", "[[drives]]\njoint = \"rms\"\nmode = \"locked\"\n[[drives]]"), "is driven already"},
       {with("{ touch = [\"pin on snare::wire_1\"] }", "{ above_N = 1.0 }"),
        "must have one of touch, sensor, contact, tension"},
+      {reaching("frame = \"counterweight\"\nreach_mm = [0.0, 90000.0, 0.0]"),
+       "is out of reach: the tip comes no nearer than 85024.9 mm and 78.3807 deg"},
+      {reaching("frame = \"moon\""), "arms[rms].reach_frame = \"moon\", must be the name of a frame: "},
+      {reaching("frame = \"counterweight\"\nheld_joints = [\"joint_9\"]"),
+       "arms[rms].held_joints[1] = \"joint_9\", must be a joint of the arm: \"joint_1\""},
+      {reaching("frame = \"counterweight\"\nheld_joints = [\"joint_1\"]"), "needs six joints that move, there are 5"},
+      {with("base_frame = \"pad\"\nbase_mm = [100.0, 0.0, 0.0]",
+            "reach_frame = \"pad\"\ntip_frame = \"counterweight\""),
+       "arms[rms].reach_frame = \"pad\", cannot stand beside tip_frame, by which the base follows"},
+      {sensing("sensor = \"radar\""), "must be a sensor: \"gyro\", \"ring_torque\""},
+      {sensing("sensor = \"gyro\", axis = \"w\", above_deg_s = 5.0"), "axis = \"w\", must be \"x\", \"y\" or \"z\""},
+      {sensing("sensor = \"ring_torque\", axis = \"x\", above_Nm = 5.0"), "only of a sensor that reads three numbers"},
+      {sensing("sensor = \"gyro\", axis = \"x\""), "must have either above_deg_s or below_deg_s"},
+      {robot("mass_kg = 5.0\ndelay_s = 0.001\ncontacts = [\"pin on snare::wire_1\"]"),
+       "must be contacts of this body: \"pin on snare::wire_1\" is between others"},
+      {robot("mass_kg = 5.0\ndelay_s = 0.0\ncontacts = [\"pin on tether\"]"), "robot.delay_s = 0.0, must be > 0"},
+      {robot("mass_kg = 5.0\ndelay_s = 0.001"), "must name the contacts whose force on the body the robot measures"},
       {"schema = \"snare-scenario/2\"\ntitle = \"nothing\"\nduration_s = 1.0\n", "must list something that moves"},
       {"schema = \"snare-scenario/3\"\ntitle = \"later\"\n", "must be \"snare-scenario/2\""},
   };

@@ -37,9 +37,6 @@ TEST(CaptureRows, HardwareInTheLoopBouncesOffFaster) {
 TEST(SlowCaptureRows, ShaftIsHeldForMinutes) {
   expect_within(held_shaft_rows(data));
 }
-TEST(SlowCaptureRows, RingOfWiresTurnsTheSameTwoWays) {
-  expect_within(ring_two_ways_rows(data, "quasi_static"));
-}
 TEST(SlowCaptureRows, StringsKeepTheirNumbersAndBalances) {
   expect_within(snare_capture_rows(data));
 }
