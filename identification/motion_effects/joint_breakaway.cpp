@@ -18,11 +18,10 @@ std::vector<MotionEffect> joint_breakaway_effects(const MotionModel& model) {
     const double declared = beside(model.declared());
     MotionNumber number = number_at(joint.prefix + "breakaway_excess_Nm", declared, 0.02 * joint.use.torque);
     number.unit = unit_of_key(key);
-    const std::optional<double> speed = model.declared().number(falls_off);
     number.overrides = [=](double value, const StandingNumbers& record) {
       const double more = value + (beside(record) - declared);
       std::vector<base::Override> set{{key, exact_text(more)}};
-      if (!speed) set.push_back({falls_off, exact_text(share_of_rate * joint.use.rate)});
+      if (!record.number(falls_off)) set.push_back({falls_off, exact_text(share_of_rate * joint.use.rate)});
       return set;
     };
     number.above = dry;
