@@ -65,7 +65,7 @@ KDL::Chain kdl_chain(const multibody::Tree& tree) {
 
 dart::dynamics::SkeletonPtr dart_skeleton(const multibody::Tree& tree) {
   using namespace dart::dynamics;
-  const SkeletonPtr skeleton = Skeleton::create("arm");
+  SkeletonPtr skeleton = Skeleton::create("arm");
   BodyNode* parent = nullptr;
   for (const multibody::TreeBody& body : tree.bodies()) {
     RevoluteJoint::Properties joint;
@@ -105,7 +105,7 @@ struct KdlCase : Case {
 template <class Work>
 void run(benchmark::State& state, const Work& work) {
   std::size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     work(i);
     i = (i + 1) % 100;
   }
@@ -207,7 +207,7 @@ void ElasticArmAgainstTheClock(benchmark::State& state) {
   run.tolerances = {1e-6, 1e-3};  // the tip moves a few centimetres, 1e-6 rad are 17 micrometres there
   long steps = 0;
   double energy_error = 0.0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const multibody::ArmHistory history = multibody::simulate(run);
     if (!history.report.usable()) state.SkipWithError(history.report.message.c_str());
     steps = history.statistics.steps;

@@ -25,6 +25,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -297,9 +299,7 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
   return result;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"confusion matrix of the tracing on blind sets"};
   unsigned seeds = 20;
   unsigned first = 1;
@@ -391,4 +391,16 @@ int main(int argc, char** argv) {
                     large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&
                     result["false_alarms"].get<double>() <= 0.2;
   return good ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    std::fputc('\n', stderr);
+    return 1;
+  }
 }

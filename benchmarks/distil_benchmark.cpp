@@ -38,7 +38,7 @@ void TableForce(benchmark::State& state) {
   const coupling::ForceTable& table = *distilled().table.loading;
   const std::vector<double> d = travels();
   std::size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
         table.force(d[i % 4096], 0.035 + 10.0 * d[(i + 7) % 4096], 4e-4 + 0.05 * d[(i + 13) % 4096]));
     ++i;
@@ -52,7 +52,7 @@ void LawForce(benchmark::State& state) {
   const std::vector<double> d = travels();
   std::size_t i = 0;
   const coupling::SpringLawPointer spring = law.form->with(law.values);
-  for (auto _ : state) benchmark::DoNotOptimize(spring->force(d[i++ % 4096]));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(spring->force(d[i++ % 4096]));
 }
 BENCHMARK(LawForce)->DenseRange(0, 6);
 
@@ -60,14 +60,14 @@ BENCHMARK(LawForce)->DenseRange(0, 6);
 void ExportedLawForce(benchmark::State& state) {
   const std::vector<double> d = travels();
   std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(snare_law::quadratic_s65(d[i++ % 4096]));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(snare_law::quadratic_s65(d[i++ % 4096]));
 }
 BENCHMARK(ExportedLawForce);
 
 void ExportedTableForce(benchmark::State& state) {
   const std::vector<double> d = travels();
   std::size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
         snare_law::force(d[i % 4096], 0.035 + 10.0 * d[(i + 7) % 4096], 4e-4 + 0.05 * d[(i + 13) % 4096]));
     ++i;
@@ -80,7 +80,8 @@ void FullWireForce(benchmark::State& state) {
   coupling::PushProblem test = wire_file().cases.front().test;
   test.contact_position = 0.065;
   test.travel = {3e-3};
-  for (auto _ : state) benchmark::DoNotOptimize(coupling::solve_push_extrapolated(test, {}).curve.points.back().force);
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(coupling::solve_push_extrapolated(test, {}).curve.points.back().force);
 }
 BENCHMARK(FullWireForce)->Unit(benchmark::kMicrosecond);
 
@@ -94,7 +95,7 @@ reduction::BuiltTable default_table() {
 
 void DefaultTable(benchmark::State& state) {
   omp_set_num_threads(static_cast<int>(state.range(0)));
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const reduction::BuiltTable built = default_table();
     state.counters["bound_share"] = built.loading_error.bound / built.loading_error.force_range;
     state.counters["curves"] = static_cast<double>(built.curves);
@@ -105,7 +106,7 @@ void DefaultTable(benchmark::State& state) {
 /// Two tables at once, each on one thread: what two cores of this machine can do for work that shares nothing.
 void TwoDefaultTables(benchmark::State& state) {
   omp_set_max_active_levels(1);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
 #pragma omp parallel for num_threads(2) schedule(static, 1)
     for (int k = 0; k < 2; ++k) benchmark::DoNotOptimize(default_table().curves);
   }
@@ -117,7 +118,8 @@ void DefaultTableKnownCurves(benchmark::State& state) {
   reduction::CurveStore store(file.cases.front(), file.settings,
                               reduction::sampling_travel(file.cases.front(), file.settings));
   static_cast<void>(reduction::build_table(store, file.settings));
-  for (auto _ : state) benchmark::DoNotOptimize(reduction::build_table(store, file.settings).loading_error.bound);
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(reduction::build_table(store, file.settings).loading_error.bound);
 }
 BENCHMARK(DefaultTableKnownCurves)->Unit(benchmark::kMillisecond);
 

@@ -93,7 +93,7 @@ SparseMatrix lower_triangle(const numerics::SymmetricBandMatrix& matrix) {
       if (matrix.lower(i, j) != 0.0) entries.emplace_back(i, j);
     }
   }
-  SparseMatrix result = numerics::make_pattern(n, std::move(entries));
+  SparseMatrix result = numerics::make_pattern(n, entries);
   for (int j = 0; j < n; ++j) {
     for (int k = result.column_start[static_cast<std::size_t>(j)];
          k < result.column_start[static_cast<std::size_t>(j) + 1]; ++k) {
@@ -106,7 +106,7 @@ SparseMatrix lower_triangle(const numerics::SymmetricBandMatrix& matrix) {
 void WholeBareKlu(benchmark::State& state) {
   const LinearSystem s(static_cast<int>(state.range(0)));
   BareKlu klu(s.whole);
-  for (auto _ : state) klu.run(s.right);
+  for ([[maybe_unused]] auto _ : state) klu.run(s.right);
   state.counters["factor_entries"] = klu.entries();
   state.counters["matrix_entries"] = static_cast<double>(s.whole.row.size());
 }
@@ -116,7 +116,7 @@ void WholeKlu(benchmark::State& state) {
   const LinearSystem s(static_cast<int>(state.range(0)));
   numerics::Klu klu(s.whole);
   Eigen::VectorXd x;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (!klu.factorize(s.whole)) state.SkipWithError("singular");
     x = s.right;
     klu.solve(x);
@@ -129,7 +129,7 @@ void WholeOwnBordered(benchmark::State& state) {
   LinearSystem s(static_cast<int>(state.range(0)));
   Eigen::VectorXd band;
   Eigen::VectorXd border;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (!s.workspace.solver.factorize(s.workspace.system)) state.SkipWithError("singular");
     band = s.right.head(s.held.order());
     border = s.right.tail(s.whole.order - s.held.order());
@@ -143,7 +143,7 @@ void StiffnessCholmod(benchmark::State& state, Cholmod::Ordering ordering) {
   const SparseMatrix lower = lower_triangle(s.held);
   Cholmod cholmod(lower, ordering);
   Eigen::VectorXd x;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (!cholmod.factorize(lower)) state.SkipWithError("a pivot vanishes");
     x = s.right_band;
     cholmod.solve(x);
@@ -155,7 +155,7 @@ void StiffnessOwnBand(benchmark::State& state) {
   const LinearSystem s(static_cast<int>(state.range(0)));
   numerics::BandLdlt factor;
   Eigen::VectorXd x;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (!factor.factorize(s.held)) state.SkipWithError("a pivot vanishes");
     x = s.right_band;
     factor.solve(x);
@@ -172,7 +172,7 @@ void NewtonIterationOverYardstick(benchmark::State& state) {
   Eigen::VectorXd by_parameter;
   numerics::BorderedSystem assembled;
   std::vector<double> times;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     times = median_times({[&] { newton_iteration(*s.wire.system, s.wire.point, workspace); }, [&] { klu.run(s.right); },
                           [&] { s.wire.system->assemble(s.wire.point, assembled, by_parameter); }},
                          51, 20);

@@ -161,7 +161,7 @@ void case_h(benchmark::State& state) {
   const coupling::PushProblem test = declared_push();
   coupling::MotionResult result;
   std::vector<double> seconds;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     seconds = median_times({[&] { benchmark::DoNotOptimize(coupling::solve_push(test, {}).points.data()); },
                             [&] { result = coupling::simulate(case_h_motion(rod), options); }},
                            5, 1);
@@ -185,7 +185,7 @@ void one_wire(benchmark::State& state) {
   coupling::MotionOptions options;
   options.duration = 1.0;
   coupling::MotionResult result;
-  for (auto _ : state) result = coupling::simulate(motion, options);
+  for ([[maybe_unused]] auto _ : state) result = coupling::simulate(motion, options);
   report(state, result);
 }
 BENCHMARK(one_wire)->Arg(60)->Unit(benchmark::kMillisecond);
@@ -234,7 +234,7 @@ void three_wires(benchmark::State& state) {
   coupling::MotionOptions options;
   options.duration = 1.0;
   coupling::MotionResult result;
-  for (auto _ : state) result = coupling::simulate(motion, options);
+  for ([[maybe_unused]] auto _ : state) result = coupling::simulate(motion, options);
   report(state, result);
 }
 BENCHMARK(three_wires)
@@ -257,7 +257,7 @@ void tolerances(benchmark::State& state) {
   };
   static const coupling::MotionResult reference = run(1e-3);
   coupling::MotionResult result;
-  for (auto _ : state) result = run(std::pow(10.0, static_cast<double>(state.range(0))));
+  for ([[maybe_unused]] auto _ : state) result = run(std::pow(10.0, static_cast<double>(state.range(0))));
   report(state, result);
   state.counters["impulse_error"] = (result.impulse[0] - reference.impulse[0]).norm() / reference.impulse[0].norm();
   state.counters["peak_force_error"] = std::abs(result.peak_force[0] / reference.peak_force[0] - 1.0);
@@ -271,7 +271,7 @@ void elements(benchmark::State& state) {
   options.duration = 2e-4;
   options.max_step = 1e-5;
   coupling::MotionResult result;
-  for (auto _ : state) result = coupling::simulate(motion, options);
+  for ([[maybe_unused]] auto _ : state) result = coupling::simulate(motion, options);
   report(state, result);
   state.SetComplexityN(state.range(0));
 }
@@ -295,7 +295,7 @@ void search(benchmark::State& state) {
   options.duration = near ? 2e-3 : 2e-4;
   options.max_step = 1e-5;
   coupling::MotionResult result;
-  for (auto _ : state) result = coupling::simulate(motion, options);
+  for ([[maybe_unused]] auto _ : state) result = coupling::simulate(motion, options);
   report(state, result);
 }
 BENCHMARK(search)
@@ -309,7 +309,7 @@ void scan_all_vertices(benchmark::State& state) {
   const coupling::Motion motion = impact(1000);
   const auto shape = mesh ? tessellated_ball(6.0 * mm, 50) : motion.contacts[0].shape;
   const Eigen::Vector3d place = motion.bodies[0].start.position + motion.contacts[0].X_BS.p;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     double least = 1.0;
     for (const auto& x : motion.wires[0].positions.colwise()) least = std::min(least, shape->distance(x - place));
     benchmark::DoNotOptimize(least);
@@ -330,7 +330,7 @@ void ten_runs(benchmark::State& state) {
   };
   double one = 0.0;
   double two = 0.0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     one += seconds(1);
     two += seconds(2);
   }

@@ -26,6 +26,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -210,9 +212,7 @@ std::map<std::size_t, Outcome> read_sets(const std::string& file, const std::vec
   return outcomes;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"false culprits of the tracing on readings without any effect"};
   unsigned seeds = 34;
   unsigned first = 1;
@@ -275,4 +275,16 @@ int main(int argc, char** argv) {
     write();
   }
   fmt::print("{}\n", write().dump(1));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    std::fputc('\n', stderr);
+    return 1;
+  }
 }

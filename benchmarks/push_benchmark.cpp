@@ -50,7 +50,7 @@ void OutwardCurveExtrapolated(benchmark::State& state) {
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
   coupling::ExtrapolatedCurve result;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     result = coupling::solve_push_extrapolated(test, options);
     benchmark::DoNotOptimize(result.curve.points.data());
   }
@@ -63,7 +63,7 @@ void OutwardCurve(benchmark::State& state) {
   coupling::PushOptions options;
   options.elements = static_cast<int>(state.range(0));
   coupling::PushCurve curve;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     curve = coupling::solve_push(test, options);
     benchmark::DoNotOptimize(curve.points.data());
   }
@@ -77,7 +77,7 @@ void EquilibriumOwnNewton(benchmark::State& state) {
   numerics::PathWorkspace workspace;
   numerics::SolveReport report;
   numerics::PathPoint point;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     point = wire.point;
     report = numerics::correct(*wire.system, point, workspace, 20);
     benchmark::DoNotOptimize(point.band.data());
@@ -136,7 +136,7 @@ void EquilibriumKinsol(benchmark::State& state) {
 
   numerics::SolveReport report;
   Eigen::VectorXd u;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     u = start;
     report = solve_kinsol(nonlinear, u, options);
     benchmark::DoNotOptimize(u.data());
@@ -151,7 +151,7 @@ void NewtonIteration(benchmark::State& state) {
   const auto elements = static_cast<int>(state.range(0));
   PressedWire wire = buckled_shape(elements);
   numerics::PathWorkspace workspace;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     newton_iteration(*wire.system, wire.point, workspace);
     benchmark::DoNotOptimize(workspace.band_step.data());
   }

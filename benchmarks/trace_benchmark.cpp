@@ -16,7 +16,7 @@ using namespace snare;
 void whole_trace(benchmark::State& state, const char* effect) {
   const validation::BlindSet set = validation::make_blind_set(effect, 30.0, 1);
   std::map<std::string, double> seconds;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const identification::Trace t = identification::trace(set.experiment);
     benchmark::DoNotOptimize(t.final.rmse);
     for (const auto& [what, time] : t.seconds) seconds[what] += time;
@@ -27,7 +27,7 @@ void whole_trace(benchmark::State& state, const char* effect) {
 /// `processor` is the CPU time of all threads [s].
 void time_traces(benchmark::State& state, const identification::Experiment& experiment) {
   double processor = 0.0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const std::clock_t before = std::clock();
     const identification::Trace t = identification::trace(experiment);
     benchmark::DoNotOptimize(t.final.rmse);
@@ -67,7 +67,7 @@ void force_and_derivatives(benchmark::State& state) {
     by.push_back(&identification::parameters().at(key));
   }
   by.resize(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(model.evaluate({}, by).force.front()[0]);
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(model.evaluate({}, by).force.front()[0]);
 }
 
 BENCHMARK_CAPTURE(whole_trace, wire_length, "wire_length")->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
