@@ -17,7 +17,8 @@ constexpr auto at(int i) {
 }
 
 /// The unknowns in their order: first those with few neighbours; one without a value on the diagonal, a multiplier for one, after
-/// the last of its neighbours that have.
+/// the last of its neighbours that have one. What such a row asks for may only be moved by the multiplier of another one, as a rate by the
+/// force that holds the place: the stabiliser of that place has no pivot before. Of two it is the later one.
 std::vector<int> elimination_order(const SparseMatrix& matrix) {
   const int n = matrix.order;
   const Eigen::Map<const Eigen::SparseMatrix<double>> view(n, n, static_cast<Eigen::Index>(matrix.row.size()),
@@ -32,18 +33,31 @@ std::vector<int> elimination_order(const SparseMatrix& matrix) {
     const int slot = matrix.slot(j, j);
     zero[at(j)] = slot < 0 || matrix.value[at(slot)] == 0.0;
   }
-  std::vector<std::pair<int, int>> keys;  // place, and one more than twice that of the last neighbour
-  for (int u = 0; u < n; ++u) keys.emplace_back(2 * place[at(u)], place[at(u)]);
+  std::vector<int> after(at(n));  // twice the place, and one more than twice that of the last neighbour
+  std::vector<std::vector<int>> asks(at(n)), moves(at(n));  // of a multiplier's row; multipliers, of any other row
+  for (int u = 0; u < n; ++u) after[at(u)] = 2 * place[at(u)];
   for (int j = 0; j < n; ++j) {
     for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s) {
       const int i = matrix.row[at(s)];
-      if (zero[at(i)] && !zero[at(j)]) keys[at(i)].first = std::max(keys[at(i)].first, 2 * place[at(j)] + 1);
-      if (zero[at(j)] && !zero[at(i)]) keys[at(j)].first = std::max(keys[at(j)].first, 2 * place[at(i)] + 1);
+      if (zero[at(i)] == zero[at(j)]) continue;
+      const int multiplier = zero[at(i)] ? i : j, other = zero[at(i)] ? j : i;
+      after[at(multiplier)] = std::max(after[at(multiplier)], 2 * place[at(other)] + 1);
+      if (multiplier == i)
+        asks[at(i)].push_back(j);
+      else
+        moves[at(i)].push_back(j);
+    }
+  }
+  for (int u = 0; u < n; ++u) {
+    for (const int asked : asks[at(u)]) {
+      for (const int by : moves[at(asked)])
+        if (by < u) after[at(u)] = std::max(after[at(u)], after[at(by)]);
     }
   }
   std::vector<int> unknowns(at(n));
   std::iota(unknowns.begin(), unknowns.end(), 0);
-  std::sort(unknowns.begin(), unknowns.end(), [&](int a, int b) { return keys[at(a)] < keys[at(b)]; });
+  const auto key = [&](int u) { return std::pair(after[at(u)], zero[at(u)] ? u : place[at(u)]); };
+  std::sort(unknowns.begin(), unknowns.end(), [&](int a, int b) { return key(a) < key(b); });
   return unknowns;
 }
 
