@@ -124,7 +124,10 @@ class Power final : public LawForm {
   }
   std::vector<VectorXd> guesses(double force, double travel) const override {
     std::vector<VectorXd> result;
-    for (double p = 1.0; p <= 4.0; p += 0.5) result.push_back(vector({force / std::pow(travel, p), p}));
+    for (int halves = 2; halves <= 8; ++halves) {
+      const double p = 0.5 * halves;
+      result.push_back(vector({force / std::pow(travel, p), p}));
+    }
     return result;
   }
   // Below 1 the stiffness at first touch would be infinite.
@@ -211,7 +214,8 @@ class Stretched final : public LawForm {
   }
   std::vector<VectorXd> guesses(double force_scale, double travel) const override {
     std::vector<VectorXd> result;
-    for (double share = 0.0; share < 0.85; share += 0.1) {
+    for (int tenths = 0; tenths <= 8; ++tenths) {
+      const double share = 0.1 * tenths;
       const double unit = force(vector({1.0, share * travel}), travel);
       if (unit > 0.0) result.push_back(vector({force_scale / unit, share * travel}));
     }
@@ -265,7 +269,8 @@ class StretchedLinear final : public LawForm {
   std::vector<VectorXd> guesses(double force_scale, double travel) const override {
     std::vector<VectorXd> result;
     if (unit_ <= 0.0) return result;
-    for (double share = 0.0; share < 0.85; share += 0.1) {
+    for (int tenths = 0; tenths <= 8; ++tenths) {
+      const double share = 0.1 * tenths;
       result.push_back(vector({force_scale / (unit_ * (1.0 - share) * travel), share * travel}));
     }
     return result;

@@ -22,6 +22,7 @@ class RobotLoop {
   explicit RobotLoop(const MotionBody& body) : body_(body) {}
   RobotLoop(const RobotLoop&) = delete;
   RobotLoop& operator=(const RobotLoop&) = delete;
+  ~RobotLoop() = default;
 
   /// The body with its course, which asks this loop: it must outlive what it is given to.
   [[nodiscard]] MotionBody moved() const;
