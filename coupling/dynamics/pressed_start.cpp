@@ -44,7 +44,7 @@ Matrix3Xd arc_between(double span, double length, int n) {
 
 // Without inertia a wire comes to rest within a few times of its damping in bending, whatever its stiffness.
 Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius, const RoundWall& wall) {
-  const Matrix3Xd free = resting_wire(rod);
+  Matrix3Xd free = resting_wire(rod);
   if (reach_of(free, wall) + wire_radius <= wall.inner_radius) return free;
   const double span = (rod.properties.right.position - rod.properties.left.position).norm();
   const Matrix3Xd arc = arc_between(span, rod.length, rod.elements);
