@@ -78,16 +78,16 @@ std::vector<std::string> twice_as_large() {
       "phases[close].at_s=0.1",
       "phases[close].drives[1].duration_s=1.6",
   };
-  double at = 1.8;
+  double begin = 1.8;
   for (const char axis : {'x', 'y', 'z'}) {
     const double way = axis == 'z' ? 20.0 : 6.0;
     for (const int leg : {1, 2, 3}) {
       const std::string phase = fmt::format("phases[{}{}].", axis, leg);
       const double duration = leg == 2 ? 3.0 : 1.5;
-      settings.push_back(fmt::format("{}at_s={:.1f}", phase, at));
+      settings.push_back(fmt::format("{}at_s={:.1f}", phase, begin));
       settings.push_back(fmt::format("{}drives[1].duration_s={:.1f}", phase, duration));
       settings.push_back(fmt::format("{}drives[1].by_mm={:.1f}", phase, leg == 2 ? -2.0 * way : way));
-      at += duration;
+      begin += duration;
     }
   }
   return settings;
@@ -220,7 +220,8 @@ std::vector<Row> constraint_test_rows(const std::filesystem::path& data) {
   };
   std::vector<Reading> half, full;
   const double usable = test({}, half).usable() + test(twice_as_large(), full).usable();
-  double force = 0.0, moment = 0.0, most_force = 0.0, most_moment = 0.0;
+  constexpr double nothing = 1e-300;  // where nothing was computed
+  double force = 0.0, moment = 0.0, most_force = nothing, most_moment = nothing;
   const std::size_t common = std::min(half.size(), full.size());
   for (std::size_t i = 0; i < common; ++i) {
     const multibody::Wrench &small = half[i].sensor, &large = full[i].sensor;
