@@ -299,7 +299,9 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
   return result;
 }
 
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) try {
   CLI::App app{"confusion matrix of the tracing on blind sets"};
   unsigned seeds = 20;
   unsigned first = 1;
@@ -391,16 +393,7 @@ int run(int argc, char** argv) {
                     large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&
                     result["false_alarms"].get<double>() <= 0.2;
   return good ? 0 : 1;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fputs(error.what(), stderr);
-    std::fputc('\n', stderr);
-    return 1;
-  }
+} catch (const std::exception& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 1;
 }

@@ -212,7 +212,9 @@ std::map<std::size_t, Outcome> read_sets(const std::string& file, const std::vec
   return outcomes;
 }
 
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) try {
   CLI::App app{"false culprits of the tracing on readings without any effect"};
   unsigned seeds = 34;
   unsigned first = 1;
@@ -275,16 +277,7 @@ int run(int argc, char** argv) {
     write();
   }
   fmt::print("{}\n", write().dump(1));
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fputs(error.what(), stderr);
-    std::fputc('\n', stderr);
-    return 1;
-  }
+} catch (const std::exception& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 1;
 }
