@@ -32,4 +32,9 @@ struct ElasticFoundation {
 /// 30 EA/d^2 [N/m^2]: thirty times what the section itself gives. diameter [m]; 0: of a solid round section.
 [[nodiscard]] double default_modulus(double axial_stiffness, double bending_stiffness, double diameter);
 
+/// How long a piece of a wire gives way where its mount meets a surface [m]: as long as the surface's radius with the wire's, but at
+/// least four diameters. The arguments as with default_modulus; radius: smallest of the convex surface [m], 0 or infinite: none.
+///                                                                                          theory.md (M.35)
+[[nodiscard]] double mount_length(double axial_stiffness, double bending_stiffness, double diameter, double radius);
+
 }  // namespace snare::coupling

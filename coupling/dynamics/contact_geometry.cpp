@@ -1,5 +1,7 @@
 #include "coupling/dynamics/contact_geometry.hpp"
 
+#include <cmath>
+
 namespace snare::coupling {
 
 using Eigen::Matrix3d;
@@ -8,9 +10,21 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 using numerics::VectorView;
 
+namespace {
+
+/// An axis of the world well across a unit vector.
+Vector3d axis_across(const Vector3d& n) {
+  constexpr double steep = 0.9;
+  return std::abs(n.z()) < steep ? Vector3d::UnitZ() : Vector3d::UnitX();
+}
+
+}  // namespace
+
 ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape, const CurvePoint& curve,
-                                 const BodyPart& body, const VectorView& y, const Vector2d& bristle) {
+                                 const BodyPart& body, const VectorView& y, const Vector2d& bristle,
+                                 ContactPlace place) {
   ContactGeometry g;
+  g.at_mount = place == ContactPlace::mount;
   static_cast<CurvePoint&>(g) = curve;
   // The shape: distance, normal and Hessian in S, at R_WS^T (r - R_WB p_BS).
   const Vector4d q = y.segment<4>(body.quaternion());
@@ -29,7 +43,11 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
   g.gap_rate = g.normal.dot(g.relative);
   g.direction = g.slope.normalized();
   // Tangent plane and forces.
-  const Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
+  constexpr double upright = 1e-3;  // sine of the angle between wire and normal
+  Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
+  g.by_wire = !g.at_mount && level.norm() > upright * g.slope.norm();
+  g.toward = g.by_wire ? g.slope : axis_across(g.normal);
+  if (!g.by_wire) level = g.toward - g.normal.dot(g.toward) * g.normal;
   g.run = level.norm();
   g.along = level / g.run;
   g.across = g.normal.cross(g.along);
@@ -39,7 +57,8 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
     const Vector3d force = contact.law(-g.gap, -g.gap_rate);
     g.load = {force[0], -force[1], -force[2]};  // at a minimum of the gap n.t is zero
   } else {
-    g.load = contact.foundation.load(g.gap, g.gap_rate - g.normal.dot(g.direction) * g.direction.dot(g.relative));
+    const double along_wire = g.at_mount ? 0.0 : g.normal.dot(g.direction) * g.direction.dot(g.relative);
+    g.load = contact.foundation.load(g.gap, g.gap_rate - along_wire);
   }
   g.state.normal = g.load[0];
   g.state.bristle = bristle;
@@ -63,7 +82,7 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
   double opening = c.gap_rate;
-  if (!g.by_law) {
+  if (!g.by_law && !g.at_mount) {
     const Vector3d ddirection = (dslope - g.direction.dot(dslope) * g.direction) / g.slope.norm();
     opening -= (c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
                g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative));
@@ -71,9 +90,10 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   c.load = g.load[1] * c.gap + g.load[2] * opening;
   c.force = c.load * g.normal + g.state.normal * c.normal;
   if (friction.acts()) {
-    // The axes turn with X' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n x da.
+    // The axes turn with e and n: |u| da = du - a (a.du), du = de - d(n.e) n - (n.e) dn, db = dn x a + n x da.
+    const Vector3d dtoward = g.by_wire ? dslope : Vector3d::Zero();
     const Vector3d du =
-        dslope - (c.normal.dot(g.slope) + g.normal.dot(dslope)) * g.normal - g.normal.dot(g.slope) * c.normal;
+        dtoward - (c.normal.dot(g.toward) + g.normal.dot(dtoward)) * g.normal - g.normal.dot(g.toward) * c.normal;
     const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
     const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
     c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};

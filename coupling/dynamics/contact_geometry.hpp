@@ -19,10 +19,11 @@ struct CurvePoint {
 /// One point of contact between a wire and a body's shape at one state, in the axes of the world unless said.
 ///                                                                                   theory.md (M.7)-(M.9)
 ///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
-///   u = X' - (n.X') n,  a = u/|u|,  b = n x a: axes of the tangent plane
+///   u = e - (n.e) n,  a = u/|u|,  b = n x a: axes of the tangent plane, e = X', or an axis of the world where X' is along n
 ///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
 ///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N], o = dg/dt - (n.t)(t.w), t = X'/|X'|
 ///   force on the wire, a length or in all: f = lambda n - (friction on the body, in a and b)
+/// At a mount o = dg/dt, and e is an axis of the world.
 struct ContactGeometry : CurvePoint {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();                                      ///< r [m]
@@ -35,9 +36,11 @@ struct ContactGeometry : CurvePoint {
   double gap_rate = 0.0;                                                              ///< dg/dt [m/s]
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();                                ///< t
   Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
+  bool by_wire = true;                                                                ///< e = X'
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();                                   ///< e
   double run = 0.0;                                                                   ///< |u|
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and o
-  bool by_law = false;
+  bool by_law = false, at_mount = false;
   BristleState state;  ///< z, the sliding velocity w in a and b, lambda
   TangentForce friction;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
@@ -48,10 +51,14 @@ struct ContactGeometry : CurvePoint {
   }
 };
 
+/// A place on a wire between its mounts, or that of a mount.
+enum class ContactPlace { wire, mount };
+
 /// bristle: z [m], zero without one.
 [[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape,
                                                const CurvePoint& curve, const BodyPart& body,
-                                               const numerics::VectorView& y, const Eigen::Vector2d& bristle);
+                                               const numerics::VectorView& y, const Eigen::Vector2d& bristle,
+                                               ContactPlace place = ContactPlace::wire);
 
 /// A direction in the space of what a contact depends on.
 struct ContactDirection {

@@ -64,10 +64,17 @@ ContactPart::ContactPart(const MotionContact& contact, std::shared_ptr<const Con
       search_(contact, std::move(piece), rod, body),
       coupled_(base::at(search_.curve().elements()), false) {
   assert(rod_.vertices() >= 5);
-  if (contact_.foundation.modulus == 0.0) {
-    const wire::SpatialRodProperties& p = rod.constants().properties;
-    contact_.foundation.modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, 2.0 * contact_.wire_radius);
-  }
+  const wire::SpatialRodProperties& p = rod_.constants().properties;
+  const double diameter = 2.0 * contact_.wire_radius;
+  if (contact_.foundation.modulus == 0.0)
+    contact_.foundation.modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, diameter);
+  // A mount: EA over the length that gives way; friction by the smooth law with the one coefficient of sliding.
+  mount_length_ = mount_length(p.axial_stiffness, p.bending_stiffness, diameter, search_.shape().smallest_radius());
+  mount_weight_ = p.axial_stiffness / (mount_length_ * contact_.foundation.modulus);
+  at_mount_ = contact_;
+  at_mount_.friction = MotionFriction{.static_coefficient = contact_.friction.dynamic_coefficient,
+                                      .dynamic_coefficient = contact_.friction.dynamic_coefficient,
+                                      .law = ContactFriction::smooth};
 }
 
 void ContactPart::declare(numerics::DaeLayout& layout) {
@@ -138,6 +145,48 @@ ContactPart::Node ContactPart::node(int element, double u, double weight) const 
   return n;
 }
 
+bool ContactPart::stops(wire::End end) const {
+  if (rod_.is_carried(end)) return true;
+  const int vertex = end == wire::End::left ? 0 : rod_.vertices() - 1;
+  return rod_.is_held(vertex, 0) && rod_.is_held(vertex, 1) && rod_.is_held(vertex, 2);
+}
+
+// x^2 (3 - 2 x) of the way from a mount to the end of the piece that gives way.
+double ContactPart::foundation_share(double coordinate) const {
+  const BezierWire& curve = search_.curve();
+  const int last = curve.elements() - 1;
+  double share = 1.0;
+  const auto fade = [&](wire::End end, double way) {
+    if (way >= mount_length_ || !stops(end)) return;
+    const double x = way / mount_length_;
+    share *= x * x * (3.0 - 2.0 * x);
+  };
+  fade(wire::End::left, coordinate);
+  fade(wire::End::right, curve.begin(last) + curve.length(last) - coordinate);
+  return share;
+}
+
+void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, std::vector<Node>& nodes) const {
+  const BezierWire& curve = search_.curve();
+  const double length = curve.length(e);
+  const auto add = [&](const Node& n) {
+    nodes.push_back(n);
+    nodes.back().stretch = index;
+  };
+  for (std::size_t q = 0; q < gauss_places.size(); ++q) {
+    const double u = s.from + gauss_places[q] * (s.to - s.from);
+    add(node(e, u, gauss_weights[q] * (s.to - s.from) * length * foundation_share(curve.begin(e) + u * length)));
+  }
+  const auto mount = [&](double u) {
+    Node n = node(e, u, mount_weight_);
+    n.place = ContactPlace::mount;
+    n.hats = {};
+    add(n);
+  };
+  if (e == 0 && s.from == 0.0 && stops(wire::End::left)) mount(0.0);
+  if (e + 1 == curve.elements() && s.to == 1.0 && stops(wire::End::right)) mount(1.0);
+}
+
 void ContactPart::find(const VectorView& y, Found& found) const {
   found.nodes.clear();
   found.stretches.clear();
@@ -171,14 +220,7 @@ void ContactPart::find(const VectorView& y, Found& found) const {
       }
       continue;
     }
-    for (std::size_t k = before; k < found.stretches.size(); ++k) {
-      const ClosedStretch& s = found.stretches[k];
-      for (std::size_t q = 0; q < gauss_places.size(); ++q) {
-        found.nodes.push_back(
-            node(e, s.from + gauss_places[q] * (s.to - s.from), gauss_weights[q] * (s.to - s.from) * length));
-        found.nodes.back().stretch = k;
-      }
-    }
+    for (std::size_t k = before; k < found.stretches.size(); ++k) add_stretch(e, found.stretches[k], k, found.nodes);
   }
 }
 
@@ -195,7 +237,8 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
   }
   Vector2d bristle = Vector2d::Zero();
   for (int h = 0; has_bristle() && h < 2; ++h) bristle += n.hats[base::at(h)] * y.segment<2>(bristle_of(n.element + h));
-  return contact_geometry(contact_, search_.shape(), curve, body_, y, bristle);
+  const MotionContact& contact = n.place == ContactPlace::mount ? at_mount_ : contact_;
+  return contact_geometry(contact, search_.shape(), curve, body_, y, bristle, n.place);
 }
 
 void ContactPart::find_geometries(const VectorView& y, Found& found) const {
@@ -259,14 +302,15 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
 // One column after another: the unknown's direction, and what changes along it in all rows.
 void ContactPart::add_node_jacobian(const Node& n, const ContactGeometry& g, const VectorView& y,
                                     const numerics::PatternValues& into) const {
+  const MotionFriction& friction = n.place == ContactPlace::mount ? at_mount_.friction : contact_.friction;
   // A law's minimum follows the tangency n.X' = 0.
   ContactDirection along;
   along.zeta = 1.0;
-  const double curvature = n.follows ? contact_change(contact_.friction, g, along).tangency : 0.0;
+  const double curvature = n.follows ? contact_change(friction, g, along).tangency : 0.0;
   const auto change = [&](ContactDirection d) {
-    if (curvature < least_curvature) return Change(contact_change(contact_.friction, g, d), 0.0);
-    d.zeta = -contact_change(contact_.friction, g, d).tangency / curvature;
-    return Change(contact_change(contact_.friction, g, d), d.zeta);
+    if (curvature < least_curvature) return Change(contact_change(friction, g, d), 0.0);
+    d.zeta = -contact_change(friction, g, d).tangency / curvature;
+    return Change(contact_change(friction, g, d), d.zeta);
   };
   std::array<BristleRate, 2> bristles;
   for (int h = 0; has_bristle() && h < 2; ++h) {

@@ -81,6 +81,7 @@ class ContactPart final : public numerics::DaePart {
     Eigen::Vector4d value, slope, bend;
     std::array<double, 2> hats{};  // of the element's vertices
     bool follows = false;          // the minimum as it moves along the wire: a law's
+    ContactPlace place = ContactPlace::wire;
     std::size_t stretch = 0;
   };
   struct Found {
@@ -94,12 +95,18 @@ class ContactPart final : public numerics::DaePart {
   void find(const numerics::VectorView& y, Found& found) const;
   void find_geometries(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
+  void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
+  [[nodiscard]] bool stops(wire::End end) const;
+  [[nodiscard]] double foundation_share(double coordinate) const;
   [[nodiscard]] Node node(int element, double u, double weight) const;
   [[nodiscard]] ContactGeometry geometry(const Node& node, const numerics::VectorView& y) const;
   void add_node_jacobian(const Node& node, const ContactGeometry& geometry, const numerics::VectorView& y,
                          const numerics::PatternValues& into) const;
 
   MotionContact contact_;
+  double mount_length_ = 0.0;  // of the piece of the wire that gives way at a mount [m]
+  MotionContact at_mount_;     // how a mount itself meets the body
+  double mount_weight_ = 0.0;  // [m]
   const wire::RodPart& rod_;
   const BodyPart& body_;
   ContactSearch search_;

@@ -171,8 +171,8 @@ Candidate at_ratio(const std::vector<Spectrum>& spectra, const Roughness& roughn
 
 Candidate best_ratio(const std::vector<Spectrum>& spectra, const Roughness& roughness) {
   Candidate best;
-  for (double exponent = -4.0; exponent <= 6.0; exponent += 0.1) {
-    const Candidate c = at_ratio(spectra, roughness, std::pow(10.0, exponent));
+  for (int tenth = -40; tenth <= 60; ++tenth) {
+    const Candidate c = at_ratio(spectra, roughness, std::pow(10.0, 0.1 * tenth));
     if (c.criterion < best.criterion) best = c;
   }
   return best;

@@ -1,5 +1,7 @@
 #include "identification/motion_effects/motion_effect.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +31,8 @@ std::vector<JointPlace> joint_places(const MotionModel& model) {
   for (const auto& [name, use] : model.joints()) {
     const std::size_t colons = name.find("::");
     const std::string arm = name.substr(0, colons), joint = name.substr(colons + 2);
-    if (model.declared().arms.contains(arm)) places.push_back({name, "arms[" + arm + "].joint." + joint + ".", use});
+    if (model.declared().arms.contains(arm))
+      places.push_back({name, fmt::format("arms[{}].joint.{}.", arm, joint), use});
   }
   return places;
 }
@@ -47,7 +50,7 @@ std::vector<MotionEffect> other_number(const MotionModel& model, const std::stri
                                        const MotionEffect& what) {
   std::vector<MotionEffect> effects;
   for (const std::string& name : model.declared().names(list)) {
-    const std::string full = list + "[" + name + "]." + key;
+    const std::string full = fmt::format("{}[{}].{}", list, name, key);
     const std::optional<double> declared = model.declared().number(full);
     if (!declared || !(*declared > 0.0)) continue;
     MotionEffect effect = what;
@@ -76,7 +79,7 @@ std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std:
                                             double scale) {
   std::vector<MotionEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
-    const std::string whole = "bodies[" + name + "]." + key;
+    const std::string whole = fmt::format("bodies[{}].{}", name, key);
     MotionEffect effect = what;
     effect.place = name;
     for (const char* axis : {"[1]", "[2]", "[3]"}) {

@@ -32,7 +32,7 @@ std::vector<ModelFamily> fit_families(const RecordSet& set, const ChannelScales&
     const std::vector<std::size_t> fitted = other.used(false);
     const MotionData data = motion_data(other, fitted, scales);
     // The same numbers from where the base has led them; what the keys declare otherwise begins there.
-    std::vector<MotionSetting> start = model.free(fitted);
+    std::vector<MotionSetting> start = model.free_settings(fitted);
     for (MotionSetting& s : start)
       for (const MotionSetting& reached : base)
         if (reached.number.key == s.number.key && reached.number.declared == s.number.declared) s.value = reached.value;

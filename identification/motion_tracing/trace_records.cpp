@@ -37,7 +37,7 @@ class Tracer {
     look.progress = asked();
     // The numbers of every record for itself are no part of the model: also the declared one has its own.
     std::vector<MotionSetting> own, shared;
-    for (const MotionSetting& s : model_.free(fitted_)) (s.number.record ? own : shared).push_back(s);
+    for (const MotionSetting& s : model_.free_settings(fitted_)) (s.number.record ? own : shared).push_back(s);
     look.fixed = shared;
     const MotionFit declared = fit_motion(model_, data_, own, look);
     if (!declared.report.usable()) return end(declared.report.message);
@@ -160,10 +160,10 @@ class Tracer {
     options.method = set_.method;
     options.simplex_change = set_.simplex_change;
     options.progress = asked();
-    MotionFit fit = fit_motion(model_, data_, model_.free(fitted_), options);
+    MotionFit fit = fit_motion(model_, data_, model_.free_settings(fitted_), options);
     if (fit.report.usable() && !fit.settings.empty() && options.method == FitMethod::gauss_newton &&
         out_of_step(data_, fit) && !stop_) {
-      MotionFit grown = fit_from_beginnings(model_, data_, model_.free(fitted_), options);
+      MotionFit grown = fit_from_beginnings(model_, data_, model_.free_settings(fitted_), options);
       grown.simulations += fit.simulations;
       if (grown.report.usable() && grown.chi2 < fit.chi2) fit = std::move(grown);
     }
@@ -204,7 +204,7 @@ class Tracer {
     options.first_jacobian = heldout_jacobian_;
     if (heldout_starts_) return fit_motion(model_, heldout_data_, *heldout_starts_, options);
     std::vector<MotionSetting> own;
-    for (const MotionSetting& s : model_.free(heldout_))
+    for (const MotionSetting& s : model_.free_settings(heldout_))
       if (s.number.record) own.push_back(s);
     MotionFit fitted = fit_motion(model_, heldout_data_, own, options);
     if (fitted.report.usable()) {

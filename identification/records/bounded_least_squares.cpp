@@ -124,12 +124,13 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
     Eigen::VectorXd failed = Eigen::VectorXd::Zero(norms.size());
     for (int attempt = 0; attempt < (asked ? most_tries : 1) && !(fall > 0.0); ++attempt) {
       Eigen::VectorXd there, step;
-      for (; damping <= most_damping; damping *= 10.0) {  // to a step that is another than the one that failed
+      while (damping <= most_damping) {  // to a step that is another than the one that failed
         const Eigen::VectorXd moved = result.x + step_within(problem, result.x, r, J, held, damping);
         there = moved.cwiseMax(problem.lower).cwiseMin(problem.upper);
         step = there - result.x;
         if (attempt == 0 || norms.cwiseProduct(step - failed).norm() > another * norms.cwiseProduct(failed).norm())
           break;
+        damping *= 10.0;
       }
       promised = result.chi2 - (r + J * step).squaredNorm();
       if (promised <= tolerance * result.chi2) break;  // worth no simulation

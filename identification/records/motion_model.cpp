@@ -119,7 +119,7 @@ double MotionModel::lower_bound(const FreeNumber& number) const {
   return taken(0.0) ? 0.0 : next_to_zero * declared;
 }
 
-std::vector<MotionSetting> MotionModel::free(const std::vector<std::size_t>& records) const {
+std::vector<MotionSetting> MotionModel::free_settings(const std::vector<std::size_t>& records) const {
   std::vector<MotionSetting> settings;
   for (const FreeNumber& f : set_.free) {
     MotionNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));

@@ -51,7 +51,7 @@ class MotionModel {
   [[nodiscard]] const RecordSet& records() const { return set_; }               ///< as read
   [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }  ///< the scenario as its file says
   /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
-  [[nodiscard]] std::vector<MotionSetting> free(const std::vector<std::size_t>& records) const;
+  [[nodiscard]] std::vector<MotionSetting> free_settings(const std::vector<std::size_t>& records) const;
   /// Unit of a channel's column, from the sensor's name: "mm".
   [[nodiscard]] std::string unit(const RecordChannel& channel) const;
   [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }

@@ -65,7 +65,7 @@ class Side {
   ProfileSide walk(double first_step) {
     const MotionSetting& own = fit_.settings[number_];
     const double bound = direction_ < 0.0 ? own.number.lower : own.number.upper;
-    double value = own.value, deviate = 0.0, step = first_step, inner = own.value, inner_deviate = 0.0;
+    double value = own.value, deviate = 0.0, step = first_step;
     std::optional<double> barrier;  // nearest value that cannot be simulated
     ProfileSide side;
     while (static_cast<int>(points.size()) < most_points && !model_.stopped()) {
@@ -87,8 +87,7 @@ class Side {
         }
         continue;
       }
-      inner = value;
-      inner_deviate = deviate;
+      const double inner = value, inner_deviate = deviate;
       value = next;
       deviate = *found;
       if (deviate >= limit_deviate) {

@@ -28,7 +28,8 @@ constexpr std::size_t most_refits = 6;
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
 
-/// The model with an effect added, from each of its starts; not usable where none of them gives a fit.
+/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What fits as well as the noise lets
+/// it needs no other start, and another start is not followed where it does not come near what the first has reached.
 Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival,
           Progress& progress) {
   Fit best;
@@ -45,12 +46,13 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
-    fitting.rival = rival;
+    fitting.rival = best.report.usable() && (rival == 0.0 || best.chi2 < rival) ? best.chi2 : rival;
     fitting.progress = [&](int iteration, double) {
       return progress.go_on(fmt::format("refit with {}: iteration {}", score.effect->name, iteration));
     };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
+    if (best.report.usable() && best.chi2 <= best.dof()) break;
   }
   return best;
 }
