@@ -27,9 +27,11 @@ constexpr std::size_t most_refits = 6;
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
+constexpr double nearly_all =
+    0.95;  // of the excess of chi2 over the degrees of freedom: no other minimum can be much better
 
-/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What fits as well as the noise lets
-/// it needs no other start, and another start is not followed where it does not come near what the first has reached.
+/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
+/// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first has reached.
 Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival,
           Progress& progress) {
   Fit best;
@@ -52,7 +54,7 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
     };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
-    if (best.report.usable() && best.chi2 <= best.dof()) break;
+    if (best.report.usable() && current.chi2 - best.chi2 > nearly_all * (current.chi2 - best.dof())) break;
   }
   return best;
 }
