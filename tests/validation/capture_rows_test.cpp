@@ -34,9 +34,6 @@ TEST(CaptureRows, RollOnABushing) {
 TEST(CaptureRows, HardwareInTheLoopBouncesOffFaster) {
   expect_within(bench_rows(data));
 }
-TEST(SlowCaptureRows, ShaftIsHeldForMinutes) {
-  expect_within(held_shaft_rows(data));
-}
 TEST(SlowCaptureRows, StringsKeepTheirNumbersAndBalances) {
   expect_within(snare_capture_rows(data));
 }

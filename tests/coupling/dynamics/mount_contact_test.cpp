@@ -1,5 +1,6 @@
 // Mounts of wires stop what strikes them.                                                       theory.md (M.35)
 
+#include "coupling/contact/foundation.hpp"
 #include "coupling/dynamics/body_part.hpp"
 #include "coupling/dynamics/contact_part.hpp"
 #include "coupling/dynamics/simulate.hpp"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -52,6 +54,15 @@ struct AtTheMount {
     system.invalidate_pattern();
   }
 };
+
+// A shaft's radius with the wire's, but four diameters at least; of a wire whose diameter is not said, those of a solid one.
+TEST(MountContact, GivesWayOverALengthOfShaftOrWire) {
+  constexpr double EA = 1e3, EI = 1e-3, diameter = 0.002;
+  EXPECT_DOUBLE_EQ(mount_length(EA, EI, diameter, 0.02), 0.021);
+  for (const double radius : {0.0, 0.006, std::numeric_limits<double>::infinity()})
+    EXPECT_DOUBLE_EQ(mount_length(EA, EI, diameter, radius), 0.008);
+  EXPECT_DOUBLE_EQ(mount_length(EA, EI, 0.0, 0.001), 4.0 * 0.004);
+}
 
 // F = EA/l d (1 + a d'), along the wire as from its side, where the last of the wire bears next to nothing.
 TEST(MountContact, PressesBackByItsDepthFromAnySide) {
