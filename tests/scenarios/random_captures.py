@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 
+NOT_CLOSED = "the energy is not closed"
+FINER = ["solver.position_tolerance_m=3e-8", "solver.velocity_tolerance_m_s=3e-5"]  # a tenth of what they are
 ENERGY_SHARE = 1e-3
 
 
@@ -38,9 +40,17 @@ def settings(start, model):
 
 
 def run(snare, scenario, start, model, seconds):
+    """What a start comes to; where the energy does not close, with wires that are followed ten times as closely."""
+    result = run_once(snare, scenario, start, settings(start, model), seconds)
+    if result.get("fault") == NOT_CLOSED and model != "stretched":
+        result = {**run_once(snare, scenario, start, settings(start, model) + FINER, seconds), "finer": True}
+    return result
+
+
+def run_once(snare, scenario, start, told, seconds):
     with tempfile.TemporaryDirectory() as folder:
         command = [snare, "simulate", str(scenario), "--quiet", "--out", folder + "/out"]
-        for setting in settings(start, model):
+        for setting in told:
             command += ["--set", setting]
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=seconds)
@@ -58,7 +68,7 @@ def run(snare, scenario, start, model, seconds):
     momentum = math.dist(summary["momentum_error_Ns"], [0.0, 0.0, 0.0])
     result["momentum_share"] = momentum / (16000.0 * 0.01 * start["speed"])
     if result["energy_share"] > ENERGY_SHARE:
-        result["fault"] = "the energy is not closed"
+        result["fault"] = NOT_CLOSED
     if result["momentum_share"] > 1e-6:
         result["fault"] = "the momentum is not kept"
     return result
