@@ -27,8 +27,8 @@ constexpr std::size_t most_refits = 6;
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
-constexpr double nearly_all =
-    0.95;  // of the excess of chi2 over the degrees of freedom: no other minimum can be much better
+// Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much better.
+constexpr double nearly_all = 0.95;
 
 /// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
 /// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first has reached.
@@ -38,6 +38,7 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
   best.chi2 = std::numeric_limits<double>::max();
   best.free = current.free;
   best.report.termination = numerics::Termination::step_too_small;
+  double to_beat = rival;
   for (const std::vector<double>& coordinates : score.starts) {
     std::vector<Setting> start = current.fitted();
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
@@ -48,13 +49,15 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
-    fitting.rival = best.report.usable() && (rival == 0.0 || best.chi2 < rival) ? best.chi2 : rival;
+    fitting.rival = to_beat;
     fitting.progress = [&](int iteration, double) {
       return progress.go_on(fmt::format("refit with {}: iteration {}", score.effect->name, iteration));
     };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
-    if (best.report.usable() && current.chi2 - best.chi2 > nearly_all * (current.chi2 - best.dof())) break;
+    if (!best.report.usable()) continue;
+    if (current.chi2 - best.chi2 > nearly_all * (current.chi2 - best.dof())) break;
+    to_beat = rival > 0.0 ? std::min(rival, best.chi2) : best.chi2;
   }
   return best;
 }

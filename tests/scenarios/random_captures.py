@@ -4,6 +4,7 @@
 
 A start is off by up to 70 mm across the snare's axis and 10 degrees about an axis across it, and moves at 0.5 to 2 times its speed.
 Every run must finish (or be refused because the shaft stands in a wire), close its energy within 1e-3 of the work and keep its momentum.
+Computed wires whose energy does not close are run again with a tenth of their tolerances ("finer").
 A line of JSON for every run; the summary says how many were caught and where models disagree.
 """
 

@@ -2,6 +2,15 @@
 
 namespace snare::test {
 
+Eigen::MatrixXd along_unit_quaternions(const Eigen::VectorXd& y, const std::vector<int>& quaternions) {
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
+  for (const int first : quaternions) {
+    const Eigen::Vector4d q = y.segment<4>(first);
+    directions.block<4, 4>(first, first) -= q * q.transpose();
+  }
+  return directions;
+}
+
 DerivativeError compare_dae_jacobian(numerics::DaeSystem& system, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
                                      const Eigen::MatrixXd& directions, double scale) {
   constexpr double c = 50.0;

@@ -153,13 +153,11 @@ TEST(BodyContact, JacobianMatchesDifferences) {
     VectorXd y(system.size()), rate(system.size());
     for (double& v : y) v = unit(random);
     for (double& v : rate) v = unit(random);
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
     for (const BodyPart* body : {&a, &b}) {
       y.segment<3>(body->position()) *= 0.1;
-      const Eigen::Vector4d q = y.segment<4>(body->quaternion()).normalized();
-      y.segment<4>(body->quaternion()) = q;
-      directions.block<4, 4>(body->quaternion(), body->quaternion()) -= q * q.transpose();
+      y.segment<4>(body->quaternion()).normalize();
     }
+    const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {a.quaternion(), b.quaternion()});
     acting += part.wrenches(y).empty() ? 0 : 1;
     const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-5);
     EXPECT_LT(error.relative, 2e-6) << trial << ": " << error.worst;

@@ -50,12 +50,8 @@ TEST(Bushing, JacobianMatchesDifferences) {
   VectorXd y(system.size()), rate(system.size());
   for (double& v : y) v = unit(random);
   for (double& v : rate) v = unit(random);
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
-  for (const BodyPart* body : {&a, &b}) {
-    const Eigen::Vector4d q = y.segment<4>(body->quaternion()).normalized();
-    y.segment<4>(body->quaternion()) = q;
-    directions.block<4, 4>(body->quaternion(), body->quaternion()) -= q * q.transpose();
-  }
+  for (const BodyPart* body : {&a, &b}) y.segment<4>(body->quaternion()).normalize();
+  const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {a.quaternion(), b.quaternion()});
   arm.settle(0.0, y);
   const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
   EXPECT_LT(error.relative, 1e-8) << error.worst;

@@ -192,9 +192,7 @@ TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     VectorXd rate(t.y.size());
     for (double& r : rate) r = 0.1 * unit(random);
-    const Eigen::Vector4d q = t.y.segment<4>(t.body.quaternion());
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(t.y.size(), t.y.size());
-    directions.block<4, 4>(t.body.quaternion(), t.body.quaternion()) -= q * q.transpose();
+    const Eigen::MatrixXd directions = test::along_unit_quaternions(t.y, {t.body.quaternion()});
     const test::DerivativeError error = test::compare_dae_jacobian(t.system, t.y, rate, directions, 1e-4);
     // The derivative's integral by Gauss's rule, not that of the rule, beside differences of the force.
     EXPECT_LT(error.relative, 1e-4) << error.worst;

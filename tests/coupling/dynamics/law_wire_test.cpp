@@ -184,14 +184,12 @@ TEST(LawWire, JacobianMatchesDifferences) {
     VectorXd y(system.size()), rate(system.size());
     for (double& v : y) v = 0.2 * unit(random);
     for (double& v : rate) v = unit(random);
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
     for (const BodyPart* body : {&a, &b}) {
       y.segment<3>(body->position()) *= 0.05;
       y.segment<4>(body->quaternion()) =
           (y.segment<4>(body->quaternion()) * 0.3 + Eigen::Vector4d(1.0, 0, 0, 0)).normalized();
-      const Eigen::Vector4d q = y.segment<4>(body->quaternion());
-      directions.block<4, 4>(body->quaternion(), body->quaternion()) -= q * q.transpose();
     }
+    const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {a.quaternion(), b.quaternion()});
     // In every other trial the shaft is pressed into a mount.
     if (trial % 2 == 1) {
       const Eigen::Matrix3d turned = multibody::rotation(y.segment<4>(b.quaternion()));

@@ -104,9 +104,7 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   VectorXd rate(y.size());
   for (double& r : rate) r = 0.1 * unit(random);
   // Directions of a size that suits each unknown; the quaternion moves along the sphere, as it does in a motion.
-  const Eigen::Vector4d q = y.segment<4>(body.quaternion());
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
-  directions.block<4, 4>(body.quaternion(), body.quaternion()) -= q * q.transpose();
+  const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {body.quaternion()});
   const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
   // The derivative's integral by Gauss's rule, not that of the rule, beside differences of the force.
   EXPECT_LT(error.relative, 1e-4) << error.worst;

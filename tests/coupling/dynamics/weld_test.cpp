@@ -85,12 +85,8 @@ MotionOptions fine(double duration) {
 /// `quaternions`.
 void expect_jacobian(numerics::DaeSystem& system, const VectorXd& y, const VectorXd& rate,
                      const std::vector<int>& quaternions, double limit) {
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(y.size(), y.size());
-  for (const int first : quaternions) {
-    const Eigen::Vector4d q = y.segment<4>(first);
-    directions.block<4, 4>(first, first) -= q * q.transpose();
-  }
-  const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
+  const test::DerivativeError error =
+      test::compare_dae_jacobian(system, y, rate, test::along_unit_quaternions(y, quaternions), 1e-3);
   EXPECT_LT(error.relative, limit) << error.worst;
 }
 
