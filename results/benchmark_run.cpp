@@ -49,12 +49,13 @@ std::vector<std::string> columns_of(const BenchmarkCase& c, const BenchmarkModel
 /// Equal for equal input of the archive.
 std::string identity_of(const BenchmarkCase& c) {
   std::string all = contents_of_files(c.file) + c.x;
-  for (const auto& [name, column] : c.columns) all += "\n" + name + " = " + column;
+  for (const auto& [name, column] : c.columns) all += fmt::format("\n{} = {}", name, column);
   for (const auto& [name, threshold] : c.touch_above) all += fmt::format("\n{} > {}", name, threshold);
-  for (const study::Collected& field : c.outcome) all += "\n" + field.name + ": " + field.text;
+  for (const study::Collected& field : c.outcome) all += fmt::format("\n{}: {}", field.name, field.text);
   for (std::size_t k = 0; k < c.refinements.size(); ++k) {
     all += "\n";
-    for (const base::Override& one : all_fixed(c, archive_model(c, k))) all += one.key + "=" + one.value + ";";
+    for (const base::Override& one : all_fixed(c, archive_model(c, k)))
+      all += fmt::format("{}={};", one.key, one.value);
   }
   return fmt::format("{:016x}", base::fingerprint(all));
 }

@@ -31,6 +31,7 @@ class Api {
     return one;
   }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the name of a variable stands in none.
 #define SNARE_HDF5(name) decltype(&::name) name = symbol<decltype(&::name)>(#name)
   SNARE_HDF5(H5open);
   SNARE_HDF5(H5dont_atexit);
@@ -152,6 +153,7 @@ class Handle {
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
+  Handle& operator=(Handle&&) = delete;
   operator hid_t() const noexcept { return id_; }
 
   /// Closes it and looks whether that went well: a dataset is written when it is closed.

@@ -10,6 +10,7 @@
 namespace snare::results {
 
 /// What the declared model of an experiment predicts.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a document throws nothing.
 struct PushResult {
   std::vector<identification::Prediction> predictions;  ///< one a series
   nlohmann::json document;                              ///< "snare-push/1"

@@ -64,7 +64,7 @@ void remove_unfinished(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-SweepHistories::SweepHistories(const SweepStudy& study, fs::path out)
+SweepHistories::SweepHistories(const SweepStudy& study, const fs::path& out)
     : study_(study), folder_(out / "histories"), file_(out / "histories.h5") {}
 
 fs::path SweepHistories::part(std::uint64_t index) const {

@@ -19,7 +19,7 @@ namespace snare::results {
 class SweepHistories {
  public:
   /// out: the folder of the sweep; nothing is looked at yet. The study must outlive this.
-  SweepHistories(const SweepStudy& study, std::filesystem::path out);
+  SweepHistories(const SweepStudy& study, const std::filesystem::path& out);
 
   /// Keeps the history of a case, by its number in the journal; on the disk when it returns. For any thread and any process, a case twice
   /// included. Throws std::system_error.

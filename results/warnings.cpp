@@ -21,7 +21,7 @@ class Sentences {
  public:
   void add(const std::string& of, const std::vector<std::string>& found) {
     for (const std::string& text : found) {
-      const std::string sentence = of.empty() ? text : of + ": " + text;
+      const std::string sentence = of.empty() ? text : fmt::format("{}: {}", of, text);
       if (std::find(all_.begin(), all_.end(), sentence) == all_.end()) all_.push_back(sentence);
     }
   }

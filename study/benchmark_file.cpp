@@ -47,7 +47,7 @@ class Reader {
 
   /// A name that can be one of a file.
   static std::string take_name(const TomlTable& table, std::set<std::string>& taken) {
-    const std::string name = table.text("name");
+    std::string name = table.text("name");
     const auto plain = [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     };

@@ -4,6 +4,7 @@
 #include "coupling/dynamics/sensed.hpp"
 #include "multibody/spatial.hpp"
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
@@ -25,8 +26,8 @@ struct MotionSignal {
   int index = 0;  ///< of the contact or the wire, or of the arm
   int joint = 0;  ///< of the arm
   /// Frames on carriers, and where they stand at the start.
-  MotionCarrier carriers[2] = {};
-  multibody::Pose poses[2] = {};
+  std::array<MotionCarrier, 2> carriers;
+  std::array<multibody::Pose, 2> poses;
 };
 
 /// A signal on one side of a bound.

@@ -18,6 +18,9 @@ namespace {
 
 using scenario::WireMotions;
 
+constexpr long longest_trial = 100;  // over the longest run before
+constexpr long a_run = 150;          // steps that a run may take at least, however quiet the declared motion is
+
 /// The run of a scenario with sensors.
 const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
   if (s.motions.sensors.empty())
@@ -180,17 +183,25 @@ std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Overri
   const WireMotions& motions = run_of(read, set_);
   const scenario::NamedMotion& named = motions.runs.front();
   coupling::MotionOptions options = named.options;
-  options.stop = stop_;
+  const long most = most_steps_;
+  long steps = 0;
+  options.stop = [&] { return ++steps > most || stopped(); };
   std::vector<coupling::MotionSample> samples;
   ++simulations_;
   const coupling::MotionResult result = coupling::simulate(named.motion, options, [&](const coupling::MotionSample& s) {
     samples.push_back(s);
     return false;
   });
+  if (steps > most) {
+    failure =
+        fmt::format("the integration takes more than {} steps, {} times those of any run before", most, longest_trial);
+    return nullptr;
+  }
   if (!result.report.usable()) {
     failure = result.report.message.empty() ? "the integration stopped" : result.report.message;
     return nullptr;
   }
+  took(steps);
   auto run = std::make_shared<const SensorRun>(read_sensors_of(motions.sensors, named.motion, samples));
   constexpr std::size_t most_kept = 12;
   const std::scoped_lock lock(kept_guard_);
@@ -240,7 +251,18 @@ std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
   base::parallel_for(tasks.size(), [&](std::size_t t) {
     all[tasks[t].setting][tasks[t].record] = simulate(settings[tasks[t].setting], records[tasks[t].record]);
   });
+  bound_trials();
   return all;
+}
+
+void MotionModel::took(long steps) const {
+  long longest = longest_run_;
+  while (steps > longest && !longest_run_.compare_exchange_weak(longest, steps)) {
+  }
+}
+
+void MotionModel::bound_trials() const {
+  if (longest_run_ > 0) most_steps_ = longest_trial * std::max<long>(longest_run_, a_run);
 }
 
 void MotionModel::look_at_joints() {
@@ -249,7 +271,11 @@ void MotionModel::look_at_joints() {
   const scenario::NamedMotion& run = run_of(read, set_).runs.front();
   slowest_ = slowest_mode(run.motion);
   coupling::MotionOptions options = run.options;
-  options.stop = stop_;
+  long steps = 0;
+  options.stop = [&] {
+    ++steps;
+    return stopped();
+  };
   struct Sum {
     Eigen::VectorXd spring, drive, rate;
   };
@@ -259,7 +285,7 @@ void MotionModel::look_at_joints() {
     sums.push_back({none, none, none});
   }
   double count = 0.0;
-  static_cast<void>(coupling::simulate(run.motion, options, [&](const coupling::MotionSample& s) {
+  const coupling::MotionResult result = coupling::simulate(run.motion, options, [&](const coupling::MotionSample& s) {
     for (std::size_t a = 0; a < sums.size(); ++a) {
       sums[a].spring += s.arms[a].joint_torque.cwiseAbs2();
       sums[a].drive += s.arms[a].drive_torque.cwiseAbs2();
@@ -267,7 +293,9 @@ void MotionModel::look_at_joints() {
     }
     count += 1.0;
     return false;
-  }));
+  });
+  if (result.report.usable()) took(steps);
+  bound_trials();
   if (count == 0.0) return;
   for (std::size_t a = 0; a < sums.size(); ++a) {
     const coupling::MotionArm& arm = run.motion.arms[a];

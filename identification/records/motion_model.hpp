@@ -10,6 +10,7 @@
 #include <atomic>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -76,6 +77,9 @@ class MotionModel {
   /// Null with `failure` set where the scenario cannot be simulated.
   [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides, std::size_t record,
                                                      std::string& failure) const;
+  /// A run came to its end in so many steps.
+  void took(long steps) const;
+  void bound_trials() const;
   [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record) const;
   [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings,
                                                          std::size_t record) const;
@@ -92,6 +96,11 @@ class MotionModel {
   std::optional<SlowMode> slowest_;
   std::map<std::string, double> bounds_;  ///< lower ones of the free numbers
   mutable std::atomic<long> simulations_ = 0;
+  /// Steps of the longest run that came to its end, the declared one first.
+  mutable std::atomic<long> longest_run_ = 0;
+  /// After which a trial is given up in which something spins or swings beyond all measure. What one batch of runs takes bounds the next,
+  /// so that threads do not matter.
+  mutable std::atomic<long> most_steps_ = std::numeric_limits<long>::max();
   /// Runs kept for settings that differ in the sensors only: the last few, by record and keys.
   mutable std::mutex kept_guard_;
   mutable std::deque<std::pair<std::string, std::shared_ptr<const SensorRun>>> kept_;

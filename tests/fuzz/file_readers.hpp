@@ -41,6 +41,8 @@ inline const std::filesystem::path& folder_of_files() {
       copy("data/experiments", "tests/experiments");
       fs::copy(source / "data/experiments/ringdown.csv", path, fs::copy_options::overwrite_existing);
     }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
     ~Folder() {
       std::error_code ignored;
       std::filesystem::remove_all(top, ignored);

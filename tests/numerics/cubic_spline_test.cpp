@@ -17,7 +17,8 @@ TEST(CubicSpline, ReproducesCubics) {
   std::vector<double> v;
   for (const double t : x) v.push_back(f(t));
   const HermiteCurve curve(x, v);
-  for (double t = 0.0; t <= 1.3; t += 0.013) {
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.013 * i;
     EXPECT_NEAR(curve.value(t), f(t), 1e-12);
     EXPECT_NEAR(curve.slope(t), -2.0 + t + 9.0 * t * t, 1e-11);
     EXPECT_NEAR(curve.integral(t), t - t * t + t * t * t / 6.0 + 0.75 * t * t * t * t, 1e-12);
@@ -34,7 +35,10 @@ TEST(CubicSpline, ConvergesAtFourthOrder) {
     }
     const HermiteCurve curve(x, v);
     double worst = 0.0;
-    for (double t = 0.0; t <= 1.0; t += 1e-3) worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
+    for (int i = 0; i <= 1000; ++i) {
+      const double t = 1e-3 * i;
+      worst = std::max(worst, std::abs(curve.value(t) - std::exp(2.0 * t)));
+    }
     return worst;
   };
   EXPECT_GT(error(10) / error(20), 13.0);

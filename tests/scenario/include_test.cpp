@@ -184,7 +184,7 @@ TEST_F(Includes, SayWhatIsWrong) {
        "is taken by a body"},
   };
   for (const auto& [text, message] : cases) {
-    write("case.toml", head + run + text);
+    write("case.toml", fmt::format("{}{}{}", head, run, text));
     EXPECT_THAT(complaint("case.toml"), HasSubstr(message)) << text;
   }
   EXPECT_THAT(complaint("itself.toml"), HasSubstr("must not include itself by way of others"));

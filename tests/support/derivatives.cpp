@@ -31,7 +31,8 @@ DerivativeError sweep(const Function& f, const Eigen::VectorXd& x, const Eigen::
   DerivativeError best;
   best.relative = std::numeric_limits<double>::infinity();
   const double size = std::max(analytic.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-  for (double step = 1e-1; step > 0.99e-5; step *= std::sqrt(0.1)) {
+  for (int i = 0; i <= 8; ++i) {
+    const double step = 1e-1 * std::pow(0.1, 0.5 * i);
     Eigen::MatrixXd numeric = differences(f, x, analytic.rows(), step * scale);
     if (part == Part::symmetric) numeric = (0.5 * (numeric + numeric.transpose())).eval();
     Eigen::Index row = 0;

@@ -15,9 +15,5 @@ TEST(AirTable, QuadraticLawKeepsItsEnergyBalance) {
   expect_within(quadratic_law_rows(data));
 }
 
-TEST(SlowAirTable, LawKeepsTheImpulseOfTheFullWire) {
-  expect_within(law_beside_wire_rows(data));
-}
-
 }  // namespace
 }  // namespace snare::validation

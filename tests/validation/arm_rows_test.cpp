@@ -32,12 +32,6 @@ TEST(ArmRows, FloatingBaseAnswersItsLink) {
 TEST(LinkedMotionRows, WeldedBodiesAreASymmetricTop) {
   expect_within(welded_top_rows());
 }
-TEST(SlowLinkedMotionRows, SpinningWirePressesOnItsMounts) {
-  expect_within(moving_mount_rows());
-}
-TEST(SlowLinkedMotionRows, CapturesKeepTheirBalances) {
-  expect_within(capture_rows(std::string(SNARE_SOURCE_DIR) + "/data"));
-}
 TEST(SlowArmRows, EnergyAndMomentumStay) {
   expect_within(arm_conservation_rows());
 }

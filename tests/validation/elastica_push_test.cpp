@@ -158,7 +158,7 @@ TEST(ElasticaPush, ShallowLimitOutward) {
   for (const double position : {0.5, 0.4}) {
     for (const double compression : {20.0, 0.0, -100.0}) {
       const ShallowState wanted = shallow_state(compression, position);
-      double force[2];
+      double force[2] = {};
       for (const int i : {0, 1}) {
         const double slack = i == 0 ? 1e-4 : 0.5e-4;
         const ElasticaPush problem = shallow(slack, position);

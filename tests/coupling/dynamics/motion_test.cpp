@@ -69,7 +69,8 @@ TEST(MotionCurve, IsSmoothAndHitsItsVertices) {
     return std::pair{value, slope};
   };
   // The slopes are those of parabolas, so a parabola is reproduced.
-  for (double s = 0.0; s <= 0.2; s += 0.0037) {
+  for (int i = 0; i <= 54; ++i) {
+    const double s = 0.0037 * i;
     EXPECT_NEAR(at(s).first, s * s, 1e-15);
     EXPECT_NEAR(at(s).second, 2.0 * s, 1e-13);
   }

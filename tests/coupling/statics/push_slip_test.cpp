@@ -140,7 +140,8 @@ TEST(Strands, SpreadThresholdsAreTheirDistribution) {
   const std::vector<wire::SliderElement> sliders = wire::strand_sliders(strands);
   const double a = 1.2 * std::exp(-2.0);
   const double b = 1.2 * std::exp(2.0);
-  for (double k = 0.02; k < 20.0; k *= 1.3) {
+  for (int i = 0; i < 27; ++i) {
+    const double k = 0.02 * std::pow(1.3, i);
     const double at = std::min(k, b);
     const double held = k <= a ? k : (at - a + (k < b ? k * std::log(b / k) : 0.0)) / 4.0;
     const double moment = wire::respond(0.04, sliders, k, nullptr).resultant;

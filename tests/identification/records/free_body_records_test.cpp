@@ -1,5 +1,6 @@
 // Records of bodies whose motion has a closed form: a free body under a steady moment, a body on a spring.
 #include "identification/motion_tracing/trace_records.hpp"
+#include "identification/records/motion_model.hpp"
 #include "identification/records/record_file.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/turning_craft.hpp"
@@ -152,6 +153,20 @@ TEST_F(FreeBodyRecords, ASensorAtItsEndIsRefused) {
   EXPECT_THAT(complaint(file), HasSubstr("saturated"));
   write("first.csv", stepped);  // an encoder of coarse steps that comes to rest there
   EXPECT_EQ(complaint(file), "");
+}
+
+// As heavy to turn as a grain of sand the craft would turn 8000 times a second: a trial that takes 100 times the steps of the longest run is left.
+TEST_F(FreeBodyRecords, ATrialBeyondAllMeasureIsGivenUp) {
+  const RecordSet set = read_records(craft(0.01, 0.02, "[0.0, 0.0, 0.02]"));
+  const MotionModel model(set);
+  std::vector<MotionSetting> settings = model.free_settings({0});
+  ASSERT_EQ(settings.size(), 1u);
+  settings[0].value = 1e-5;
+  const RecordPrediction none = model.predict(settings, {0})[0];
+  EXPECT_FALSE(none.usable());
+  EXPECT_THAT(none.failure, HasSubstr("100 times those of any run before"));
+  settings[0].value = 10.0;
+  EXPECT_TRUE(model.predict(settings, {0})[0].usable());
 }
 
 TEST_F(FreeBodyRecords, ARecordShorterThanTheSlowestPeriodIsSaidAndNothingIsNamed) {

@@ -16,7 +16,6 @@
 namespace snare::identification {
 namespace {
 
-using testing::Contains;
 using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;

@@ -5,6 +5,7 @@
 #include "tests/multibody/valid_arm.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -62,9 +63,9 @@ TEST(EndlessUrdf, IsRefused) {
   EXPECT_EQ(message(hidden), "x.urdf:2: must not nest elements more than 64 deep");
   std::string chain = "<robot name='r'><link name='l0'/>";
   for (int i = 1; i < many; ++i) {
-    const std::string n = std::to_string(i);
-    chain += "<link name='l" + n + "'/><joint name='j" + n + "' type='fixed'><parent link='l" + std::to_string(i - 1) +
-             "'/><child link='l" + n + "'/></joint>";
+    chain += fmt::format(
+        "<link name='l{0}'/><joint name='j{0}' type='fixed'><parent link='l{1}'/><child link='l{0}'/></joint>", i,
+        i - 1);
   }
   EXPECT_EQ(message(chain + "</robot>"), "x.urdf:1: robot = 40000 links, must have at most 2000");
   EXPECT_EQ(message("<!DOCTYPE robot [<!ENTITY a 'a'>]>\n<robot name='r'><link name='a'/></robot>"),

@@ -23,7 +23,8 @@ std::vector<Course> courses() {
 // The rate is the slope of the angle, the acceleration that of the rate, away from the breaks; both ends stand.
 TEST(Course, RatesAreDerivatives) {
   for (const Course& c : courses()) {
-    for (double t = 0.013; t < 4.0; t += 0.0571) {
+    for (int i = 0; i < 70; ++i) {
+      const double t = 0.013 + 0.0571 * i;
       bool near_break = false;
       for (const double b : c.breaks()) near_break = near_break || std::abs(t - b) < 1e-3;
       if (near_break) continue;
@@ -55,7 +56,8 @@ TEST(Course, StopsAtItsBreaksOnly) {
   for (const Course& c : courses()) {
     std::vector<double> breaks = c.breaks();
     std::sort(breaks.begin(), breaks.end());
-    for (double t = -0.1; t < 3.0; t += 0.05) {
+    for (int i = -2; i < 60; ++i) {
+      const double t = 0.05 * i;
       const auto next = std::upper_bound(breaks.begin(), breaks.end(), t);
       EXPECT_EQ(c.next_break(t), next == breaks.end() ? none : *next) << t;
     }
@@ -86,7 +88,8 @@ TEST(Drive, GivesATorqueOverTime) {
 
 TEST(Course, ATableDoesNotOvershoot) {
   const Course c = Course::through(0.0, 0.0, {0.0, 1.0, 2.0, 3.0}, {0.0, 0.0, 1.0, 1.0});
-  for (double t = 0.0; t <= 3.0; t += 0.01) {
+  for (int i = 0; i <= 300; ++i) {
+    const double t = 0.01 * i;
     EXPECT_GE(c.angle(t), -1e-15);
     EXPECT_LE(c.angle(t), 1.0 + 1e-15);
   }
