@@ -383,7 +383,7 @@ TEST(ElasticaPush, StraightWireWithoutBendingStiffness) {
   problem.pieces_per_side = 40;
   const double d = 2e-3;
   const double law = unstretched_wire_force(problem.wire.axial_stiffness, 0.175, 0.065, d);
-  double excess[2];
+  double excess[2] = {};
   for (const int i : {0, 1}) {
     problem.wire.bending_stiffness = i == 0 ? 1e-4 : 0.25e-4;
     const ElasticaState state = push(problem, d);
