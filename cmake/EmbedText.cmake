@@ -37,5 +37,7 @@ function(snare_embed_text target)
     DEPENDS ${files} "${SNARE_EMBED_TEXT_SCRIPT}"
     COMMENT "Embedding the texts of ${arg_HEADER}"
     VERBATIM)
+  set_source_files_properties("${output}" PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings
+                              SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   target_sources(${target} PRIVATE "${output}")
 endfunction()

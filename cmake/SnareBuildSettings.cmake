@@ -16,7 +16,8 @@ if(SNARE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER
       "${CMAKE_COMMAND}" -E env "CCACHE_SLOPPINESS=pch_defines,time_macros" "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}"
       CCACHE_NOHASHDIR=1 "${SNARE_CCACHE}")
-  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
+                      "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:SHELL:-Xclang -fno-pch-timestamp>")
 endif()
 
 # Precompiled headers fill GCC's heap from the start, and it would look for garbage in them again and again: a tenth of the
@@ -33,9 +34,11 @@ endif()
 # Private settings of our own targets; never exported.
 add_library(snare_build_settings INTERFACE)
 target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
-if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # A joined source counts as a header: what is private to it would be seen by others.
-  target_compile_options(snare_build_settings INTERFACE -Wno-subobject-linkage)
+if(CMAKE_UNITY_BUILD)
+  # A joined source counts as a header: what is private to it would be seen by others. And a local name is not hidden by a
+  # function of the next source, of which the two know nothing.
+  target_compile_options(snare_build_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>
+                                                        $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
 endif()
 
 # Sanitized code and the tests that use it must agree, so the flags hold for the whole tree.

@@ -2,8 +2,8 @@
 
 #include "base/index.hpp"
 #include "multibody/kinematics.hpp"
+#include "numerics/dense_solvers.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ class Seeker {
       for (Index j = 0; j < n; ++j) J.col(j) = all.col(tree_.body(joints_[at(static_cast<int>(j))].body).v_index);
       J.bottomRows<3>() /= size_;
       const Eigen::MatrixXd normal = J.transpose() * J + damping * damping * Eigen::MatrixXd::Identity(n, n);
-      const VectorXd step = normal.ldlt().solve(J.transpose() * e);
+      const VectorXd step = numerics::solve_symmetric(normal, J.transpose() * e);
       VectorXd next = q;
       // No joint turns by more than half a radian at once: the way there is that of the branch.
       const double largest = std::max(1.0, step.cwiseAbs().maxCoeff() / 0.5);

@@ -12,6 +12,13 @@ struct SymmetricEigen {
 };
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
+/// Eigenvalues of any square matrix and its eigenvectors in the same order, of norm one. Of any unit.
+struct GeneralEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+[[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& a);
+
 /// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls. Of any unit.
 struct ThinSvd {
   Eigen::MatrixXd U;
@@ -19,6 +26,13 @@ struct ThinSvd {
   Eigen::MatrixXd V;
 };
 [[nodiscard]] ThinSvd thin_svd(const Eigen::MatrixXd& a);
+
+/// x of a x = b for a square matrix, by LU with partial pivots; columns of b are right sides. Of any unit; not finite where a is
+/// singular.
+[[nodiscard]] Eigen::MatrixXd solve_by_lu(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// x of a x = b for a symmetric matrix, by LDL^T. Of any unit.
+[[nodiscard]] Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// Pseudo-inverse, by the complete orthogonal decomposition. Of any unit.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a);

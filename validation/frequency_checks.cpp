@@ -2,11 +2,10 @@
 
 #include "base/index.hpp"
 #include "coupling/dynamics/modes.hpp"
+#include "numerics/dense_solvers.hpp"
 #include "validation/scenario_run.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -42,13 +41,13 @@ Eigen::VectorXcd exponents(const MatrixXd& signals, double interval, double keep
     now.middleRows(channels * i, channels) = signals.middleCols(i, width - 1);
     later.middleRows(channels * i, channels) = signals.middleCols(i + 1, width - 1);
   }
-  const Eigen::BDCSVD<MatrixXd> svd(now, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& s = svd.singularValues();
+  const numerics::ThinSvd svd = numerics::thin_svd(now);
+  const VectorXd& s = svd.s;
   Index rank = 0;
   while (rank < s.size() && s[rank] > keep * s[0]) ++rank;
-  const MatrixXd U = svd.matrixU().leftCols(rank), V = svd.matrixV().leftCols(rank);
+  const MatrixXd U = svd.U.leftCols(rank), V = svd.V.leftCols(rank);
   const MatrixXd step = U.transpose() * later * V * s.head(rank).cwiseInverse().asDiagonal();
-  return Eigen::EigenSolver<MatrixXd>(step, false).eigenvalues().array().log() / interval;
+  return numerics::general_eigen(step).values.array().log() / interval;
 }
 
 /// What is watched, and how.

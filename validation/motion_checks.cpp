@@ -4,11 +4,11 @@
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
 #include "coupling/statics/push_solver.hpp"
+#include "numerics/dense_solvers.hpp"
 #include "validation/declared_wire.hpp"
 #include "wire/rod_constants.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -151,13 +151,13 @@ std::vector<Row> buckled_frequency_rows() {
     }
   }
   k /= rod.mass_per_length * rod.length / rod.elements;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(k);
+  const numerics::SymmetricEigen modes = numerics::symmetric_eigen(k);
   std::vector<Row> rows;
   for (int m = 0; m < 5; ++m) {
     Matrix3Xd shape = Matrix3Xd::Zero(3, 61);
-    for (int a = 0; a < free; ++a) shape(a % 2, a / 2 + 1) = modes.eigenvectors()(a, m);
+    for (int a = 0; a < free; ++a) shape(a % 2, a / 2 + 1) = modes.vectors(a, m);
     shape /= shape.cwiseAbs().maxCoeff();
-    const double expected = std::sqrt(modes.eigenvalues()[m]) / (2.0 * pi);
+    const double expected = std::sqrt(modes.values[m]) / (2.0 * pi);
     Motion quiet = motion;
     quiet.wires[0].rod.damping.bending_time = quiet.wires[0].rod.damping.axial_time = faint;
     rows.push_back(frequency_row("free vibration", fmt::format("buckled wire, mode {} in its plane", m + 1),

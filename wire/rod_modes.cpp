@@ -1,8 +1,7 @@
 #include "wire/rod_modes.hpp"
 
+#include "numerics/dense_solvers.hpp"
 #include "wire/rod_part.hpp"
-
-#include <Eigen/Dense>
 
 #include <cassert>
 #include <cmath>
@@ -77,19 +76,19 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
     return m;
   };
   // dE/dtheta = 0 and dE/dk = 0 along: of these unknowns f, df = -K_ff^-1 K_fx dx.
-  const MatrixXd follow = -entries(following, following).partialPivLu().solve(entries(following, moving_rows));
+  const MatrixXd follow = -numerics::solve_by_lu(entries(following, following), entries(following, moving_rows));
   MatrixXd stiffness = entries(moving_rows, moving_rows) + entries(moving_rows, following) * follow;
   VectorXd root_mass(static_cast<Index>(moving.size()));
   for (std::size_t a = 0; a < moving.size(); ++a)
     root_mass[static_cast<Index>(a)] = std::sqrt(part.mass_of(moving[a] / SpatialRod::block));
   stiffness = root_mass.cwiseInverse().asDiagonal() * stiffness * root_mass.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (stiffness + stiffness.transpose()));
-  const VectorXd& squares = solver.eigenvalues();
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(0.5 * (stiffness + stiffness.transpose()));
+  const VectorXd& squares = eigen.values;
   std::vector<RodMode> modes;
   constexpr double round_off = 1e-12;
   for (Index m = 0; m < squares.size() && static_cast<int>(modes.size()) < count; ++m) {
     if (squares[m] <= round_off * squares[squares.size() - 1]) continue;
-    VectorXd x = root_mass.cwiseInverse().cwiseProduct(solver.eigenvectors().col(m));
+    VectorXd x = root_mass.cwiseInverse().cwiseProduct(eigen.vectors.col(m));
     const double scale = x.cwiseAbs().maxCoeff();
     x /= scale;
     RodMode mode;

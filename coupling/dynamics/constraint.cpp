@@ -1,6 +1,6 @@
 #include "coupling/dynamics/constraint.hpp"
 
-#include <Eigen/LU>
+#include "numerics/dense_solvers.hpp"
 
 namespace snare::coupling {
 
@@ -33,7 +33,7 @@ VectorXd project(const std::vector<const Constraint*>& constraints, const Vector
       velocity_error(unit, flexibility.col(column++));
     }
   }
-  VectorXd multipliers = -flexibility.partialPivLu().solve(missing);
+  VectorXd multipliers = -numerics::solve_by_lu(flexibility, missing);
   Eigen::Index first = 0;
   for (const Constraint* c : constraints) {
     c->apply_impulse(y, multipliers.segment(first, c->constraints()), dv);

@@ -1,8 +1,7 @@
 #include "coupling/dynamics/moving_frame.hpp"
 
 #include "multibody/dynamics.hpp"
-
-#include <Eigen/Cholesky>
+#include "numerics/dense_solvers.hpp"
 
 namespace snare::coupling {
 
@@ -192,7 +191,7 @@ void MovingFrame::apply_impulse(const VectorView& y, const Matrix6X& jacobian, c
   const multibody::Tree& tree = arm_->arm().tree;
   multibody::DynamicsWorkspace workspace(tree);
   const MatrixXd& H = multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
-  dv.segment(arm_->velocities(), tree.velocities()) += H.ldlt().solve(force);
+  dv.segment(arm_->velocities(), tree.velocities()) += numerics::solve_symmetric(H, force);
 }
 
 }  // namespace snare::coupling

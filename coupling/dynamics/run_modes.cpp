@@ -4,9 +4,9 @@
 #include "base/index.hpp"
 #include "coupling/dynamics/run.hpp"
 #include "multibody/dynamics.hpp"
+#include "numerics/dense_solvers.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -65,20 +65,20 @@ SmallMotions MotionRun::small_motions() {
   shifted = rows.asDiagonal() * shifted;
   const MatrixXd M = Eigen::FullPivLU<MatrixXd>(shifted).solve(MatrixXd(rows.asDiagonal() * B * size.asDiagonal()));
   if (!M.allFinite()) return {};
-  const Eigen::EigenSolver<MatrixXd> solver(M);
+  const numerics::GeneralEigen modes = numerics::general_eigen(M);
   // Largest coefficients of an equation.
   const VectorXd of_A = (A * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
   const VectorXd of_B = (B * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
   SmallMotions small;
   for (Index k = 0; k < M.cols(); ++k) {
-    const std::complex<double> mu = solver.eigenvalues()[k];
+    const std::complex<double> mu = modes.values[k];
     if (std::abs(mu) == 0.0) continue;
     const std::complex<double> lambda = shift - 1.0 / mu;
     if (lambda.imag() < 0.0 || !(std::abs(lambda) > slowest) || !std::isfinite(std::abs(lambda))) continue;
-    const VectorXcd x = size.asDiagonal() * solver.eigenvectors().col(k);
+    const VectorXcd x = size.asDiagonal() * modes.vectors.col(k);
     // What constraints make of mu = 0 in round-off is no solution of the equations themselves.
     const VectorXd rest = (A * x + lambda * (B * x)).cwiseAbs();
-    const VectorXd largest = (of_A + std::abs(lambda) * of_B) * solver.eigenvectors().col(k).cwiseAbs().maxCoeff();
+    const VectorXd largest = (of_A + std::abs(lambda) * of_B) * modes.vectors.col(k).cwiseAbs().maxCoeff();
     if (!(rest.array() <= trusted * largest.array()).all()) continue;
     small.fastest = std::max(small.fastest, std::abs(lambda));
     if (lambda.imag() > slowest)

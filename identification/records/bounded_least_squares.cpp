@@ -1,6 +1,6 @@
 #include "identification/records/bounded_least_squares.hpp"
 
-#include <Eigen/QR>
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +62,7 @@ Eigen::VectorXd step_within(const BoundedProblem& problem, const Eigen::VectorXd
       rows(J.rows() + k, k) = std::sqrt(damping) * rows.col(k).head(J.rows()).norm();
     Eigen::VectorXd right = Eigen::VectorXd::Zero(rows.rows());
     right.head(J.rows()) = -rest;
-    const Eigen::VectorXd solved = rows.colPivHouseholderQr().solve(right);
+    const Eigen::VectorXd solved = numerics::full_rank_least_squares(rows, right);
     bool crossed = false;
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::Index i = free[static_cast<std::size_t>(k)];

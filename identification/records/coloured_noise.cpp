@@ -1,6 +1,6 @@
 #include "identification/records/coloured_noise.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -118,11 +118,11 @@ Eigen::MatrixXd sandwich(const MotionData& data, const ColouredNoise& noise, con
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
   for (double& norm : norms) norm = norm > 0.0 ? norm : 1.0;
   const Eigen::MatrixXd scaled = jacobian * norms.cwiseInverse().asDiagonal();
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled.transpose() * scaled);
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(scaled.transpose() * scaled);
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n);
   for (Eigen::Index k = 0; k < n; ++k)
-    if (eigen.eigenvalues()[k] > 1e-18 * eigen.eigenvalues()[n - 1]) inverse[k] = 1.0 / eigen.eigenvalues()[k];
-  const Eigen::MatrixXd bread = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    if (eigen.values[k] > 1e-18 * eigen.values[n - 1]) inverse[k] = 1.0 / eigen.values[k];
+  const Eigen::MatrixXd bread = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
   const Eigen::MatrixXd through = coloured(data, noise, scaled * bread);
   const Eigen::MatrixXd covariance = through.transpose() * through;
   return norms.cwiseInverse().asDiagonal() * covariance * norms.cwiseInverse().asDiagonal();

@@ -1,8 +1,7 @@
 #include "identification/records/profile.hpp"
 
 #include "identification/records/coloured_noise.hpp"
-
-#include <Eigen/QR>
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +33,7 @@ double rise_unit(const MotionData& data, const MotionFit& fit, Eigen::Index numb
   Eigen::VectorXd g = fit.jacobian.col(number);
   if (!others.empty()) {
     const Eigen::MatrixXd beside = fit.jacobian(Eigen::all, others);
-    g -= beside * beside.colPivHouseholderQr().solve(g);
+    g -= beside * numerics::full_rank_least_squares(beside, g);
   }
   const double square = g.squaredNorm();
   // Where the number does nothing that the others cannot, white noise of the same power.

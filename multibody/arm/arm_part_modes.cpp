@@ -1,8 +1,7 @@
 #include "multibody/arm/arm_part.hpp"
 
 #include "base/index.hpp"
-
-#include <Eigen/Cholesky>
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -215,7 +214,7 @@ void ElasticArmPart::solve_rates(double time, numerics::VectorView y, numerics::
                                                       : -rows[rate_ + k] / arm_.joints[at(k)].motor_inertia;
   }
   const Eigen::MatrixXd& H = mass_matrix(tree, y.segment(q_, tree.coordinates()), workspace_);
-  rate.segment(v_, tree.velocities()) = -H.ldlt().solve(rows.segment(v_, tree.velocities()));
+  rate.segment(v_, tree.velocities()) = -numerics::solve_symmetric(H, rows.segment(v_, tree.velocities()));
 }
 
 double ElasticArmPart::next_break(double time) const {

@@ -36,6 +36,13 @@ bool is_regular(int descriptor) {
   return descriptor > STDERR_FILENO && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
+/// LLVM's thread library begins with shared memory of a page.
+bool is_shared_memory(int descriptor) {
+  char name[64], path[9]{};
+  std::snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
+  return ::readlink(name, path, sizeof path) == sizeof path && std::memcmp(path, "/dev/shm/", sizeof path) == 0;
+}
+
 template <class Function>
 Function* next(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
@@ -81,7 +88,7 @@ int fdatasync(int descriptor) {
 
 int ftruncate(int descriptor, off_t size) {
   static auto* const original = next<int(int, off_t)>("ftruncate");
-  return fails("ftruncate") ? -1 : original(descriptor, size);
+  return !is_shared_memory(descriptor) && fails("ftruncate") ? -1 : original(descriptor, size);
 }
 
 ssize_t write(int descriptor, const void* from, std::size_t size) {

@@ -47,8 +47,9 @@ TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   contact.foundation.modulus = 1e9;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  for (Eigen::Index i = 1; i < 12; ++i)
-    motion.wires[0].positions.col(i) += 4e-3 * Vector3d(unit(random), unit(random), unit(random));
+  for (Eigen::Index i = 1; i < 12; ++i) {
+    for (int k = 2; k >= 0; --k) motion.wires[0].positions(k, i) += 4e-3 * unit(random);
+  }
   wire::RodPart rod("wire", constants, {});
   BodyPart body(motion.bodies[0], Vector3d::Zero(), {});
   ContactPart part(contact, contact.shape, rod, body);
