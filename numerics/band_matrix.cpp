@@ -1,6 +1,7 @@
 #include "numerics/band_matrix.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -99,41 +100,53 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
 
 namespace {
 
-/// Substitutes forth and back in `width` right-hand sides at once, entry by entry side by side: one alone waits for every
-/// product before the next. Every one has the operations of one alone, in their order. B: half bandwidth, 0: that of l.
+/// Substitutes forth and back in `width` right-hand sides at once, row by row, entry by entry side by side. The row that is known last comes
+/// last, so that little waits for it. Every one has the operations of one alone, in their order. B: the half bandwidth.
 template <int B, int width>
 void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first, Eigen::Index stride,
                 std::vector<double>& work) {
+  using Entries = std::array<double, width>;
   const int n = l.order();
-  const int b = B > 0 ? B : l.half_bandwidth();
   work.resize(static_cast<std::size_t>(n) * width);
-  double* w = work.data();
+  double* const w = work.data();
   for (int c = 0; c < width; ++c) {
     const double* x = first + c * stride;
     for (int j = 0; j < n; ++j) w[j * width + c] = x[j];
   }
-  for (int j = 0; j < n; ++j) {
-    const double* factor = l.column(j);
-    const int last = std::min(b, n - 1 - j);
-    const double* value = w + j * width;
-    for (int k = 1; k <= last; ++k) {
-      double* below = w + (j + k) * width;
-      for (int c = 0; c < width; ++c) below[c] -= factor[k] * value[c];
+  const auto take = [](Entries& x, double factor, const double* of) {
+    for (int c = 0; c < width; ++c) x[static_cast<std::size_t>(c)] -= factor * of[c];
+  };
+  Entries x{};
+  const auto load = [&x](const double* from) { std::copy_n(from, width, x.begin()); };
+  for (int i = 0; i < n; ++i) {
+    const Entries before = x;
+    double* const here = w + i * width;
+    load(here);
+    if (i >= B) {
+      for (int k = B; k > 1; --k) take(x, l.column(i - k)[k], here - k * width);
+    } else {
+      for (int k = i; k > 1; --k) take(x, l.column(i - k)[k], here - k * width);
     }
+    if (i > 0) take(x, l.column(i - 1)[1], before.data());
+    std::copy_n(x.begin(), width, here);
   }
-  for (int j = n - 1; j >= 0; --j) {
-    const double* factor = l.column(j);
-    const int last = std::min(b, n - 1 - j);
-    double* value = w + j * width;
-    for (int c = 0; c < width; ++c) value[c] *= inverse[static_cast<std::size_t>(j)];
-    for (int k = 1; k <= last; ++k) {
-      const double* below = w + (j + k) * width;
-      for (int c = 0; c < width; ++c) value[c] -= factor[k] * below[c];
+  for (int i = n - 1; i >= 0; --i) {
+    const Entries behind = x;
+    double* const here = w + i * width;
+    const double* const factor = l.column(i);
+    load(here);
+    for (double& entry : x) entry *= inverse[static_cast<std::size_t>(i)];
+    if (i + B < n) {
+      for (int k = B; k > 1; --k) take(x, factor[k], here + k * width);
+    } else {
+      for (int k = n - 1 - i; k > 1; --k) take(x, factor[k], here + k * width);
     }
+    if (i + 1 < n) take(x, factor[1], behind.data());
+    std::copy_n(x.begin(), width, here);
   }
   for (int c = 0; c < width; ++c) {
-    double* x = first + c * stride;
-    for (int j = 0; j < n; ++j) x[j] = w[j * width + c];
+    double* x_c = first + c * stride;
+    for (int j = 0; j < n; ++j) x_c[j] = w[j * width + c];
   }
 }
 
@@ -147,6 +160,21 @@ void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inv
   for (; at < x.cols(); ++at) substitute<B, 1>(l, inverse, x.col(at).data(), stride, work);
 }
 
+/// Of any bandwidth.
+void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inverse, Eigen::Ref<Eigen::MatrixXd>& x) {
+  const int n = l.order(), b = l.half_bandwidth();
+  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+    double* const w = x.col(c).data();
+    for (int i = 0; i < n; ++i) {
+      for (int k = std::min(b, i); k >= 1; --k) w[i] -= l.column(i - k)[k] * w[i - k];
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      w[i] *= inverse[static_cast<std::size_t>(i)];
+      for (int k = std::min(b, n - 1 - i); k >= 1; --k) w[i] -= l.column(i)[k] * w[i + k];
+    }
+  }
+}
+
 }  // namespace
 
 void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
@@ -157,7 +185,7 @@ void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
     case 10:
       return substitute_all<10>(l_, inverse_, x);
     default:
-      return substitute_all<0>(l_, inverse_, x);
+      return substitute_all(l_, inverse_, x);
   }
 }
 

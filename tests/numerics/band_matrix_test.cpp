@@ -81,7 +81,7 @@ TEST(BandLdlt, SolvesLikeDenseLdlt) {
     for (const int n : {1, 4, 40}) {
       const SymmetricBandMatrix a = random_band(n, b, 2.0 + b, random);
       std::uniform_real_distribution<double> unit(-1.0, 1.0);
-      const Eigen::MatrixXd rhs = Eigen::MatrixXd::NullaryExpr(n, 3, [&]() { return unit(random); });
+      const Eigen::MatrixXd rhs = Eigen::MatrixXd::NullaryExpr(n, 7, [&]() { return unit(random); });
       BandLdlt factor;
       ASSERT_TRUE(factor.factorize(a));
       Eigen::MatrixXd x = rhs;
@@ -89,6 +89,11 @@ TEST(BandLdlt, SolvesLikeDenseLdlt) {
       const Eigen::MatrixXd expected = dense(a).ldlt().solve(rhs);
       // Diagonally heavy: condition below 1e2, so 1e2 eps.
       EXPECT_LT((x - expected).norm(), 1e-13 * expected.norm()) << "n " << n << " b " << b;
+      for (Eigen::Index c = 0; c < rhs.cols(); ++c) {  // four, two and one at once: the same bits as each alone
+        Eigen::VectorXd alone = rhs.col(c);
+        factor.solve(alone);
+        EXPECT_EQ(alone, x.col(c)) << "n " << n << " b " << b;
+      }
     }
   }
 }
