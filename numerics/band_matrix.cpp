@@ -101,12 +101,13 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
 namespace {
 
 /// Substitutes forth and back in `width` right-hand sides at once, row by row, entry by entry side by side. The row that is known last comes
-/// last, so that little waits for it. Every one has the operations of one alone, in their order. B: the half bandwidth.
+/// last, so that little waits for it. Every one has the operations of one alone, in their order. B: the half bandwidth; 0: that of the matrix.
 template <int B, int width>
 void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first, Eigen::Index stride,
                 std::vector<double>& work) {
   using Entries = std::array<double, width>;
   const int n = l.order();
+  const int b = B > 0 ? B : l.half_bandwidth();
   work.resize(static_cast<std::size_t>(n) * width);
   double* const w = work.data();
   for (int c = 0; c < width; ++c) {
@@ -122,12 +123,12 @@ void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse
     const Entries before = x;
     double* const here = w + i * width;
     load(here);
-    if (i >= B) {
-      for (int k = B; k > 1; --k) take(x, l.column(i - k)[k], here - k * width);
+    if (i >= b) {
+      for (int k = b; k > 1; --k) take(x, l.column(i - k)[k], here - k * width);
     } else {
       for (int k = i; k > 1; --k) take(x, l.column(i - k)[k], here - k * width);
     }
-    if (i > 0) take(x, l.column(i - 1)[1], before.data());
+    if (i > 0 && b > 0) take(x, l.column(i - 1)[1], before.data());
     std::copy_n(x.begin(), width, here);
   }
   for (int i = n - 1; i >= 0; --i) {
@@ -136,12 +137,12 @@ void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse
     const double* const factor = l.column(i);
     load(here);
     for (double& entry : x) entry *= inverse[static_cast<std::size_t>(i)];
-    if (i + B < n) {
-      for (int k = B; k > 1; --k) take(x, factor[k], here + k * width);
+    if (i + b < n) {
+      for (int k = b; k > 1; --k) take(x, factor[k], here + k * width);
     } else {
       for (int k = n - 1 - i; k > 1; --k) take(x, factor[k], here + k * width);
     }
-    if (i + 1 < n) take(x, factor[1], behind.data());
+    if (i + 1 < n && b > 0) take(x, factor[1], behind.data());
     std::copy_n(x.begin(), width, here);
   }
   for (int c = 0; c < width; ++c) {
@@ -160,21 +161,6 @@ void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inv
   for (; at < x.cols(); ++at) substitute<B, 1>(l, inverse, x.col(at).data(), stride, work);
 }
 
-/// Of any bandwidth.
-void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inverse, Eigen::Ref<Eigen::MatrixXd>& x) {
-  const int n = l.order(), b = l.half_bandwidth();
-  for (Eigen::Index c = 0; c < x.cols(); ++c) {
-    double* const w = x.col(c).data();
-    for (int i = 0; i < n; ++i) {
-      for (int k = std::min(b, i); k >= 1; --k) w[i] -= l.column(i - k)[k] * w[i - k];
-    }
-    for (int i = n - 1; i >= 0; --i) {
-      w[i] *= inverse[static_cast<std::size_t>(i)];
-      for (int k = std::min(b, n - 1 - i); k >= 1; --k) w[i] -= l.column(i)[k] * w[i + k];
-    }
-  }
-}
-
 }  // namespace
 
 void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
@@ -185,7 +171,7 @@ void BandLdlt::solve(Eigen::Ref<Eigen::MatrixXd> x) const {
     case 10:
       return substitute_all<10>(l_, inverse_, x);
     default:
-      return substitute_all(l_, inverse_, x);
+      return substitute_all<0>(l_, inverse_, x);
   }
 }
 
