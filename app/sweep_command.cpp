@@ -73,7 +73,7 @@ SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, cons
                            const CommonOptions& options) {
   SweepAnswers answers = sweep_answers(study, journal, end);
   CsvSink csv(options.out / "cases.csv");
-  give_cases(csv, study, journal, end.cases);
+  give_cases(csv, study, end.in(journal));
   csv.commit();
   base::write_text(options.out / "report.html", sweep_page(study, answers));
   write_result(options, "summary.json", sweep_summary(study, answers));
@@ -81,6 +81,8 @@ SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, cons
 }
 
 void tell(const SweepAnswers& answers, bool histories, const CommonOptions& options, Console& console) {
+  if (const auto inferred = answers.statuses.find("inferred"); inferred != answers.statuses.end())
+    console.say(fmt::format("{} of {} cases were run, the others are inferred", answers.finished, answers.cases));
   for (const FieldAnswer& f : answers.fields) {
     if (f.count == 0) continue;
     if (f.yes_or_no)

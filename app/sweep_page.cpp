@@ -104,10 +104,16 @@ void sensitivities(ReportPage& page, const SweepStudy& study, const SweepAnswers
   }
 }
 
-void maps(ReportPage& page, const SweepAnswers& answers) {
+void maps(ReportPage& page, const SweepStudy& study, const SweepAnswers& answers) {
   if (answers.maps.empty()) return;
   page.heading("Maps");
   page.paragraph("A cell holds all cases there, whatever the other variables are; point at one for its numbers.");
+  if (const auto inferred = answers.statuses.find("inferred"); inferred != answers.statuses.end()) {
+    page.paragraph(fmt::format(
+        "The grid is refined where {} changes: {} cases (pale) lie between others that agree, were not run, and are "
+        "taken to agree with these. A change that no corner of a first cell shows is not seen.",
+        study.sweep().collect[study.sweep().refine->field].name, inferred->second));
+  }
   for (const MapAnswer& m : answers.maps) {
     HeatMap map{m.share ? "share of cases with " + m.title : "mean of " + m.title, m.x, m.y, m.x_edges, m.y_edges, {}};
     bool first = true;
@@ -118,6 +124,8 @@ void maps(ReportPage& page, const SweepAnswers& answers) {
         cell.value = m.share ? share_of(m.hits[k], m.count[k]) : m.sum[k] / static_cast<double>(m.count[k]);
         cell.hint = m.share ? fmt::format("{} of {}: {}", m.hits[k], m.count[k], interval_of(m.hits[k], m.count[k]))
                             : fmt::format("{} over {} cases", format_number(cell.value), m.count[k]);
+        cell.pale = m.inferred[k] == m.count[k];
+        if (m.inferred[k] > 0) cell.hint += fmt::format(", {} inferred", m.inferred[k]);
         if (!m.share) {
           map.low = first ? cell.value : std::min(map.low, cell.value);
           map.high = first ? cell.value : std::max(map.high, cell.value);
@@ -187,7 +195,7 @@ std::string sweep_page(const SweepStudy& study, const SweepAnswers& answers) {
   numbers(page, answers);
   distributions(page, study, answers);
   sensitivities(page, study, answers);
-  maps(page, answers);
+  maps(page, study, answers);
   if (!answers.scatters.empty()) page.heading("Field by variable");
   for (const ScatterAnswer& s : answers.scatters) {
     PlotSpecification plot{s.y + " over " + s.x, {s.x, ""}, {s.y, ""}};

@@ -252,7 +252,7 @@ py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::objec
         const results::SweepEnd end = results::run_sweep_cases(
             *study, journal, {wanted, wanted, nullptr, {}, histories ? &*histories : nullptr}, watch);
         journal.flush();
-        results::give_cases(*cases, *study, journal, end.cases);
+        results::give_cases(*cases, *study, end.in(journal));
         json document = results::sweep_summary(*study, results::sweep_answers(*study, journal, end));
         if (histories && !end.partial) {
           histories->join(journal, end.cases);

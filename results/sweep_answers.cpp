@@ -27,14 +27,31 @@ constexpr std::uint64_t scatter_points = 1000;
 constexpr std::size_t map_bins = 12;
 constexpr std::size_t worst_of_each = 5;
 
-/// The finished cases in order.
+constexpr const char* inferred_status = "inferred";
+
+/// A case that was not run: the field by which the grid is refined, or why its neighbours have none.
+CaseRecord inferred_record(const SweepStudy& study, const study::Seen& seen) {
+  CaseRecord record{inferred_status, "", 0.0, {}, {}};
+  const json value = seen.word.empty() ? json(seen.number) : json::parse(seen.word, nullptr, false);
+  if (value.is_discarded()) {
+    record.reason = "around it: " + seen.word;
+    return record;
+  }
+  record.fields.resize(study.sweep().collect.size());
+  record.fields[study.sweep().refine->field] = value;
+  return record;
+}
+
+/// The cases that were run or are inferred, in order.
 template <class Use>
-void for_each_case(const study::Journal& journal, std::uint64_t cases, const Use& use) {
-  const std::uint64_t end = std::min(cases, journal.end());
+void for_each_case(const SweepStudy& study, const SweepCases& cases, const Use& use) {
+  const std::uint64_t end = cases.refined != nullptr ? cases.count : std::min(cases.count, cases.journal.end());
   for (std::uint64_t index = 0; index < end; ++index) {
-    const std::optional<std::string> line = journal.result(index);
-    if (!line) continue;
-    if (const std::optional<CaseRecord> record = study::record_of(*line)) use(index, *record);
+    if (const std::optional<std::string> line = cases.journal.result(index)) {
+      if (const std::optional<CaseRecord> record = study::record_of(*line)) use(index, *record);
+    } else if (const auto seen = cases.refined != nullptr ? cases.refined->inferred(index) : std::nullopt) {
+      use(index, inferred_record(study, *seen));
+    }
   }
 }
 
@@ -46,7 +63,7 @@ struct Quantity {
   bool share = false;
 
   [[nodiscard]] std::optional<double> of(const CaseRecord& record) const {
-    const std::optional<double> value = record.done() ? record.number(field) : std::nullopt;
+    const std::optional<double> value = record.number(field);
     if (!value || limit == nullptr) return value;
     return (limit->above ? *value > limit->bound : *value < limit->bound) ? 1.0 : 0.0;
   }
@@ -115,8 +132,8 @@ std::vector<Quantity> quantities_of(const study::SweepFile& sweep, const SweepAn
 }
 
 /// Second pass: maps and scatters, their axes known from the first.
-void draw(const SweepStudy& study, const study::Journal& journal, std::uint64_t cases,
-          const std::vector<std::vector<double>>& places, SweepAnswers& answers) {
+void draw(const SweepStudy& study, const SweepCases& cases, const std::vector<std::vector<double>>& places,
+          SweepAnswers& answers) {
   const study::SweepFile& sweep = study.sweep();
   const bool grid = sweep.design.settings().kind == DesignKind::grid;
   const auto& variables = sweep.design.variables();
@@ -144,10 +161,12 @@ void draw(const SweepStudy& study, const study::Journal& journal, std::uint64_t 
                       quantities[q].share,
                       {},
                       {},
+                      {},
                       {}};
         const std::size_t cells = (map.x_edges.size() - 1) * (map.y_edges.size() - 1);
         map.count.resize(cells);
         map.hits.resize(cells);
+        map.inferred.resize(cells);
         map.sum.resize(cells);
         answers.maps.push_back(std::move(map));
       }
@@ -158,8 +177,8 @@ void draw(const SweepStudy& study, const study::Journal& journal, std::uint64_t 
       answers.scatters.push_back({variables[j].name, quantities[q].name, {}, {}});
     }
   }
-  const std::uint64_t every = std::max<std::uint64_t>(1, cases / scatter_points);
-  for_each_case(journal, cases, [&](std::uint64_t index, const CaseRecord& record) {
+  const std::uint64_t every = std::max<std::uint64_t>(1, cases.count / scatter_points);
+  for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
     const std::vector<double> values = values_of_case(study, index, record);
     for (std::size_t m = 0; m < maps.size(); ++m) {
       const auto x = shown_number(variables[maps[m].x], values[maps[m].x]);
@@ -169,6 +188,7 @@ void draw(const SweepStudy& study, const study::Journal& journal, std::uint64_t 
       MapAnswer& map = answers.maps[m];
       const std::size_t cell = cell_of(map.x_edges, *x) + (map.x_edges.size() - 1) * cell_of(map.y_edges, *y);
       ++map.count[cell];
+      map.inferred[cell] += record.status == inferred_status ? 1 : 0;
       map.hits[cell] += *value > 0.5 ? 1 : 0;
       map.sum[cell] += *value;
     }
@@ -202,7 +222,7 @@ std::vector<double> values_of_case(const SweepStudy& study, std::uint64_t index,
   return record.values.empty() ? study.sweep().design.values(index) : record.values;
 }
 
-SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journal, std::uint64_t cases) {
+SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
   const study::SweepFile& sweep = study.sweep();
   const auto& variables = sweep.design.variables();
   SweepAnswers answers;
@@ -222,14 +242,16 @@ SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journa
   }
   std::vector<std::vector<double>> places(
       variables.size());  // that cells are made of: extremes, or all levels of a grid
-  const std::uint64_t every = std::max<std::uint64_t>(1, cases / FieldAnswer::sample_limit);
+  const std::uint64_t every = std::max<std::uint64_t>(1, cases.count / FieldAnswer::sample_limit);
   std::vector<double> squares(answers.fields.size());
-  for_each_case(journal, cases, [&](std::uint64_t index, const CaseRecord& record) {
-    ++answers.finished;
+  for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
+    const bool inferred = record.status == inferred_status;
+    answers.finished += inferred ? 0 : 1;
     ++answers.statuses[record.status];
     answers.seconds += record.seconds;
     constexpr std::size_t most_reasons = 100;
-    if (!record.done() && (answers.reasons.size() < most_reasons || answers.reasons.contains(record.reason)))
+    if (!record.done() && !inferred &&
+        (answers.reasons.size() < most_reasons || answers.reasons.contains(record.reason)))
       ++answers.reasons[record.reason];
     const std::vector<double> values = values_of_case(study, index, record);
     for (std::size_t j = 0; j < variables.size(); ++j) {
@@ -246,7 +268,7 @@ SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journa
         *std::ranges::max_element(p) = *x;
     }
     for (std::size_t f = 0; f < answers.fields.size(); ++f) {
-      const std::optional<double> value = record.done() ? record.number(f) : std::nullopt;
+      const std::optional<double> value = record.number(f);
       if (!value) continue;
       FieldAnswer& field = answers.fields[f];
       const bool boolean = record.fields[f].is_boolean();
@@ -262,14 +284,14 @@ SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journa
     }
     for (std::size_t l = 0; l < sweep.limits.size(); ++l) {
       const study::Limit& limit = sweep.limits[l];
-      const std::optional<double> value = record.done() ? record.number(limit.field) : std::nullopt;
+      const std::optional<double> value = record.number(limit.field);
       if (!value) continue;
       ++answers.limits[l].count;
       answers.limits[l].hits += (limit.above ? *value > limit.bound : *value < limit.bound) ? 1 : 0;
     }
     for (std::size_t w = 0; w < worst.size(); ++w) {
-      const std::optional<double> value = record.done() ? record.number(worst_field[w]) : std::nullopt;
-      if (value && !record.fields[worst_field[w]].is_boolean()) worst[w].add(index, *value, values);
+      const std::optional<double> value = record.number(worst_field[w]);
+      if (value && !inferred && !record.fields[worst_field[w]].is_boolean()) worst[w].add(index, *value, values);
     }
   });
   for (std::size_t f = 0; f < answers.fields.size(); ++f) {
@@ -279,18 +301,24 @@ SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journa
     if (sweep.design.settings().kind != DesignKind::sensitivity || field.count == 0) continue;
     field.indices = study::sobol_indices(variables.size(), sweep.design.settings().cases,
                                          [&](std::uint64_t index) -> std::optional<double> {
-                                           const std::optional<std::string> line = journal.result(index);
+                                           const std::optional<std::string> line = cases.journal.result(index);
                                            if (!line) return std::nullopt;
                                            const auto record = study::record_of(*line);
                                            return record && record->done() ? record->number(f) : std::nullopt;
                                          });
   }
   for (const Worst& one : worst) one.append_to(answers.worst, study);
-  if (answers.finished > 0) draw(study, journal, cases, places, answers);
+  if (answers.finished > 0) draw(study, cases, places, answers);
   return answers;
 }
 
-void give_cases(TableSink& sink, const SweepStudy& study, const study::Journal& journal, std::uint64_t cases) {
+study::Seen seen_of(const SweepStudy& study, const CaseRecord& record) {
+  if (!record.done()) return {0.0, record.status};
+  const json& value = record.fields.at(study.sweep().refine->field);
+  return value.is_number() ? study::Seen{value.get<double>(), ""} : study::Seen{0.0, value.dump()};
+}
+
+void give_cases(TableSink& sink, const SweepStudy& study, const SweepCases& cases) {
   const study::SweepFile& sweep = study.sweep();
   std::vector<std::string> columns{"case", "status", "reason"};
   for (const study::Variable& v : sweep.design.variables()) columns.push_back(v.name);
@@ -298,7 +326,7 @@ void give_cases(TableSink& sink, const SweepStudy& study, const study::Journal& 
   sink.begin(columns);
   std::vector<base::CsvCell> row;
   std::vector<std::string> texts(columns.size());
-  for_each_case(journal, cases, [&](std::uint64_t index, const CaseRecord& record) {
+  for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
     row.assign({static_cast<long long>(index + 1), std::string_view(record.status), std::string_view(record.reason)});
     const std::vector<double> values = values_of_case(study, index, record);
     const auto add = [&](const json& value) {

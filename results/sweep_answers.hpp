@@ -51,6 +51,7 @@ struct MapAnswer {
   std::vector<double> x_edges, y_edges;    ///< of the cells; one more than these
   bool share = false;                      ///< of hits, else a mean
   std::vector<std::uint64_t> count, hits;  ///< a cell, x fastest
+  std::vector<std::uint64_t> inferred;     ///< of count, cases that were not run
   std::vector<double> sum;
 };
 
@@ -67,10 +68,17 @@ struct SubsetAnswer {
   std::vector<study::SubsetSimulation::Level> levels;
 };
 
+/// The cases of a sweep: those of its journal, and those that are inferred from them.
+struct SweepCases {
+  const study::Journal& journal;
+  std::uint64_t count = 0;                      ///< there are, as far as is known
+  const study::RefinedGrid* refined = nullptr;  ///< a refined grid at its end, else none
+};
+
 /// What the cases of a sweep say together.
 struct SweepAnswers {
-  std::uint64_t cases = 0;  ///< there are; 0: unknown before the end
-  std::uint64_t finished = 0;
+  std::uint64_t cases = 0;     ///< there are; 0: unknown before the end
+  std::uint64_t finished = 0;  ///< were run
   bool interrupted = false;
   std::map<std::string, std::uint64_t> statuses;
   std::map<std::string, std::uint64_t> reasons;  ///< of cases that are not done, how often; the first hundred
@@ -91,12 +99,15 @@ struct SweepAnswers {
                                                  const study::CaseRecord& record);
 
 /// Goes through the journal a few times; holds samples and sums only.
-[[nodiscard]] SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journal, std::uint64_t cases);
+[[nodiscard]] SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases);
 
 /// summary.json.                                                                        docs/sweep_file.md
 [[nodiscard]] nlohmann::json sweep_summary(const SweepStudy& study, const SweepAnswers& answers);
 
-/// The columns of cases.csv: the finished cases in order.
-void give_cases(TableSink& sink, const SweepStudy& study, const study::Journal& journal, std::uint64_t cases);
+/// The columns of cases.csv: the cases that were run or are inferred, in order.
+void give_cases(TableSink& sink, const SweepStudy& study, const SweepCases& cases);
+
+/// What a case says of the field by which the grid of the sweep is refined.
+[[nodiscard]] study::Seen seen_of(const SweepStudy& study, const study::CaseRecord& record);
 
 }  // namespace snare::results

@@ -44,6 +44,30 @@ class SweepRun {
         dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
   }
 
+  /// Cases of a refined grid, of which the next ones depend on the last. True when it came to its end.
+  bool refined(study::RefinedGrid& grid) {
+    begin();
+    while (!grid.finished() && !watch_.stopped()) {
+      const std::vector<std::uint64_t>& asked = grid.next();
+      total_ = grid.told() + asked.size();
+      study::Dispatcher dispatcher(
+          study::Scheduler({.count = grid.points(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+                           [&](std::uint64_t k) { return !std::ranges::binary_search(asked, k) || finished(k); }),
+          [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
+      run(
+          dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
+      if (watch_.stopped()) return false;
+      std::vector<study::Seen> seen;
+      for (const std::uint64_t index : asked) {
+        const std::optional<CaseRecord> record = told(index);
+        if (!record) throw std::runtime_error("a case has a result that cannot be read back");
+        seen.push_back(seen_of(study_, *record));
+      }
+      grid.tell(std::move(seen));
+    }
+    return grid.finished();
+  }
+
   /// Cases of a subset simulation, of which the next ones depend on the last. True when it came to its end.
   bool subset(study::SubsetSimulation& simulation) {
     begin();
@@ -60,8 +84,7 @@ class SweepRun {
       if (watch_.stopped()) return false;
       std::vector<std::optional<double>> margins;
       for (std::uint64_t k = 0; k < asked.size(); ++k) {
-        const std::optional<std::string> line = journal_.result(base + k);
-        const auto record = line ? study::record_of(*line) : std::nullopt;
+        const std::optional<CaseRecord> record = told(base + k);
         margins.push_back(record ? study_.margin_of(*record) : std::nullopt);
       }
       simulation.tell(margins);
@@ -80,6 +103,12 @@ class SweepRun {
 
   /// Nothing of the case is to be done any more.
   [[nodiscard]] bool finished(std::uint64_t index) const { return journal_.has(index) && !again_.contains(index); }
+
+  /// What the journal says of a case.
+  [[nodiscard]] std::optional<CaseRecord> told(std::uint64_t index) const {
+    const std::optional<std::string> line = journal_.result(index);
+    return line ? study::record_of(*line) : std::nullopt;
+  }
 
   void begin() {
     if (workers_.histories != nullptr) again_ = workers_.histories->missing(journal_);
@@ -156,6 +185,13 @@ std::string case_line(const SweepStudy& study, const SweepHistories* histories, 
 SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepWorkers& workers, const Watch& watch) {
   SweepRun run(study, journal, workers, watch);
   SweepEnd end;
+  if (study.sweep().refine) {
+    study::RefinedGrid grid(study.sweep().refine->grid);
+    end.partial = !run.refined(grid) || !run.whole();
+    end.cases = study.count();
+    if (!end.partial) end.refined = std::move(grid);
+    return end;
+  }
   if (study.count() > 0) {
     run.design();
     end.cases = study.count();
@@ -171,7 +207,7 @@ SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepW
 }
 
 SweepAnswers sweep_answers(const SweepStudy& study, const Journal& journal, const SweepEnd& end) {
-  SweepAnswers answers = sweep_answers(study, journal, end.cases);
+  SweepAnswers answers = sweep_answers(study, end.in(journal));
   answers.subset = end.subset;
   answers.interrupted = end.partial;
   return answers;

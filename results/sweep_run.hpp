@@ -31,9 +31,15 @@ struct SweepWorkers {
 
 /// How far a sweep has come.
 struct SweepEnd {
-  bool partial = false;                ///< not all cases are in the journal
-  std::uint64_t cases = 0;             ///< there are, as far as is known
-  std::optional<SubsetAnswer> subset;  ///< of a subset simulation that came to its end
+  bool partial = false;                       ///< not all cases are in the journal
+  std::uint64_t cases = 0;                    ///< there are, as far as is known
+  std::optional<SubsetAnswer> subset;         ///< of a subset simulation that came to its end
+  std::optional<study::RefinedGrid> refined;  ///< that came to its end
+
+  /// The cases of that end, by the journal of the sweep.
+  [[nodiscard]] SweepCases in(const study::Journal& journal) const {
+    return {journal, cases, refined ? &*refined : nullptr};
+  }
 };
 
 /// Runs the cases that the journal does not have yet, and those whose history is missing, and appends them. Throws base::InputError when a field that is to be collected

@@ -61,6 +61,7 @@ class Reader {
     std::vector<Collected> collect = read_collect();
     std::vector<Limit> limits = read_limits(collect);
     const SubsetSettings subset = read_subset(limits);
+    std::optional<RefineSettings> refine = read_refine(collect);
     std::optional<HistorySettings> histories = read_histories();
     document_.finish();
     std::vector<Variable> variables;
@@ -76,6 +77,7 @@ class Reader {
             collect,
             limits,
             subset,
+            std::move(refine),
             std::move(histories),
             time_limit,
             std::move(canonical)};
@@ -371,22 +373,27 @@ class Reader {
     return fields;
   }
 
+  /// Index of the field that `of` names.
+  static std::size_t read_field(const TomlTable& table, const std::string& of, const std::vector<Collected>& fields) {
+    const auto found = std::ranges::find(fields, of, &Collected::name);
+    if (found == fields.end() && !of.empty()) {
+      std::vector<std::string> all;
+      all.reserve(fields.size());
+      for (const Collected& f : fields) all.push_back(f.name);
+      const std::string near = base::nearest_word(of, all);
+      table.fail("of", near.empty() ? "must be a name of [collect]"
+                                    : fmt::format("must be a name of [collect]; did you mean {}?", near));
+    }
+    return static_cast<std::size_t>(found - fields.begin());
+  }
+
   std::vector<Limit> read_limits(const std::vector<Collected>& fields) {
     std::vector<Limit> limits;
     std::set<std::string> names;
     for (const TomlTable& table : top_.tables("limits")) {
       Limit limit;
       const std::string of = table.text("of");
-      const auto found = std::ranges::find(fields, of, &Collected::name);
-      if (found == fields.end() && !of.empty()) {
-        std::vector<std::string> all;
-        all.reserve(fields.size());
-        for (const Collected& f : fields) all.push_back(f.name);
-        const std::string near = base::nearest_word(of, all);
-        table.fail("of", near.empty() ? "must be a name of [collect]"
-                                      : fmt::format("must be a name of [collect]; did you mean {}?", near));
-      }
-      limit.field = static_cast<std::size_t>(found - fields.begin());
+      limit.field = read_field(table, of, fields);
       limit.above = table.has("above");
       if (limit.above == table.has("below")) {
         table.fail("", "must have either above or below: the bound beyond which a case counts");
@@ -418,6 +425,40 @@ class Reader {
     if (n * s.level_probability < 10.0 && top_.has("cases"))
       top_.fail("cases", fmt::format("must be at least {:.0f}: ten cases start the next level",
                                      std::ceil(10.0 / s.level_probability)));
+    return s;
+  }
+
+  std::optional<RefineSettings> read_refine(const std::vector<Collected>& fields) {
+    if (!top_.has("refine")) return std::nullopt;
+    if (kind_ != DesignKind::grid) {
+      top_.fail("refine", "must be left out but with design = \"grid\"");
+      return std::nullopt;
+    }
+    RefineSettings s;
+    const TomlTable table = top_.table("refine");
+    s.field = read_field(table, table.text("of"), fields);
+    constexpr int most_levels = 16;
+    s.grid.levels = table.integer_or("levels", 2, 1, most_levels);
+    s.grid.differs_by = table.number_or("differs_by", 0.0, Range::from(0.0));
+    const int width = 1 << static_cast<unsigned>(s.grid.levels);
+    double count = 1.0;
+    std::size_t refined = 0;
+    for (const Draft& d : drafts_) {
+      count *= static_cast<double>(d.variable.levels.size());
+      const int steps = d.points.value_or(1) - 1;
+      s.grid.axes.push_back({d.variable.levels.size(), steps > 0});
+      if (steps == 0) continue;
+      ++refined;
+      if (steps % width != 0)
+        d.table.fail("points", fmt::format("must be one more than a multiple of {}, the steps in a first cell of "
+                                           "[refine]: {}",
+                                           width, std::max(1, (steps + width / 2) / width) * width + 1));
+    }
+    if (refined == 0 || refined > RefinedGrid::most_axes)
+      table.fail("", fmt::format("must have 1 to {} [[vary]] with range and points to refine, not {}",
+                                 RefinedGrid::most_axes, refined));
+    if (count > static_cast<double>(RefinedGrid::most_points))
+      table.fail("", fmt::format("must be of a grid of at most {} cases, not {:.3g}", RefinedGrid::most_points, count));
     return s;
   }
 

@@ -3,6 +3,7 @@
 #include "base/toml_tree.hpp"
 #include "study/collect.hpp"
 #include "study/design.hpp"
+#include "study/refined_grid.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -25,6 +26,12 @@ struct SubsetSettings {
   int most_levels = 12;
 };
 
+/// A grid of which only those cases are run that tell where a field changes.                           theory.md (S.7)
+struct RefineSettings {
+  std::size_t field = 0;  ///< index of what is collected
+  RefinedGrid::Settings grid;
+};
+
 /// What is kept of the histories of the cases: the tables that their verb writes beside its JSON.
 struct HistorySettings {
   std::vector<std::string> columns;  ///< by their names in the table; none: all
@@ -42,6 +49,7 @@ struct SweepFile {
   std::vector<Collected> collect;
   std::vector<Limit> limits;
   SubsetSettings subset;
+  std::optional<RefineSettings> refine;      ///< none: every case of the design is run
   std::optional<HistorySettings> histories;  ///< none: no histories are kept
   double time_limit = 0.0;                   ///< of one case [s], > 0
   std::string canonical;  ///< equal for files that say the same, trace and table beside them included

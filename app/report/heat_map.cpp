@@ -70,9 +70,9 @@ std::string heat_map(const HeatMap& map) {
     const std::size_t i = k % columns, j = k / columns;
     const double x = px(map.x_edges[i]), y = py(map.y_edges[j + 1]);
     svg += fmt::format(
-        "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"><title>{}</title></rect>\n", x,
-        y, px(map.x_edges[i + 1]) - x, py(map.y_edges[j]) - y, colour((cell.value - map.low) / size),
-        escape_html(cell.hint));
+        "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"{}><title>{}</title></rect>\n",
+        x, y, px(map.x_edges[i + 1]) - x, py(map.y_edges[j]) - y, colour((cell.value - map.low) / size),
+        cell.pale ? " fill-opacity=\"0.5\"" : "", escape_html(cell.hint));
   }
   svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"currentColor\"/>\n",
                      left, top, w, h);

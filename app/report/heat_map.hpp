@@ -13,7 +13,8 @@ struct HeatMap {
   struct Cell {
     bool known = false;
     double value = 0.0;
-    std::string hint;  ///< shown where one points at it
+    std::string hint;   ///< shown where one points at it
+    bool pale = false;  ///< half its colour, for what is known at second hand
   };
   std::vector<Cell> cells;       ///< x fastest; (x_edges - 1) times (y_edges - 1)
   double low = 0.0, high = 1.0;  ///< values of the ends of the colours

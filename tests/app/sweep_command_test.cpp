@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <random>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace snare::app {
 namespace {
@@ -198,6 +200,98 @@ columns = "all"
   EXPECT_EQ(line, "2,done,,90," + nlohmann::json(damping).dump() + ",1");
   EXPECT_EQ(run("sweep records.toml --out b --set verb=push"), 2);
   EXPECT_THAT(contents("err.txt"), HasSubstr("must be one of fit, trace for a file of snare-record/1"));
+}
+
+/// Lines of a table by the number of their case, cells without quotes around them.
+std::map<int, std::vector<std::string>> rows_of(const std::string& csv) {
+  std::map<int, std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    rows[std::stoi(cells.front())] = cells;
+  }
+  return rows;
+}
+
+// A refined grid against the same grid without refinement: what was run is equal, what is inferred is as near as was asked for.
+TEST_F(SweepCommand, ARefinedGrid) {
+  const auto grid = [](const std::string& more) {
+    return R"(schema = "snare-sweep/1"
+case = "one.toml"
+design = "grid"
+[[vary]]
+key = "wire.length_mm"
+range = [175.5, 181.0]
+points = 17
+[[vary]]
+key = "wire.diameter_mm"
+range = [-0.5, 1.5]
+points = 9
+[collect]
+force = "series[middle].largest_force_N"
+touching = "series[middle].in_contact_at_end"
+)" + more;
+  };
+  const std::string refine = "[refine]\nof = \"force\"\nlevels = 2\ndiffers_by = 8.0\n";
+  write("plain.toml", grid(""));
+  write("refined.toml", grid(refine));
+  ASSERT_EQ(run("sweep plain.toml --out plain"), 0) << contents("err.txt");
+  ASSERT_EQ(run("sweep refined.toml --out a --threads 1"), 0) << contents("err.txt");
+  const auto plain = rows_of(cases("plain")), refined = rows_of(cases("a"));
+  ASSERT_EQ(plain.size(), 153U);
+  ASSERT_EQ(refined.size(), 153U);
+  int inferred = 0, words = 0;
+  for (const auto& [number, row] : refined) {
+    const std::vector<std::string>& whole = plain.at(number);
+    if (row[1] != "inferred") {
+      EXPECT_EQ(row, whole);
+      continue;
+    }
+    ++inferred;
+    EXPECT_EQ(row[3], whole[3]);
+    EXPECT_EQ(row[4], whole[4]);
+    EXPECT_EQ(row[6], "");  // nothing is said of other fields
+    if (row[2].empty()) {
+      EXPECT_EQ(whole[1], "done");
+      EXPECT_NEAR(std::stod(row[5]), std::stod(whole[5]), 8.0);
+    } else {
+      ++words;
+      EXPECT_EQ(row[2], "around it: " + whole[1]);  // a diameter below zero is refused
+    }
+  }
+  EXPECT_GT(words, 10);
+  EXPECT_GT(inferred - words, 10);
+  const nlohmann::json summary = parsed("a/summary.json");
+  EXPECT_EQ(summary["cases"], 153);
+  EXPECT_EQ(summary["finished"], 153 - inferred);
+  EXPECT_EQ(summary["statuses"]["inferred"], inferred);
+  EXPECT_EQ(summary["interrupted"], false);
+  EXPECT_EQ(std::ranges::count(contents("a/cases.journal"), '\n'), 154 - inferred);
+  EXPECT_THAT(contents("a/report.html"), HasSubstr("The grid is refined where force changes"));
+
+  // Threads, and kills at any moment.
+  ASSERT_EQ(run("sweep refined.toml --out b --threads 3"), 0);
+  EXPECT_EQ(cases("b"), cases("a"));
+  for (int kills = 0; kills < 5; ++kills)
+    static_cast<void>(interrupt(start({"sweep", "refined.toml", "--out", "c", "--threads", "2"}), 0.06, SIGKILL));
+  ASSERT_EQ(run("sweep refined.toml --out c"), 0) << contents("err.txt");
+  EXPECT_EQ(cases("c"), cases("a"));
+
+  // A case that was not run can be, alone.
+  const auto one = std::ranges::find_if(refined, [](const auto& row) { return row.second[1] == "inferred"; });
+  const int status = run("sweep refined.toml --out a --case " + std::to_string(one->first));
+  EXPECT_EQ(status, one->second[2].empty() ? 0 : 2);
 }
 
 TEST_F(SweepCommand, ARareEventByLevels) {

@@ -41,6 +41,25 @@ force = "series[middle].largest_force_N"
 [histories]
 columns = ["force_N"]
 """
+# Of a refined grid the next cases depend on the last ones.
+REFINED = """schema = "snare-sweep/1"
+case = "one.toml"
+design = "grid"
+[[vary]]
+key = "wire.length_mm"
+range = [175.4, 183.4]
+points = 33
+[[vary]]
+key = "wire.diameter_mm"
+range = [0.5, 2.1]
+points = 17
+[collect]
+force = "series[middle].largest_force_N"
+[refine]
+of = "force"
+levels = 2
+differs_by = 80.0
+"""
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 failures = []
 
@@ -51,8 +70,8 @@ def check(condition: bool, what: str) -> None:
         failures.append(what)
 
 
-def mpirun(snare: str, folder: pathlib.Path, ranks: int, out: str, *more: str) -> list[str]:
-    return ["mpirun", "--oversubscribe", *more, "-n", str(ranks), snare, "sweep", "sweep.toml", "--out", out, "--quiet"]
+def mpirun(snare: str, ranks: int, out: str, *more: str, sweep: str = "sweep.toml") -> list[str]:
+    return ["mpirun", "--oversubscribe", *more, "-n", str(ranks), snare, "sweep", sweep, "--out", out, "--quiet"]
 
 
 def ranks_of(launcher: subprocess.Popen) -> list[int]:
@@ -66,6 +85,10 @@ def rank_of(pid: int) -> int:
         if entry.startswith(b"OMPI_COMM_WORLD_RANK="):
             return int(entry.split(b"=")[1])
     return -1
+
+
+def journal_length(file: pathlib.Path) -> int:
+    return len(file.read_text().splitlines()) - 1
 
 
 def journal_is_whole(file: pathlib.Path, cases: int) -> bool:
@@ -99,25 +122,32 @@ def main() -> int:
 
         for ranks in (1, 2, 4):
             begin = time.monotonic()
-            status = run(mpirun(snare, folder, ranks, f"r{ranks}"))
+            status = run(mpirun(snare, ranks, f"r{ranks}"))
             print(f"       {ranks} ranks: {time.monotonic() - begin:.1f} s")
             check(status == 0 and written(f"r{ranks}") == whole, f"{ranks} ranks, same bytes")
+
+        (folder / "refined.toml").write_text(REFINED)
+        check(run([snare, "sweep", "refined.toml", "--out", "grid", "--quiet"]) == 0, "a refined grid")
+        check(run(mpirun(snare, 3, "grid3", sweep="refined.toml")) == 0 and
+              (folder / "grid3/cases.csv").read_bytes() == (folder / "grid/cases.csv").read_bytes(), "3 ranks, same bytes")
+        finished = journal_length(folder / "grid3/cases.journal")
+        check(40 < finished < 33 * 17, f"{finished} of {33 * 17} cases were run")
 
         # All ranks at once, at random moments.
         chance = random.Random(1)
         for _ in range(options.kills):
-            launcher = subprocess.Popen(mpirun(snare, folder, 2, "killed"), cwd=folder, env=ENVIRONMENT,
+            launcher = subprocess.Popen(mpirun(snare, 2, "killed"), cwd=folder, env=ENVIRONMENT,
                                         stderr=subprocess.DEVNULL)
             time.sleep(chance.uniform(0.3, 2.0))
             for pid in ranks_of(launcher):
                 os.kill(pid, signal.SIGKILL)
             launcher.wait(timeout=120)
-        check(run(mpirun(snare, folder, 2, "killed")) == 0, "goes on after kills of all ranks")
+        check(run(mpirun(snare, 2, "killed")) == 0, "goes on after kills of all ranks")
         check(written("killed") == whole, "same bytes after them")
         check(journal_is_whole(folder / "killed/cases.journal", 2000), "no case twice or lost")
 
         # One rank that is not the first: the others run its cases, where the launcher lets them.
-        launcher = subprocess.Popen(mpirun(snare, folder, 3, "lost", "--enable-recovery"), cwd=folder, env=ENVIRONMENT,
+        launcher = subprocess.Popen(mpirun(snare, 3, "lost", "--enable-recovery"), cwd=folder, env=ENVIRONMENT,
                                     stderr=subprocess.DEVNULL)
         time.sleep(1.5)
         for pid in ranks_of(launcher):
@@ -130,7 +160,7 @@ def main() -> int:
         there = (folder / "lost/histories.h5").exists()
         print(f"       a rank killed: the others {'finished' if there else 'were ended by the launcher'}")
         if not there:
-            check(run(mpirun(snare, folder, 2, "lost")) == 0, "goes on after a kill of one rank")
+            check(run(mpirun(snare, 2, "lost")) == 0, "goes on after a kill of one rank")
         check(written("lost") == whole, "same bytes after a kill of one rank")
         check(journal_is_whole(folder / "lost/cases.journal", 2000), "no case twice or lost")
     return 1 if failures else 0

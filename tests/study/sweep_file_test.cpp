@@ -95,6 +95,46 @@ TEST_F(SweepFileTest, WhatADesignNeedsAndMayNotHave) {
   EXPECT_THAT(problems(std::string(head) + "design = \"sobol\"\ncases = 4\n" + vary), HasSubstr("collect"));
 }
 
+TEST_F(SweepFileTest, ARefinedGrid) {
+  const std::string vary = R"([[vary]]
+key = "a"
+range = [0.0, 1.0]
+points = 41
+[[vary]]
+key = "b"
+values = [1, 2, 3]
+)";
+  const std::string refine = "[refine]\nof = \"force\"\nlevels = 3\ndiffers_by = 0.5\n";
+  const std::string grid = std::string(head) + "design = \"grid\"\n";
+  const SweepFile sweep = read(grid + vary + refine + tail);
+  ASSERT_TRUE(sweep.refine);
+  EXPECT_EQ(sweep.refine->field, 0U);
+  EXPECT_EQ(sweep.refine->grid.levels, 3);
+  EXPECT_EQ(sweep.refine->grid.differs_by, 0.5);
+  ASSERT_EQ(sweep.refine->grid.axes.size(), 2U);
+  EXPECT_TRUE(sweep.refine->grid.axes[0].refined);
+  EXPECT_EQ(sweep.refine->grid.axes[1].points, 3U);
+  EXPECT_FALSE(sweep.refine->grid.axes[1].refined);
+  EXPECT_FALSE(read(grid + vary + tail).refine);
+
+  const auto with = [&](const std::string& key, const std::string& by) {
+    std::string text = grid + vary + refine + tail;
+    return problems(text.replace(text.find(key), key.size(), by));
+  };
+  EXPECT_THAT(with("of = \"force\"", "of = \"forse\""), HasSubstr("did you mean force?"));
+  EXPECT_THAT(with("levels = 3", "levels = 4"), HasSubstr("one more than a multiple of 16, the steps in a first cell "
+                                                          "of [refine]: 49"));
+  EXPECT_THAT(with("levels = 3", "levels = 17"), HasSubstr("levels = 17"));
+  EXPECT_THAT(with("differs_by = 0.5", "differs_by = -0.5"), HasSubstr("differs_by = -0.5"));
+  EXPECT_THAT(with("values = [1, 2, 3]", "range = [0.0, 1.0]\npoints = 80001"),
+              HasSubstr("at most 1000000 cases, not 3.28e+06"));
+  EXPECT_THAT(with("points = 41", "points = 1"), HasSubstr("1 to 6 [[vary]]"));
+  EXPECT_THAT(with("range = [0.0, 1.0]\npoints = 41", "values = [1, 2]"), HasSubstr("1 to 6 [[vary]]"));
+  EXPECT_THAT(problems(std::string(head) +
+                       "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"a\"\nuniform = [0.0, 1.0]\n" + refine + tail),
+              HasSubstr("refine, must be left out but with design = \"grid\""));
+}
+
 TEST_F(SweepFileTest, ATableOfCases) {
   write("t.csv", "case,b,a\n1,10,0.5\n2,20,0.25\n");
   const std::string text = std::string(head) +

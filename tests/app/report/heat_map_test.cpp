@@ -26,6 +26,13 @@ TEST(HeatMap, DrawsTheKnownCellsInTheColoursOfTheirValues) {
   EXPECT_THAT(svg, HasSubstr("a &lt; b"));
 }
 
+TEST(HeatMap, DrawsPaleWhatIsKnownAtSecondHand) {
+  HeatMap map = two_by_two();
+  map.cells[1].pale = true;
+  EXPECT_THAT(heat_map(map), HasSubstr("fill=\"#fde725\" fill-opacity=\"0.5\"><title>3 of 3</title>"));
+  EXPECT_THAT(heat_map(map), HasSubstr("fill=\"#440154\"><title>none of 3</title>"));
+}
+
 // The script of a page draws every figure of the class "plot" from JSON, which a map does not have.
 TEST(HeatMap, IsNoPlotForThePagesScript) {
   EXPECT_EQ(heat_map(two_by_two()).find("class=\"plot"), std::string::npos);
