@@ -81,7 +81,7 @@ SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, cons
 }
 
 void tell(const SweepAnswers& answers, bool histories, const CommonOptions& options, Console& console) {
-  if (const auto inferred = answers.statuses.find("inferred"); inferred != answers.statuses.end())
+  if (answers.inferred() > 0)
     console.say(fmt::format("{} of {} cases were run, the others are inferred", answers.finished, answers.cases));
   for (const FieldAnswer& f : answers.fields) {
     if (f.count == 0) continue;

@@ -108,11 +108,11 @@ void maps(ReportPage& page, const SweepStudy& study, const SweepAnswers& answers
   if (answers.maps.empty()) return;
   page.heading("Maps");
   page.paragraph("A cell holds all cases there, whatever the other variables are; point at one for its numbers.");
-  if (const auto inferred = answers.statuses.find("inferred"); inferred != answers.statuses.end()) {
+  if (answers.inferred() > 0) {
     page.paragraph(fmt::format(
         "The grid is refined where {} changes: {} cases (pale) lie between others that agree, were not run, and are "
         "taken to agree with these. A change that no corner of a first cell shows is not seen.",
-        study.sweep().collect[study.sweep().refine->field].name, inferred->second));
+        study.sweep().collect[study.sweep().refine->field].name, answers.inferred()));
   }
   for (const MapAnswer& m : answers.maps) {
     HeatMap map{m.share ? "share of cases with " + m.title : "mean of " + m.title, m.x, m.y, m.x_edges, m.y_edges, {}};

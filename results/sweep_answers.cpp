@@ -27,11 +27,9 @@ constexpr std::uint64_t scatter_points = 1000;
 constexpr std::size_t map_bins = 12;
 constexpr std::size_t worst_of_each = 5;
 
-constexpr const char* inferred_status = "inferred";
-
 /// A case that was not run: the field by which the grid is refined, or why its neighbours have none.
 CaseRecord inferred_record(const SweepStudy& study, const study::Seen& seen) {
-  CaseRecord record{inferred_status, "", 0.0, {}, {}};
+  CaseRecord record{CaseRecord::inferred_status, "", 0.0, {}, {}};
   const json value = seen.word.empty() ? json(seen.number) : json::parse(seen.word, nullptr, false);
   if (value.is_discarded()) {
     record.reason = "around it: " + seen.word;
@@ -188,7 +186,7 @@ void draw(const SweepStudy& study, const SweepCases& cases, const std::vector<st
       MapAnswer& map = answers.maps[m];
       const std::size_t cell = cell_of(map.x_edges, *x) + (map.x_edges.size() - 1) * cell_of(map.y_edges, *y);
       ++map.count[cell];
-      map.inferred[cell] += record.status == inferred_status ? 1 : 0;
+      map.inferred[cell] += record.inferred() ? 1 : 0;
       map.hits[cell] += *value > 0.5 ? 1 : 0;
       map.sum[cell] += *value;
     }
@@ -210,6 +208,11 @@ double FieldAnswer::quantile(double p) const {
   const auto low = static_cast<std::size_t>(at);
   const std::size_t high = std::min(low + 1, sample.size() - 1);
   return sample[low] + (at - static_cast<double>(low)) * (sample[high] - sample[low]);
+}
+
+std::uint64_t SweepAnswers::inferred() const {
+  const auto found = statuses.find(CaseRecord::inferred_status);
+  return found == statuses.end() ? 0 : found->second;
 }
 
 std::optional<double> shown_number(const study::Variable& variable, double value) {
@@ -245,12 +248,11 @@ SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
   const std::uint64_t every = std::max<std::uint64_t>(1, cases.count / FieldAnswer::sample_limit);
   std::vector<double> squares(answers.fields.size());
   for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
-    const bool inferred = record.status == inferred_status;
-    answers.finished += inferred ? 0 : 1;
+    answers.finished += record.inferred() ? 0 : 1;
     ++answers.statuses[record.status];
     answers.seconds += record.seconds;
     constexpr std::size_t most_reasons = 100;
-    if (!record.done() && !inferred &&
+    if (!record.done() && !record.inferred() &&
         (answers.reasons.size() < most_reasons || answers.reasons.contains(record.reason)))
       ++answers.reasons[record.reason];
     const std::vector<double> values = values_of_case(study, index, record);
@@ -291,7 +293,8 @@ SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
     }
     for (std::size_t w = 0; w < worst.size(); ++w) {
       const std::optional<double> value = record.number(worst_field[w]);
-      if (value && !inferred && !record.fields[worst_field[w]].is_boolean()) worst[w].add(index, *value, values);
+      if (value && !record.inferred() && !record.fields[worst_field[w]].is_boolean())
+        worst[w].add(index, *value, values);
     }
   });
   for (std::size_t f = 0; f < answers.fields.size(); ++f) {

@@ -89,6 +89,8 @@ struct SweepAnswers {
   std::vector<MapAnswer> maps;
   std::vector<ScatterAnswer> scatters;
   std::optional<SubsetAnswer> subset;
+
+  [[nodiscard]] std::uint64_t inferred() const;  ///< cases of a refined grid that were not run
 };
 
 /// Number of a variable in a case, in the unit of its key, as it stands in tables: levels that are texts have none.

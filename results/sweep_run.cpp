@@ -34,14 +34,7 @@ class SweepRun {
   /// Cases of a design. Throws what ends all.
   void design() {
     begin();
-    const std::uint64_t count = study_.count();
-    study::Scheduler scheduler({.count = count, .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                               [this](std::uint64_t k) { return finished(k); });
-    total_ = count;
-    study::Dispatcher dispatcher(
-        std::move(scheduler), [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
-    run(
-        dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
+    run_numbered(study_.count(), [](std::uint64_t) { return true; });
   }
 
   /// Cases of a refined grid, of which the next ones depend on the last. True when it came to its end.
@@ -49,13 +42,7 @@ class SweepRun {
     begin();
     while (!grid.finished() && !watch_.stopped()) {
       const std::vector<std::uint64_t>& asked = grid.next();
-      total_ = grid.told() + asked.size();
-      study::Dispatcher dispatcher(
-          study::Scheduler({.count = grid.points(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                           [&](std::uint64_t k) { return !std::ranges::binary_search(asked, k) || finished(k); }),
-          [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
-      run(
-          dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
+      run_numbered(grid.told() + asked.size(), [&](std::uint64_t k) { return std::ranges::binary_search(asked, k); });
       if (watch_.stopped()) return false;
       std::vector<study::Seen> seen;
       for (const std::uint64_t index : asked) {
@@ -74,7 +61,7 @@ class SweepRun {
     while (!simulation.finished() && !watch_.stopped()) {
       const std::uint64_t base = simulation.told();
       const std::vector<std::vector<double>>& asked = simulation.next();
-      total_ = base + asked.size();
+      expect(base + asked.size());
       const auto values = [&](std::uint64_t k) { return study_.sweep().design.values_of_scores(asked[k]); };
       study::Dispatcher dispatcher(
           study::Scheduler({.count = asked.size(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
@@ -115,6 +102,21 @@ class SweepRun {
     before_ = journal_.finished() - again_.size();
     began_ = Clock::now();
     if (const auto line = before_ > 0 ? journal_.result(0) : std::nullopt; line) any_done_ = true;
+  }
+
+  /// How many cases there are as far as is known; where one of an earlier round is run again the journal has more.
+  void expect(std::uint64_t cases) { total_ = std::max(cases, journal_.finished()); }
+
+  /// Those of the design's cases that are wanted; `cases`: there are with all before.
+  template <class Wanted>
+  void run_numbered(std::uint64_t cases, const Wanted& wanted) {
+    expect(cases);
+    study::Dispatcher dispatcher(
+        study::Scheduler({.count = study_.count(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+                         [&](std::uint64_t k) { return !wanted(k) || finished(k); }),
+        [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
+    run(
+        dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
   }
 
   template <class Values, class Number>

@@ -19,6 +19,9 @@ struct CaseRecord {
   std::vector<double> values;  ///< of the variables, where the design does not say them
 
   [[nodiscard]] bool done() const noexcept { return status == "done"; }  ///< the case has a result
+  /// It was not run, but lies between others that agree; in no journal.
+  [[nodiscard]] bool inferred() const noexcept { return status == inferred_status; }
+  static constexpr const char* inferred_status = "inferred";  ///< the status of such a case
   /// A field as a number, a boolean as 0 or 1; nothing where it is neither.
   [[nodiscard]] std::optional<double> number(std::size_t field) const;
 };

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <complex>
 #include <random>
+#include <utility>
 
 namespace snare::numerics {
 namespace {
 
+// Entries of order one, a few of a side: what is left are roundings, times the condition where there is one.
 Eigen::MatrixXd random_matrix(int rows, int columns, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);

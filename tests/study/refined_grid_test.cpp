@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace snare::study {
