@@ -43,7 +43,7 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
       break;
     }
   }
-  const auto predictions = model.predict_many(points, data.records);
+  const auto predictions = model.predict_many(points, data.records, data.readings);
   const Eigen::VectorXd here = data.signal(fit.predictions);
   const double size = std::max(fit.residual.norm(), 1e-12 * here.norm());
   for (std::size_t t = 0; t < trials.size(); ++t) {

@@ -29,11 +29,13 @@ std::vector<ChannelError> errors_of(const MotionModel& model, const std::vector<
         errors.push_back({channel.sensor, model.unit(channel), channel.fitted, 0.0, 0.0, 0.0,
                           reading_sigma(model.records(), channel.sensor)});
       Sums& s = sums[channel.sensor];
-      s.squares += (channel.values - predictions[k].channels[c]).squaredNorm();
-      s.measured += channel.values.squaredNorm();
-      s.count += static_cast<double>(channel.values.size());
-      s.low = std::min(s.low, channel.values.minCoeff());
-      s.high = std::max(s.high, channel.values.maxCoeff());
+      const Eigen::VectorXd& predicted = predictions[k].channels[c];
+      const auto measured = channel.values.head(predicted.size());
+      s.squares += (measured - predicted).squaredNorm();
+      s.measured += measured.squaredNorm();
+      s.count += static_cast<double>(measured.size());
+      s.low = std::min(s.low, measured.minCoeff());
+      s.high = std::max(s.high, measured.maxCoeff());
     }
   }
   for (ChannelError& e : errors) {

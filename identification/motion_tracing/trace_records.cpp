@@ -436,13 +436,14 @@ class Tracer {
           return there && there->report.usable() ? there->residual : Eigen::VectorXd();
         };
       }
-      RoundResult round = motion_round(input);
-      if (!round.added && !stop_ && out_of_step(data_, current_)) {
+      RoundResult round;
+      if (out_of_step(data_, current_)) {
         // From the declared numbers: those fitted have gone astray with the records.
         std::vector<MotionSetting> start = current_.settings;
         for (MotionSetting& s : start) s.value = s.number.declared;
-        if (RoundResult begun = round_from_beginnings(input, start); begun.added) round = std::move(begun);
+        round = round_from_beginnings(input, start);
       }
+      if (!round.added && !stop_) round = motion_round(input);
       if (stop_) return;
       trace_.rounds.push_back(round.round);
       if (!round.added) break;

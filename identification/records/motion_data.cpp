@@ -57,11 +57,14 @@ MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& rec
 std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen::Index fewest) {
   MotionData part = data;
   part.rows = 0;
+  part.readings.assign(data.records.size(), 1);
   for (ResidualPiece& piece : part.pieces) {
     piece.begin = part.rows;
     piece.size = static_cast<Eigen::Index>(std::ceil(share * static_cast<double>(piece.size)));
     if (piece.size < fewest) return std::nullopt;
     part.rows += piece.size;
+    const auto at = std::find(data.records.begin(), data.records.end(), piece.record) - data.records.begin();
+    part.readings[static_cast<std::size_t>(at)] = piece.size;
   }
   return part;
 }

@@ -27,6 +27,7 @@ struct ResidualPiece {
 struct MotionData {
   const RecordSet* set = nullptr;
   std::vector<std::size_t> records;
+  std::vector<Eigen::Index> readings;  ///< of each record from its first on; empty: all
   std::vector<ResidualPiece> pieces;
   Eigen::Index rows = 0;
 

@@ -37,13 +37,13 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
   std::vector<RecordPrediction> last;
   Eigen::VectorXd last_at;
   problem.residual = [&](const Eigen::VectorXd& x) {
-    last = model.predict(together(at(x), options.fixed), data.records);
+    last = model.predict(together(at(x), options.fixed), data.records, data.readings);
     last_at = x;
     return data.residual(last);
   };
   problem.residual_jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
     const std::vector<MotionSetting> settings = at(x);
-    if (last_at != x) last = model.predict(together(settings, options.fixed), data.records);
+    if (last_at != x) last = model.predict(together(settings, options.fixed), data.records, data.readings);
     return -signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
   };
   problem.progress = [&](int iteration, double chi2) {
@@ -84,7 +84,7 @@ Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& d
       only.push_back(n.record);
     }
   }
-  const auto predictions = model.predict_many(points, data.records, &base, only);
+  const auto predictions = model.predict_many(points, data.records, data.readings, &base, only);
   const Eigen::VectorXd here = data.signal(base);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(data.rows, static_cast<Eigen::Index>(settings.size()));
   std::size_t next = 0;
@@ -118,7 +118,7 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
       gauss_newton(model, data, options, fit);
   }
   fit.simulations = model.simulations() - before;
-  fit.predictions = model.predict(together(fit.settings, options.fixed), data.records);
+  fit.predictions = model.predict(together(fit.settings, options.fixed), data.records, data.readings);
   fit.residual = data.residual(fit.predictions);
   std::string why;
   for (const RecordPrediction& p : fit.predictions)

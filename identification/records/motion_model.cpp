@@ -29,9 +29,10 @@ const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
   return s.motions;
 }
 
-/// Long enough for a record, whatever the scenario's own duration.
-double duration_for(const MotionRecord& record, double interval) {
-  return (std::ceil(record.times[record.times.size() - 1] / interval) + 1.0) * interval;
+/// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs both ways wants all of them.
+double duration_for(const MotionRecord& record, Eigen::Index readings, double interval) {
+  const Eigen::Index last = (record.filter.cutoff > 0.0 ? record.times.size() : readings) - 1;
+  return (std::ceil(record.times[last] / interval) + 1.0) * interval;
 }
 
 }  // namespace
@@ -149,8 +150,8 @@ std::string MotionModel::unit(const RecordChannel& channel) const {
   return column == columns_.end() ? "" : unit_of_key(column->second);
 }
 
-std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings,
-                                                      std::size_t record) const {
+std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
+                                                      Eigen::Index readings) const {
   std::vector<base::Override> overrides = set_.set;
   const MotionRecord& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
@@ -166,7 +167,7 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
     overrides[at].value = exact_text(std::stod(overrides[at].value) + other);
   }
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
-  overrides.push_back({"duration_s", exact_text(duration_for(r, interval))});
+  overrides.push_back({"duration_s", exact_text(duration_for(r, readings, interval))});
   return overrides;
 }
 
@@ -210,15 +211,16 @@ std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Overri
   return run;
 }
 
-RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& settings, std::size_t record) const {
+RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& settings, std::size_t record,
+                                       Eigen::Index readings) const {
   RecordPrediction prediction;
   try {
-    const std::shared_ptr<const SensorRun> run = this->run(overrides_of(settings, record), record, prediction.failure);
+    const std::shared_ptr<const SensorRun> run = this->run(overrides_of(settings, record, readings), record, prediction.failure);
     if (run == nullptr) return prediction;
     SignalChanges changes;
     for (const MotionSetting& s : settings)
       if (s.number.signal && (!s.number.record || *s.number.record == record)) s.number.signal(changes, s.value);
-    prediction.channels = signals_at(*run, set_.records[record], columns_, changes);
+    prediction.channels = signals_at(*run, set_.records[record], readings, columns_, changes);
   } catch (const base::InputError& error) {
     prediction.failure = error.problems().front().message();
   }
@@ -228,13 +230,14 @@ RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& setting
 }
 
 std::vector<RecordPrediction> MotionModel::predict(const std::vector<MotionSetting>& settings,
-                                                   const std::vector<std::size_t>& records) const {
-  return predict_many({settings}, records).front();
+                                                   const std::vector<std::size_t>& records,
+                                                   const std::vector<Eigen::Index>& readings) const {
+  return predict_many({settings}, records, readings).front();
 }
 
 std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
     const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
-    const std::vector<RecordPrediction>* base, const std::vector<std::optional<std::size_t>>& only) const {
+    const std::vector<Eigen::Index>& readings, const std::vector<RecordPrediction>* base, const std::vector<std::optional<std::size_t>>& only) const {
   std::vector<std::vector<RecordPrediction>> all(settings.size(), std::vector<RecordPrediction>(records.size()));
   struct Task {
     std::size_t setting, record;
@@ -249,7 +252,9 @@ std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
     }
   }
   base::parallel_for(tasks.size(), [&](std::size_t t) {
-    all[tasks[t].setting][tasks[t].record] = simulate(settings[tasks[t].setting], records[tasks[t].record]);
+    const auto [s, r] = tasks[t];
+    const Eigen::Index count = readings.empty() ? set_.records[records[r]].times.size() : readings[r];
+    all[s][r] = simulate(settings[s], records[r], count);
   });
   bound_trials();
   return all;
@@ -267,7 +272,7 @@ void MotionModel::bound_trials() const {
 
 void MotionModel::look_at_joints() {
   const std::size_t first = set_.used(false).front();
-  const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first));
+  const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first, set_.records[first].times.size()));
   const scenario::NamedMotion& run = run_of(read, set_).runs.front();
   slowest_ = slowest_mode(run.motion);
   coupling::MotionOptions options = run.options;

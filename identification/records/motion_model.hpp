@@ -22,7 +22,7 @@ namespace snare::identification {
 
 struct SensorRun;
 
-/// What the scenario says of the channels of one record, at the record's times.
+/// What the scenario says of the channels of one record, at the record's times, or at the first of them.
 struct RecordPrediction {
   std::vector<Eigen::VectorXd> channels;
   std::string failure;  ///< why there is none; empty: there is
@@ -60,14 +60,16 @@ class MotionModel {
   /// Full column of a channel's sensor.
   [[nodiscard]] const std::string& column(const RecordChannel& channel) const { return columns_.at(channel.sensor); }
 
-  /// Predictions of these records. In parallel, the same for any number of threads.
+  /// Predictions of these records, of the first `readings` of each (empty: of all), beyond which nothing is simulated. In parallel, the same for any
+  /// number of threads.
   [[nodiscard]] std::vector<RecordPrediction> predict(const std::vector<MotionSetting>& settings,
-                                                      const std::vector<std::size_t>& records) const;
+                                                      const std::vector<std::size_t>& records,
+                                                      const std::vector<Eigen::Index>& readings = {}) const;
   /// The same for several settings at once: [setting][record]. Numbers of one record cost no simulation of the others: `base` are the predictions
   /// at settings that differ in that number only, and are taken over where `only` says so.
   [[nodiscard]] std::vector<std::vector<RecordPrediction>> predict_many(
       const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
-      const std::vector<RecordPrediction>* base = nullptr,
+      const std::vector<Eigen::Index>& readings = {}, const std::vector<RecordPrediction>* base = nullptr,
       const std::vector<std::optional<std::size_t>>& only = {}) const;
 
   [[nodiscard]] long simulations() const { return simulations_; }  ///< runs so far
@@ -80,9 +82,10 @@ class MotionModel {
   /// A run came to its end in so many steps.
   void took(long steps) const;
   void bound_trials() const;
-  [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record) const;
-  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings,
-                                                         std::size_t record) const;
+  [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record,
+                                          Eigen::Index readings) const;
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
+                                                         Eigen::Index readings) const;
   void look_at_joints();
   /// Zero or next to it for a number > 0 whose reader takes none below.
   [[nodiscard]] double lower_bound(const FreeNumber& number) const;

@@ -44,7 +44,7 @@ SensorRun read_sensors_of(const std::vector<scenario::Sensor>& sensors, const co
 }
 
 std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
-                                        const std::map<std::string, std::string>& columns,
+                                        Eigen::Index count, const std::map<std::string, std::string>& columns,
                                         const SignalChanges& changes) {
   std::vector<Eigen::VectorXd> result(record.channels.size());
   for (std::size_t s = 0; s < run.readings.size(); ++s) {
@@ -67,7 +67,7 @@ std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord
       const std::vector<double> values =
           lagged(readings.times, readings.values[static_cast<std::size_t>(component - names.begin())], change.lag);
       const RecordFilter& filter = record.filter;
-      const Eigen::VectorXd& times = filter.cutoff > 0.0 ? filter.times : record.times;
+      const Eigen::VectorXd times = filter.cutoff > 0.0 ? filter.times : record.times.head(count);
       result[c].resize(times.size());
       for (Eigen::Index i = 0; i < times.size(); ++i) {
         const double t = times[i];
@@ -76,7 +76,7 @@ std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord
       }
       if (!(filter.cutoff > 0.0)) continue;
       const double interval = (times[times.size() - 1] - times[0]) / static_cast<double>(times.size() - 1);
-      result[c] = Eigen::VectorXd(low_passed(result[c], interval, filter.cutoff)(filter.kept));
+      result[c] = Eigen::VectorXd(low_passed(result[c], interval, filter.cutoff)(filter.kept)).head(count);
     }
   }
   return result;
