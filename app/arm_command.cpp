@@ -6,6 +6,7 @@
 #include "base/units.hpp"
 #include "multibody/arm/arm_file.hpp"
 #include "results/in_mm.hpp"
+#include "scenario/hold.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -26,8 +27,8 @@ constexpr const char* joint_kinds[] = {"revolute", "prismatic", "free"};  // nam
 
 /// Angles of the elastic joints [rad].
 Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescription& arm) {
-  const int count = arm.arm.motors();
-  if (pose.empty()) return Eigen::VectorXd::Zero(count);
+  const int count = static_cast<int>(arm.joints.size());
+  if (pose.empty()) return Eigen::VectorXd::Zero(arm.arm.motors());
   for (const multibody::ArmPose& known : arm.poses) {
     if (known.name == pose) return known.angles;
   }
@@ -50,7 +51,7 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
                             fmt::format("must be {} angles in degrees separated by commas{}", count,
                                         names.empty() ? "" : ", or one of: " + names)});
   }
-  return angles;
+  return arm.with_flexures(angles);
 }
 
 nlohmann::json frequencies(const multibody::ArmDescription& arm, const Eigen::VectorXd& q,
@@ -86,7 +87,7 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
     const multibody::TreeBody& body = tree.body(joint.body);
     result["joints"].push_back(
         {{"joint", joint.name},
-         {"link", body.name},
+         {"link", joint.link},
          {"angle_deg", results::in_degrees(angles[k])},
          {"link_mass_kg", body.inertia.mass},
          {"motor_inertia_kg_m2", joint.motor_inertia},
@@ -95,7 +96,8 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
          {"drive", drive_modes[static_cast<std::size_t>(arm.drives[static_cast<std::size_t>(k)].mode)]}});
   }
   const std::vector<multibody::Drive> locked(arm.drives.size(), multibody::Drive::locked());
-  const std::vector<multibody::Drive> limp(arm.drives.size(), multibody::Drive::limp());
+  std::vector<multibody::Drive> limp = arm.drives;
+  scenario::hold(scenario::Hold::limp, angles, arm.arm, limp);
   result["frequencies_locked_Hz"] = frequencies(arm, q, locked);
   result["frequencies_driven_Hz"] = frequencies(arm, q, arm.drives);
   result["frequencies_limp_Hz"] = frequencies(arm, q, limp);

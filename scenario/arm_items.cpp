@@ -55,9 +55,8 @@ Stand read_stand(const TomlTable& table) {
   return stand;
 }
 
-/// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors. One a joint.
-void start_motion(const TomlTable& table, coupling::MotionArm& arm) {
-  const auto count = static_cast<std::size_t>(arm.arm.motors());
+/// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors. One a joint, of which there are `count`.
+void start_motion(const TomlTable& table, std::size_t count, coupling::MotionArm& arm) {
   const auto read = [&](const char* key, double most) {
     const std::vector<double> none;
     return table.has(key) ? table.numbers(key, count, count, Range::from(-most, most), base::degree) : none;
@@ -85,14 +84,15 @@ std::optional<Aim> read_aim(const TomlTable& table, const multibody::ArmDescript
   Aim aim{table, read_place(table, "reach"), {}, {}};
   const std::vector<std::string> held = table.texts_or_none("held_joints");
   std::string known;
-  for (const multibody::ElasticJoint& j : described.arm.joints)
+  for (const multibody::RobotJoint& j : described.joints)
     known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", j.name);
   for (std::size_t k = 0; k < held.size(); ++k) {
-    const auto of_name = [&](const multibody::ElasticJoint& j) { return j.name == held[k]; };
-    if (std::ranges::none_of(described.arm.joints, of_name))
+    const auto of_name = [&](const multibody::RobotJoint& j) { return j.name == held[k]; };
+    if (std::ranges::none_of(described.joints, of_name))
       table.fail_element("held_joints", k, "must be a joint of the arm: " + known);
   }
-  for (int j = 0; j < described.arm.motors(); ++j) {
+  const int motors = static_cast<int>(described.joints.size());
+  for (int j = 0; j < motors; ++j) {
     const multibody::ElasticJoint& joint = described.arm.joints[at(j)];
     if (std::ranges::find(held, joint.name) != held.end()) continue;
     aim.joints.push_back({joint.body, described.joints[at(j)].lower, described.joints[at(j)].upper});
@@ -100,7 +100,6 @@ std::optional<Aim> read_aim(const TomlTable& table, const multibody::ArmDescript
   }
   constexpr std::size_t freedoms = 6;
   if (aim.joints.size() == freedoms) return aim;
-  const int motors = described.arm.motors();
   table.fail(motors > static_cast<int>(freedoms) ? "held_joints" : "reach_frame",
              motors > static_cast<int>(freedoms)
                  ? fmt::format("must name {} of the {} joints, which stay as the pose has them: {}",
@@ -189,12 +188,13 @@ void read_arms(Composition& c) {
     c.input += described->input;
     arm.arm = described->arm;
     arm.drives = described->drives;
-    hold(how, angles, arm.drives);
+    hold(how, angles, arm.arm, arm.drives);
     arm.start = multibody::resting(arm.arm, described->coordinates(angles));
-    start_motion(table, arm);
+    start_motion(table, described->joints.size(), arm);
     const std::optional<Aim> aim = read_aim(table, *described);
     for (int j = 0; j < arm.arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.arm.joints[at(j)];
+      if (joint.flexure) continue;  // nothing drives it
       c.joints[name + "::" + joint.name] = {index, j,
                                             arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic};
     }

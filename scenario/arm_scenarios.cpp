@@ -54,7 +54,7 @@ multibody::ArmScenario commanded_step(const multibody::ArmDescription& descripti
 multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
                                    Hold how, const Eigen::Vector3d& impulse, double duration, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
-  hold(how, angles, scenario.drives);
+  hold(how, angles, description.arm, scenario.drives);
   // The area of half a sine is 2/pi of its peak times its duration.
   multibody::TimedLoad load;
   load.frame = description.tip;
@@ -68,6 +68,7 @@ multibody::ArmScenario joint_motion(const multibody::ArmDescription& description
                                     const Eigen::VectorXd& to, double duration, double end) {
   multibody::ArmScenario scenario = standing(description, from, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
+    if (description.arm.joints[at(k)].flexure) continue;
     multibody::Drive& drive = scenario.drives[at(k)];
     if (drive.mode != multibody::DriveMode::servo) throw std::invalid_argument("a joint that moves needs a servo");
     drive.course = {from[k], to[k], 0.0, duration};

@@ -43,15 +43,17 @@ void read_bodies(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("bodies")) {
     const int index = static_cast<int>(c.motion.bodies.size());
     const std::string name = c.body_names.take(table);
-    c.motion.bodies.push_back(read_body(table));
+    DeclaredBody declared = read_body(table);
+    c.motion.bodies.push_back(std::move(declared.body));
     c.motion.bodies.back().name = name;
-    c.placement.stand(table, "frame", name, [&c, index, name](const PlacedFrame& on, Placement& placement) {
+    const Pose X_CB{Eigen::Matrix3d::Identity(), -declared.com};  // of the body's frame in that of its centre of mass
+    c.placement.stand(table, "frame", name, [&c, index, name, X_CB](const PlacedFrame& on, Placement& placement) {
       multibody::RigidBodyState& start = c.motion.bodies[at(index)].start;
-      const Pose X_WB = on.X_WF * pose_of(start);
-      start.position = X_WB.p;
-      start.orientation = Eigen::Quaterniond(X_WB.R);
+      const Pose X_WC = on.X_WF * pose_of(start);
+      start.position = X_WC.p;
+      start.orientation = Eigen::Quaterniond(X_WC.R);
       start.velocity = on.X_WF.R * start.velocity;
-      placement.add(name, {{MotionCarrier::Kind::body, index, 0}, X_WB});
+      placement.add(name, {{MotionCarrier::Kind::body, index, 0}, X_WC * X_CB});
     });
   }
 }

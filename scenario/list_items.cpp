@@ -158,26 +158,30 @@ coupling::MotionWire at_rest(DeclaredWire w, const Eigen::Matrix3Xd* shape) {
   return w.wire;
 }
 
-coupling::MotionBody read_body(const TomlTable& table) {
-  coupling::MotionBody body;
+DeclaredBody read_body(const TomlTable& table) {
+  DeclaredBody declared;
+  coupling::MotionBody& body = declared.body;
   body.driven = table.boolean_or("driven", false);
   if (body.driven) {
-    for (const char* key : {"mass_kg", "inertia_kg_m2", "spin_rad_s", "drag_Ns_m", "drag_Nms_rad", "force_N"}) {
+    for (const char* key :
+         {"mass_kg", "inertia_kg_m2", "com_mm", "spin_rad_s", "drag_Ns_m", "drag_Nms_rad", "force_N"}) {
       if (table.has(key)) table.fail(key, "a driven body moves at a constant velocity_m_s whatever it meets");
     }
     static_cast<void>(table.has("robot"));  // of a composed scenario, which reads it behind the contacts
   } else {
     body.properties = read_body_properties(table);
     body.start.spin = read_vector_or_zero(table, "spin_rad_s", Range::from(-1e3, 1e3), 1.0);
+    declared.com = read_vector_or_zero(table, "com_mm", Range::from(-far, far), mm);
     body.linear_drag = table.number_or("drag_Ns_m", 0.0, Range::from(0.0, 1e6));
     body.angular_drag = table.number_or("drag_Nms_rad", 0.0, Range::from(0.0, 1e6));
     body.force = read_vector_or_zero(table, "force_N", Range::from(-1e9, 1e9), 1.0);
   }
   const multibody::Pose X = read_pose_in_frame(table);
-  body.start.position = X.p;
+  body.start.position = X.p + X.R * declared.com;
   body.start.orientation = Eigen::Quaterniond(X.R);
-  body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0);
-  return body;
+  body.start.velocity = read_vector_or_zero(table, "velocity_m_s", Range::from(-1e3, 1e3), 1.0) +
+                        X.R * body.start.spin.cross(declared.com);
+  return declared;
 }
 
 coupling::MotionContact read_contact_shape(const TomlTable& table, const std::filesystem::path& folder,

@@ -53,8 +53,13 @@ void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string
 /// to y, (3, vertices) [m]; none: it is looked for.
 [[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire, const Eigen::Matrix3Xd* shape = nullptr);
 
+/// A body, which moves by its centre of mass, and where that is in the frame that has the body's name [m].
+struct DeclaredBody {
+  coupling::MotionBody body;
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();
+};
 /// A body but for the frame on which its place counts.
-[[nodiscard]] coupling::MotionBody read_body(const base::TomlTable& table);
+[[nodiscard]] DeclaredBody read_body(const base::TomlTable& table);
 
 /// A shape with friction and foundation, in the frame on which it is, on no body and no wire yet.
 [[nodiscard]] coupling::MotionContact read_contact_shape(const base::TomlTable& table,

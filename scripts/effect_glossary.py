@@ -110,7 +110,10 @@ PUSH = {
 # The same of records in time. What has the sign of a number of the scenario has its axes.
 MOTION = {
     "body_inertia": ("all three moments by one factor; larger: it turns less easily", body(line([(100 + 38 * math.cos(a / 10), 53 - 38 * math.sin(a / 10)) for a in range(-6, 7)], RED, width=1.5))),
+    "body_centre_of_mass": ("by axis of the body's frame", body('<circle cx="112" cy="60" r="3" fill="%s"/>' % BLUE, line([(100, 53), (112, 60)], GREY, "4 3"))),
     "body_mass": ("larger: it is accelerated less", body(word(91, 57, "m"), arrow(30, 53, 72, 53))),
+    "body_start_attitude": ("its rotation vector, by axis of the frame on which it is placed", body(line([(88, 24), (134, 42), (116, 88), (70, 70), (88, 24)]), word(128, 20, "t = 0"))),
+    "body_start_position": ("by axis of the frame on which it is placed", body(line([(90, 28), (140, 28), (140, 64), (90, 64), (90, 28)]), word(146, 20, "t = 0"))),
     "body_start_spin": ("by axis of the body's frame, right-handed positive", body(line([(100 + 38 * math.cos(a / 10), 53 - 38 * math.sin(a / 10)) for a in range(0, 14)], RED, width=1.5), word(128, 20, "t = 0"))),
     "body_start_velocity": ("by axis of the world", body(arrow(127, 53, 175, 53), word(140, 45, "t = 0"))),
     "bushing_damping": ("larger: it takes more energy", plot([wave, lambda t: 0.5 + 0.3 * math.exp(-3 * t) * math.sin(7 * t)], "time", "shift")),
@@ -126,7 +129,9 @@ MOTION = {
     "joint_stiffness": ("larger: less deflection at the same torque", signed([lambda t: 0.5 * t, lambda t: 0.9 * t], "deflection", "torque")),
     "joint_viscous_asymmetry": ("positive: viscous friction is larger forward than backward", signed([lambda t: 0.5 * t, lambda t: (0.8 if t > 0 else 0.2) * t], "speed", "resistance")),
     "joint_viscous_friction": ("0 or more; it resists the motion either way", signed([lambda t: 0.3 * t, lambda t: 0.9 * t], "speed", "resistance")),
+    "link_flexibility": ("angle by which its end turns under a moment, 0 is rigid; larger: it bends more", [clamp(25), line([(25, 75), (175, 75)], GREY, "4 3"), line([(25 + 150 * t / 20, 75 - 30 * (t / 20) ** 2 * (1.5 - 0.5 * t / 20)) for t in range(21)]), arrow(175, 92, 175, 52)]),
     "motor_inertia": ("on the side of the output; larger: accelerated less", body(line([(100 + 14 * math.cos(a / 5), 53 - 14 * math.sin(a / 5)) for a in range(32)], BLUE), arrow(60, 25, 82, 40))),
+    "record_clock": ("positive: all readings come later than what they tell of", plot([wave, lambda t: wave(max(0, t - 0.12))], "time", "all readings")),
     "ring_delay": ("positive: the phase begins later than declared", plot([lambda t: min(1, max(0, 3 * (t - 0.2))) * 0.8, lambda t: min(1, max(0, 3 * (t - 0.4))) * 0.8], "time", "angle")),
     "ring_rate": ("larger: the ring closes faster", plot([lambda t: min(0.8, 1.1 * t), lambda t: min(0.8, 1.9 * t)], "time", "angle")),
     "sensor_bias": ("positive: all readings are too large by it", plot([wave, lambda t: wave(t) + 0.15], "time", "reading")),
@@ -137,6 +142,7 @@ MOTION = {
     "servo_gain": ("larger: the servo holds stiffer", signed([lambda t: 0.5 * t, lambda t: 0.9 * t], "error", "torque")),
     "wire_axial_stiffness": ("larger: less stretch at the same tension", plot(STIFFER, "stretch", "tension")),
     "wire_bending_stiffness": ("larger: more moment at the same curvature", plot(STIFFER, "curvature", "moment")),
+    "wire_damping": ("time over which the material gives way; larger: waves die faster", plot([wave, lambda t: 0.5 + 0.3 * math.exp(-3 * t) * math.sin(7 * t)], "time", "shift")),
     "wire_length": ("larger: more slack", bench(wire(height=45, colour=GREY, dash="4 3"))),
     "wire_modulus": ("larger: both stiffnesses grow by one factor", plot(STIFFER, "strain", "stress")),
 }

@@ -1,6 +1,7 @@
 #include "app/report/record_report.hpp"
 
 #include "app/report/report_page.hpp"
+#include "identification/records/amplitude_spectrum.hpp"
 #include "results/version.hpp"
 
 #include <fmt/format.h>
@@ -116,13 +117,21 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
         if (e.sensor == record.channels[c].sensor) unit = e.unit;
       PlotSpecification plot{record.channels[c].sensor, {"time", "s"}, {record.channels[c].sensor, unit}};
       PlotSpecification remainder{"measured less simulated", {"time", "s"}, {"difference", unit}};
+      PlotSpecification over_value{
+          "measured less simulated, over what is simulated", {record.channels[c].sensor, unit}, {"difference", unit}};
+      PlotSpecification spectrum{"measured less simulated, by frequency", {"frequency", "Hz"}, {"amplitude", unit}};
       plot.width = remainder.width = PlotWidth::full;
       plot.curves.push_back(curve_of("measured", record.times, measured, CurveStyle::points, 0));
       const auto add = [&](const char* name, const MotionStage& stage, CurveStyle style, int colour) {
         if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return;
         const Eigen::VectorXd& y = stage.predictions[r].channels[c];
         plot.curves.push_back(curve_of(name, record.times, y, style, colour));
-        remainder.curves.push_back(curve_of(name, record.times, measured - y, style, colour));
+        const Eigen::VectorXd left = measured - y;
+        remainder.curves.push_back(curve_of(name, record.times, left, style, colour));
+        over_value.curves.push_back(curve_of(name, y, left, CurveStyle::points, colour));
+        const identification::AmplitudeSpectrum s = identification::amplitude_spectrum(record.times, left);
+        if (s.frequencies.size() > 0)
+          spectrum.curves.push_back(curve_of(name, s.frequencies, s.amplitudes, style, colour));
       };
       add("declared", trace.declared, CurveStyle::dashes, 1);
       add("base fit", trace.base, CurveStyle::line, 2);
@@ -130,6 +139,8 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
       if (trace.with_partial) add("with what helps", *trace.with_partial, CurveStyle::line, 3);
       page.line_plot(plot);
       page.line_plot(remainder);
+      page.line_plot(over_value);
+      if (!spectrum.curves.empty()) page.line_plot(spectrum);
     }
   }
 }

@@ -15,25 +15,31 @@ namespace snare::identification {
   EFFECT(joint_damping)              \
   EFFECT(joint_back_drive)           \
   EFFECT(motor_inertia)              \
+  EFFECT(link_flexibility)           \
   EFFECT(servo_gain)                 \
   EFFECT(body_mass)                  \
   EFFECT(wire_length)                \
   EFFECT(wire_axial_stiffness)       \
   EFFECT(wire_bending_stiffness)     \
+  EFFECT(wire_damping)               \
   EFFECT(contact_friction)           \
   EFFECT(wire_modulus)               \
   EFFECT(bushing_stiffness)          \
   EFFECT(bushing_damping)            \
   EFFECT(body_inertia)               \
+  EFFECT(body_centre_of_mass)        \
   EFFECT(body_start_velocity)        \
   EFFECT(body_start_spin)            \
+  EFFECT(body_start_position)        \
+  EFFECT(body_start_attitude)        \
   EFFECT(ring_rate)                  \
   EFFECT(ring_delay)                 \
   EFFECT(sensor_bias)                \
   EFFECT(sensor_gain)                \
   EFFECT(sensor_drift)               \
   EFFECT(sensor_delay)               \
-  EFFECT(sensor_lag)
+  EFFECT(sensor_lag)                 \
+  EFFECT(record_clock)
 
 #define SNARE_DECLARE(name) std::vector<MotionEffect> name##_effects(const MotionModel&);
 SNARE_MOTION_EFFECTS(SNARE_DECLARE)

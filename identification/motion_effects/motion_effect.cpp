@@ -61,6 +61,14 @@ std::vector<MotionEffect> other_number(const MotionModel& model, const std::stri
   return effects;
 }
 
+std::vector<MotionEffect> other_wire_number(const MotionModel& model, const std::string& key,
+                                            const MotionEffect& what) {
+  std::vector<MotionEffect> effects = other_number(model, "wires", key, what);
+  for (MotionEffect& of_snare : other_number(model, "snares", "wire." + key, what))
+    effects.push_back(std::move(of_snare));
+  return effects;
+}
+
 std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
                                              const MotionEffect& what) {
   std::vector<MotionEffect> effects;

@@ -41,6 +41,9 @@ struct JointPlace {
 /// between a fifth and five times what is declared. In a record that declares it otherwise it is another by the same factor.
 [[nodiscard]] std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list,
                                                      const std::string& key, const MotionEffect& what);
+/// The same of a number of every wire, those of snares among them: `wires[NAME].KEY`, `snares[NAME].wire.KEY`.
+[[nodiscard]] std::vector<MotionEffect> other_wire_number(const MotionModel& model, const std::string& key,
+                                                          const MotionEffect& what);
 /// The same of a number of every joint's file.
 [[nodiscard]] std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
                                                            const MotionEffect& what);

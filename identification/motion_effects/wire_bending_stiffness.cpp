@@ -4,11 +4,11 @@ namespace snare::identification {
 
 /// Stiffness of a wire against bending, where it is declared.
 std::vector<MotionEffect> wire_bending_stiffness_effects(const MotionModel& model) {
-  return other_number(model, "wires", "bending_stiffness_Nm2",
-                      {.name = "wire_bending_stiffness",
-                       .channel = "wire",
-                       .meaning = "the wire bends more or less easily",
-                       .independent_check = "bend the wire on two supports"});
+  return other_wire_number(model, "bending_stiffness_Nm2",
+                           {.name = "wire_bending_stiffness",
+                            .channel = "wire",
+                            .meaning = "the wire bends more or less easily",
+                            .independent_check = "bend the wire on two supports"});
 }
 
 }  // namespace snare::identification

@@ -6,11 +6,11 @@ namespace snare::identification {
 std::vector<MotionEffect> wire_length_effects(const MotionModel& model) {
   // Lengths are known to a few per cent; far ones are no wires of the scenario any more.
   std::vector<MotionEffect> effects =
-      other_number(model, "wires", "length_mm",
-                   {.name = "wire_length",
-                    .channel = "wire",
-                    .meaning = "the wire has another length, so more or less slack",
-                    .independent_check = "measure the wire, or the ring's angle at which it gets tight"});
+      other_wire_number(model, "length_mm",
+                        {.name = "wire_length",
+                         .channel = "wire",
+                         .meaning = "the wire has another length, so more or less slack",
+                         .independent_check = "measure the wire, or the ring's angle at which it gets tight"});
   for (MotionEffect& e : effects) {
     MotionNumber& n = e.numbers.front();
     n.scale = 2e-4 * n.declared;

@@ -4,11 +4,11 @@ namespace snare::identification {
 
 /// Modulus of a wire: both its stiffnesses together.
 std::vector<MotionEffect> wire_modulus_effects(const MotionModel& model) {
-  return other_number(model, "wires", "youngs_modulus_GPa",
-                      {.name = "wire_modulus",
-                       .channel = "wire",
-                       .meaning = "the wire's material is stiffer or softer",
-                       .independent_check = "pull the wire straight on a testing machine"});
+  return other_wire_number(model, "youngs_modulus_GPa",
+                           {.name = "wire_modulus",
+                            .channel = "wire",
+                            .meaning = "the wire's material is stiffer or softer",
+                            .independent_check = "pull the wire straight on a testing machine"});
 }
 
 }  // namespace snare::identification

@@ -14,7 +14,21 @@ namespace {
 
 constexpr double most_left = 0.5;  // of the sum of squares of the whole records
 constexpr double shares[] = {0.125, 0.25, 0.5};
+constexpr double round_shares[] = {0.03125, 0.0625, 0.125, 0.25, 0.5};
+constexpr int most_members = 5;  // of a class of the beginnings that are tried on the whole
 constexpr auto fewest = static_cast<Eigen::Index>(fewest_readings);
+
+/// The numbers of a fit with those of an effect as its refit has found them.
+std::vector<MotionSetting> with_candidate(const MotionFit& fit, const std::vector<MotionEffect>& effects,
+                                          const MotionCandidate& c) {
+  std::vector<MotionSetting> settings = fit.settings;
+  for (std::size_t k = 0; k < c.values.size(); ++k) {
+    MotionNumber number = effects[c.score.effect].numbers[c.score.numbers[k]];
+    number.scale = c.score.scale[k];
+    settings.push_back({number, c.values[k]});
+  }
+  return settings;
+}
 
 }  // namespace
 
@@ -39,27 +53,39 @@ MotionFit fit_from_beginnings(const MotionModel& model, const MotionData& data, 
 }
 
 RoundResult round_from_beginnings(const RoundInput& in, const std::vector<MotionSetting>& start) {
-  RoundResult none;
-  for (std::size_t k = std::size(shares); k-- > 0 && !in.model.stopped();) {
-    const std::optional<MotionData> part = beginnings(in.data, shares[k], fewest);
-    if (!part) break;
-    MotionFitOptions options;
-    options.progress = in.progress;
+  RoundResult best;
+  MotionFitOptions options;
+  options.progress = in.progress;
+  for (const double share : round_shares) {
+    const std::optional<MotionData> part = beginnings(in.data, share, fewest);
+    if (!part) continue;
     const MotionFit there = fit_from_beginnings(in.model, *part, start, options);
+    if (in.model.stopped()) break;
     if (!there.report.usable() || there.jacobian.cols() == 0) continue;
     RoundInput of_part{in.model, *part, there, in.effects, in.selected, in.significance, in.tolerance};
     of_part.progress = in.progress;
     RoundResult found = motion_round(of_part);
     if (!found.added) continue;
-    MotionFit whole = fit_from_beginnings(in.model, in.data, found.better.settings, options);
-    if (!whole.report.usable() || whole.chi2 > most_left * in.current.chi2) continue;
-    const MotionRecord& record = in.data.set->records[part->pieces.front().record];
-    found.round.reason = fmt::format("in the first {:.4g} s of the records: {}; it holds in all of them",
-                                     record.times[part->pieces.front().size - 1], found.round.reason);
-    found.better = std::move(whole);
-    return found;
+    // What the beginnings do not tell apart the whole records do.
+    int tried = 0;
+    for (std::size_t k = 0; k < found.round.candidates.size() && tried < most_members && !in.model.stopped(); ++k) {
+      const MotionCandidate& c = found.round.candidates[k];
+      if (c.class_index != 0 || !c.refitted) continue;
+      ++tried;
+      MotionFit whole = fit_from_beginnings(in.model, in.data, with_candidate(there, in.effects, c), options);
+      const double limit = best.added ? best.better.chi2 : most_left * in.current.chi2;
+      if (!whole.report.usable() || whole.chi2 > limit) continue;
+      const MotionRecord& record = in.data.set->records[part->pieces.front().record];
+      best.round = found.round;
+      best.round.added = in.effects[c.score.effect].label();
+      best.round.reason = fmt::format("in the first {:.4g} s of the records: {}; it holds in all of them",
+                                      record.times[part->pieces.front().size - 1], found.round.reason);
+      best.added = c.score.effect;
+      best.better = std::move(whole);
+    }
+    if (best.added && !out_of_step(in.data, best.better)) break;
   }
-  return none;
+  return best;
 }
 
 }  // namespace snare::identification

@@ -8,9 +8,10 @@ namespace snare::identification {
 [[nodiscard]] MotionFit fit_from_beginnings(const MotionModel& model, const MotionData& data,
                                             const std::vector<MotionSetting>& start, const MotionFitOptions& options);
 
-/// A pass over the catalogue with the beginnings of the records alone: a half of them, a fourth, an eighth, until one adds an effect that leaves of
-/// the sum of squares of the whole records at most a half. `start`: the fitted numbers, from which each of them begins. Without such an effect nothing
-/// is added. A share of which a piece would have fewer than 20 readings is not asked.
+/// A pass over the catalogue with the beginnings of the records alone: a thirty-second of them, a sixteenth, ... a half. Of the class that one of them
+/// names each member is fitted to the whole records; the one that leaves least there counts, if that is at most a half of the sum of squares, and
+/// the first that is in step with them ends the search. `start`: the fitted numbers, from which each of the passes begins. Without such an
+/// effect nothing is added. A share of which a piece would have fewer than 20 readings is not asked.                        theory.md (I.29)
 [[nodiscard]] RoundResult round_from_beginnings(const RoundInput& input, const std::vector<MotionSetting>& start);
 
 }  // namespace snare::identification

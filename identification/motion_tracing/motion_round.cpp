@@ -105,7 +105,7 @@ std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise
 /// Why an effect that is significant is not named.
 std::string objection(const RoundInput& in, const MotionCandidate& c, const MotionFit& fit) {
   const MotionEffect& effect = in.effects[c.score.effect];
-  const double value = c.numbers.front().value;
+  const double value = c.values.front();
   if (!c.plausible)
     return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
                        c.numbers.front().unit, effect.plausible_lower, effect.plausible_upper);
@@ -164,24 +164,46 @@ RoundResult motion_round(const RoundInput& in) {
   const double promise = candidates.front().score.fall;
   std::size_t plausible = 0;
   const bool all = out_of_step(in.data, in.current);
-  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {
+  const auto take = [&](std::size_t k, MotionFit found) {
     MotionCandidate& c = candidates[k];
-    if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
-    if (in.model.stopped()) return result;
-    const MotionFit& fit = fits[k].fit = refit(in, c.score);
-    if (fit.residual.size() == 0 || fit.covariance.size() == 0) continue;
+    const MotionFit& fit = fits[k].fit = std::move(found);
+    if (fit.residual.size() == 0 || fit.covariance.size() == 0) return;
     c.refitted = true;
     fits[k].chance = c.score.chance;
     fits[k].readings = static_cast<double>(in.data.rows);
-    const std::vector<TracedNumber> numbers = traced_numbers(fit);
+    const std::vector<TracedNumber> numbers = traced_numbers(in.model, fit);
     c.numbers.assign(numbers.begin() + static_cast<std::ptrdiff_t>(in.current.settings.size()), numbers.end());
+    c.values.clear();
+    for (std::size_t n = in.current.settings.size(); n < fit.settings.size(); ++n)
+      c.values.push_back(fit.settings[n].value);
     c.rmse = motion_stage(in.model, in.data, fit, nullptr, {}).rmse;
     c.delta_bic = bic(in.data, scores.noise, fit) - present;
     const MotionEffect& effect = in.effects[c.score.effect];
-    c.plausible =
-        c.numbers.front().value >= effect.plausible_lower && c.numbers.front().value <= effect.plausible_upper;
-    if (c.plausible) ++plausible;
+    c.plausible = c.values.front() >= effect.plausible_lower && c.values.front() <= effect.plausible_upper;
     c.why_not = objection(in, c, fit);
+  };
+  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {
+    const MotionCandidate& c = candidates[k];
+    if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
+    if (in.model.stopped()) return result;
+    take(k, refit(in, c.score));
+    if (c.refitted && c.plausible) ++plausible;
+  }
+  if (all) {  // the way may be long: the best are compared where it ends
+    std::vector<std::size_t> best;
+    for (std::size_t k = 0; k < candidates.size(); ++k)
+      if (candidates[k].refitted && candidates[k].plausible) best.push_back(k);
+    std::ranges::sort(best, {}, [&](std::size_t k) { return fits[k].criterion(); });
+    best.resize(std::min(best.size(), most_refits));
+    for (const std::size_t k : best) {
+      if (in.model.stopped()) return result;
+      MotionFitOptions options;
+      options.progress = in.progress;
+      options.derivatives = FitDerivatives::search;
+      options.first_jacobian = fits[k].fit.jacobian;
+      MotionFit further = fit_motion(in.model, in.data, fits[k].fit.settings, options);
+      if (further.chi2 < fits[k].fit.chi2) take(k, std::move(further));
+    }
   }
   // Refitted ones by their misfit, those that may be named first.
   std::vector<std::size_t> order(candidates.size());

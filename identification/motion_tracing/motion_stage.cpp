@@ -83,18 +83,20 @@ double reading_sigma(const RecordSet& set, const std::string& sensor) {
   return of_one / std::sqrt(6.0);
 }
 
-std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
+std::vector<TracedNumber> traced_numbers(const MotionModel& model, const MotionFit& fit) {
   std::vector<TracedNumber> numbers;
   for (std::size_t k = 0; k < fit.settings.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const MotionSetting& s = fit.settings[k];
-    TracedNumber n{s.number.key, s.number.unit, s.value, 0.0, {}, {}};
+    const auto told = [&](double value) { return model.as_set(fit.settings, k, value); };
+    TracedNumber n{s.number.key, s.number.unit, told(s.value), 0.0, {}, {}};
     const bool seen = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() &&
                       fit.jacobian.col(i).norm() > 0.0;
     if (seen) {
-      n.stderr_ = std::sqrt(fit.covariance(i, i));
-      n.lower = std::max(s.number.lower, s.value - half_width_95 * n.stderr_);
-      n.upper = std::min(s.number.upper, s.value + half_width_95 * n.stderr_);
+      const double error = std::sqrt(fit.covariance(i, i));
+      n.stderr_ = std::abs(told(s.value + error) - n.value);
+      n.lower = told(std::max(s.number.lower, s.value - half_width_95 * error));
+      n.upper = told(std::min(s.number.upper, s.value + half_width_95 * error));
     }
     numbers.push_back(n);
   }
@@ -104,7 +106,7 @@ std::vector<TracedNumber> traced_numbers(const MotionFit& fit) {
 MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
                          const MotionFit* heldout, const MotionData& heldout_data) {
   MotionStage stage;
-  stage.numbers = traced_numbers(fit);
+  stage.numbers = traced_numbers(model, fit);
   stage.errors = errors_of(model, data.records, fit.predictions);
   stage.rmse = rmse_of(data, fit.residual);
   double range = 0.0, squares = 0.0, count = 0.0;

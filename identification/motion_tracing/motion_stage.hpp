@@ -18,6 +18,6 @@ inline constexpr double half_width_95 = 1.96;
 [[nodiscard]] double reading_sigma(const RecordSet& set, const std::string& sensor);
 
 /// Numbers of a fit with their intervals.
-[[nodiscard]] std::vector<TracedNumber> traced_numbers(const MotionFit& fit);
+[[nodiscard]] std::vector<TracedNumber> traced_numbers(const MotionModel& model, const MotionFit& fit);
 
 }  // namespace snare::identification

@@ -50,7 +50,8 @@ struct MotionCandidate {
   bool refitted = false;
   double rmse = 0.0;                  ///< after the refit, as MotionStage::rmse, in the unit of the channel or [-]
   double delta_bic = 0.0;             ///< of the refit, of prewhitened residuals
-  std::vector<TracedNumber> numbers;  ///< of the effect after the refit
+  std::vector<TracedNumber> numbers;  ///< of the effect after the refit, as the keys are set
+  std::vector<double> values;         ///< the same, counted from what is declared
   bool plausible = true;
   std::string why_not;  ///< it is not named although it is significant
   std::optional<bool> heldout_improves;

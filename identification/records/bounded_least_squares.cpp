@@ -132,6 +132,7 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
           break;
         damping *= 10.0;
       }
+      if (step.size() == 0) break;  // damped to nothing
       promised = result.chi2 - (r + J * step).squaredNorm();
       if (promised <= tolerance * result.chi2) break;  // worth no simulation
       Eigen::VectorXd next = problem.residual(there);

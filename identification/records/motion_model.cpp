@@ -171,6 +171,23 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
   return overrides;
 }
 
+double MotionModel::as_set(const std::vector<MotionSetting>& settings, std::size_t number, double value) const {
+  const MotionNumber& own = settings[number].number;
+  if (!own.overrides || !own.above.empty()) return value;
+  const std::size_t record = own.record.value_or(set_.used(false).front());
+  std::vector<base::Override> overrides = set_.set;
+  overrides.insert(overrides.end(), set_.records[record].set.begin(), set_.records[record].set.end());
+  for (std::size_t k = 0; k < number; ++k) {
+    const MotionNumber& before = settings[k].number;
+    if (!before.overrides || (before.record && *before.record != record)) continue;
+    for (base::Override& one : before.overrides(settings[k].value, {declared_in_[record], overrides}))
+      overrides.push_back(std::move(one));
+  }
+  const std::vector<base::Override> last = own.overrides(value, {declared_in_[record], overrides});
+  const bool sets = std::ranges::any_of(last, [&](const base::Override& one) { return one.key == own.key; });
+  return sets ? StandingNumbers{declared_in_[record], last}.number(own.key).value_or(value) : value;
+}
+
 std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Override>& overrides, std::size_t record,
                                                   std::string& failure) const {
   std::string key = std::to_string(record);
@@ -215,7 +232,8 @@ RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& setting
                                        Eigen::Index readings) const {
   RecordPrediction prediction;
   try {
-    const std::shared_ptr<const SensorRun> run = this->run(overrides_of(settings, record, readings), record, prediction.failure);
+    const std::shared_ptr<const SensorRun> run =
+        this->run(overrides_of(settings, record, readings), record, prediction.failure);
     if (run == nullptr) return prediction;
     SignalChanges changes;
     for (const MotionSetting& s : settings)
@@ -237,7 +255,8 @@ std::vector<RecordPrediction> MotionModel::predict(const std::vector<MotionSetti
 
 std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
     const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
-    const std::vector<Eigen::Index>& readings, const std::vector<RecordPrediction>* base, const std::vector<std::optional<std::size_t>>& only) const {
+    const std::vector<Eigen::Index>& readings, const std::vector<RecordPrediction>* base,
+    const std::vector<std::optional<std::size_t>>& only) const {
   std::vector<std::vector<RecordPrediction>> all(settings.size(), std::vector<RecordPrediction>(records.size()));
   struct Task {
     std::size_t setting, record;
@@ -272,7 +291,8 @@ void MotionModel::bound_trials() const {
 
 void MotionModel::look_at_joints() {
   const std::size_t first = set_.used(false).front();
-  const scenario::Scenario read = scenario::read_scenario(set_.scenario, overrides_of({}, first, set_.records[first].times.size()));
+  const scenario::Scenario read =
+      scenario::read_scenario(set_.scenario, overrides_of({}, first, set_.records[first].times.size()));
   const scenario::NamedMotion& run = run_of(read, set_).runs.front();
   slowest_ = slowest_mode(run.motion);
   coupling::MotionOptions options = run.options;
@@ -306,9 +326,10 @@ void MotionModel::look_at_joints() {
     const coupling::MotionArm& arm = run.motion.arms[a];
     for (int j = 0; j < arm.arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.arm.joints[base::at(j)];
-      joints_[arm.name + "::" + joint.name] = {std::sqrt(std::max(sums[a].spring[j], sums[a].drive[j]) / count),
-                                               std::sqrt(sums[a].rate[j] / count),
-                                               arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic};
+      if (joint.flexure) continue;
+      joints_[arm.name + "::" + joint.name] = {
+          std::sqrt(std::max(sums[a].spring[j], sums[a].drive[j]) / count), std::sqrt(sums[a].rate[j] / count),
+          arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic, joint.link};
     }
   }
 }

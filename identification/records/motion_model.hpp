@@ -40,6 +40,7 @@ struct MotionSetting {
 struct JointUse {
   double torque = 0.0, rate = 0.0;  ///< in the spring or of the drive, the larger [N m]; of the motor [rad/s]
   bool slides = false;
+  std::string link;  ///< that it moves
 };
 
 /// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.20)
@@ -71,6 +72,11 @@ class MotionModel {
       const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
       const std::vector<Eigen::Index>& readings = {}, const std::vector<RecordPrediction>* base = nullptr,
       const std::vector<std::optional<std::size_t>>& only = {}) const;
+
+  /// What the key of a number is set to, in its unit, where the number has this value and those before it in `settings` theirs: in the first of the
+  /// fitted records that it is in. An effect's number is counted from what is declared, and acts beside what others have set. The value itself
+  /// where a number has no key of the files.
+  [[nodiscard]] double as_set(const std::vector<MotionSetting>& settings, std::size_t number, double value) const;
 
   [[nodiscard]] long simulations() const { return simulations_; }  ///< runs so far
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }  ///< somebody wants the work to end

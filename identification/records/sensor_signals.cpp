@@ -43,8 +43,8 @@ SensorRun read_sensors_of(const std::vector<scenario::Sensor>& sensors, const co
   return run;
 }
 
-std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
-                                        Eigen::Index count, const std::map<std::string, std::string>& columns,
+std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record, Eigen::Index count,
+                                        const std::map<std::string, std::string>& columns,
                                         const SignalChanges& changes) {
   std::vector<Eigen::VectorXd> result(record.channels.size());
   for (std::size_t s = 0; s < run.readings.size(); ++s) {

@@ -22,7 +22,8 @@ struct SensorRun {
 
 /// The first `count` readings, in the units of their columns, at the times of a record, with changes: theory.md (I.23). Between two readings of a sensor
 /// straight; before the first one and behind the last one they stand. columns: full names of the channels' sensors.
-[[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record, Eigen::Index count,
+[[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
+                                                      Eigen::Index count,
                                                       const std::map<std::string, std::string>& columns,
                                                       const SignalChanges& changes);
 

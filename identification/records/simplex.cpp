@@ -44,8 +44,8 @@ double chi2_at(unsigned count, const double* x, double* /*gradient*/, void* cont
   Search& search = *static_cast<Search*>(context);
   try {
     for (unsigned k = 0; k < count; ++k) search.settings[k].value = x[k] * search.settings[k].number.scale;
-    const Eigen::VectorXd r = search.data.residual(
-        search.model.predict(together(search.settings, search.options.fixed), search.data.records, search.data.readings));
+    const Eigen::VectorXd r = search.data.residual(search.model.predict(together(search.settings, search.options.fixed),
+                                                                        search.data.records, search.data.readings));
     const double chi2 = r.size() == 0 ? 1e6 * static_cast<double>(search.data.rows) : r.squaredNorm();
     const bool go_on =
         !search.model.stopped() && (!search.options.progress || search.options.progress(++search.evaluations, chi2));

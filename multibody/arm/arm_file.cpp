@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -188,6 +189,90 @@ void change_links(const TomlTable& links, RobotDescription& robot) {
   }
 }
 
+/// A link that bends: two hinges across it where its joint carries it.                               theory.md (A.19)
+struct Flexure {
+  std::string link, root;             ///< names of the link, and of the part of it that its joint carries
+  std::array<std::string, 2> hinges;  ///< names of their joints
+  double stiffness = 0.0;             ///< of each [N m/rad]
+  double damping = 0.0;               ///< [N m s/rad]
+};
+
+/// Where a link goes, in its own frame: to the next joint that is elsewhere, else to its centre of mass; zero where neither is.
+Eigen::Vector3d direction_of(const RobotDescription& robot, const RobotLink& link) {
+  constexpr double nowhere = 1e-6;  // [m]
+  for (const RobotJoint& joint : robot.joints)
+    if (joint.parent == link.name && joint.X_PJ.p.norm() > nowhere) return joint.X_PJ.p.normalized();
+  const Eigen::Vector3d com = link.inertia.centre();
+  return com.norm() > nowhere ? Eigen::Vector3d(com.normalized()) : Eigen::Vector3d::Zero();
+}
+
+/// Cuts the links for which `[link.NAME]` has a bending compliance into what its joint carries, a share of its inertia, and the rest behind two hinges.
+std::vector<Flexure> bend_links(const TomlTable& links, RobotDescription& robot) {
+  constexpr double least_compliance = 1e-15, most_compliance = 1e3;  // [rad/(N m)], of a link that is not rigid
+  constexpr double inboard_share =
+      0.1;  // of the link's inertia: without any, a joint and a hinge about one axis would move nothing between them
+  constexpr double usual_damping_time = 1e-3;  // [s]
+  std::vector<Flexure> flexures;
+  RobotDescription cut = robot;
+  cut.links.clear();
+  cut.joints.clear();
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    RobotLink link = robot.links[i];
+    const TomlTable own = links.table(link.name);
+    const double compliance = own.number_or("bending_compliance_rad_Nm", 0.0, Range::from(0.0, most_compliance));
+    const double time = own.number_or("bending_damping_time_s", usual_damping_time, Range::from(0.0, 10.0));
+    const bool carried = i > 0 && robot.joints[i - 1].kind && *robot.joints[i - 1].kind != JointKind::free;
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    if (compliance > 0.0 && compliance < least_compliance)
+      own.fail("bending_compliance_rad_Nm",
+               fmt::format("must be 0, or {:g} to {:g}", least_compliance, most_compliance));
+    if (compliance >= least_compliance) {
+      if (carried && link.inertia.mass > 0.0) along = direction_of(robot, link);
+      if (along.isZero())
+        own.fail("bending_compliance_rad_Nm", "only of a link on a moving joint that has a mass and a length");
+    }
+    if (along.isZero()) {
+      if (i > 0) cut.joints.push_back(robot.joints[i - 1]);
+      cut.links.push_back(std::move(link));
+      continue;
+    }
+    Flexure flexure;
+    flexure.link = link.name;
+    flexure.root = link.name + " root";
+    flexure.hinges = {link.name + " bending 1", link.name + " bending 2"};
+    flexure.stiffness = 1.0 / compliance;
+    flexure.damping = time / compliance;
+    const Eigen::Vector3d first = along.unitOrthogonal();
+    const std::array<Eigen::Vector3d, 2> axes{first, along.cross(first)};
+    RobotJoint joint = robot.joints[i - 1];
+    RobotLink root{flexure.root, {}};
+    const SpatialInertia whole = link.inertia;
+    const auto share = [&whole](double s) {
+      return SpatialInertia::about_centre(s * whole.mass, whole.centre(), s * whole.about_own_centre());
+    };
+    root.inertia = share(inboard_share);
+    link.inertia = share(1.0 - inboard_share);
+    joint.child = root.name;
+    cut.joints.push_back(joint);
+    cut.links.push_back(root);
+    std::string parent = root.name;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      RobotJoint hinge;
+      hinge.name = flexure.hinges[k];
+      hinge.parent = parent;
+      hinge.child = k + 1 < axes.size() ? flexure.link + " hinge" : flexure.link;
+      hinge.kind = JointKind::revolute;
+      hinge.axis = axes[k];
+      parent = hinge.child;
+      cut.joints.push_back(hinge);
+      cut.links.push_back(k + 1 < axes.size() ? RobotLink{hinge.child, {}} : link);
+    }
+    flexures.push_back(flexure);
+  }
+  robot = std::move(cut);
+  return flexures;
+}
+
 Drive drive_of(const TomlTable& table) {
   Drive drive;
   const auto mode = table.choice("drive", drive_modes);
@@ -234,6 +319,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
   std::optional<RobotDescription> robot = read_urdf(folder / urdf);
   change_links(root.table("link"), *robot);
+  const std::vector<Flexure> flexures = bend_links(root.table("link"), *robot);
   description.input += robot->text + document.canonical();
   const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
   if (whole) {
@@ -256,10 +342,14 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable common = root.table("every_joint");
   if (whole) {
     for (const RobotJoint& joint : robot->joints) {
-      if (!joint.kind || *joint.kind == JointKind::free) continue;
+      const bool hinge = std::ranges::any_of(
+          flexures, [&](const Flexure& flexure) { return std::ranges::count(flexure.hinges, joint.name) > 0; });
+      if (!joint.kind || *joint.kind == JointKind::free || hinge) continue;
       const TomlTable own = joints.table(joint.name).over(common);
       ElasticJoint elastic;
       elastic.name = joint.name;
+      const auto bent = std::ranges::find(flexures, joint.child, &Flexure::root);
+      elastic.link = bent == flexures.end() ? joint.child : bent->link;
       elastic.body = tree.frame(tree.find_frame(joint.child)).body;
       elastic.motor_inertia = motor_inertia_of(own);
       if (const auto law = law_of(own)) elastic.spring = *law;
@@ -269,6 +359,20 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
       description.arm.joints.push_back(elastic);
       description.joints.push_back(joint);
     }
+    for (const Flexure& flexure : flexures) {
+      for (const std::string& name : flexure.hinges) {
+        const auto hinge = std::ranges::find(robot->joints, name, &RobotJoint::name);
+        ElasticJoint elastic;
+        elastic.name = name;
+        elastic.link = flexure.link;
+        elastic.body = tree.frame(tree.find_frame(hinge->child)).body;
+        elastic.motor_inertia = 1.0;  // it never moves
+        elastic.spring = DeflectionLaw::linear(flexure.stiffness, flexure.damping);
+        elastic.flexure = true;
+        description.arm.joints.push_back(elastic);
+        description.drives.push_back(Drive::locked());
+      }
+    }
   }
   const std::size_t count = description.joints.size();
   if (whole && count == 0) root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
@@ -277,7 +381,8 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     one.name = pose.text("name");
     if (whole) {
       const auto angles = pose.numbers("angles_deg", count, count, Range::from(-720.0, 720.0), degree);
-      one.angles = Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size()));
+      one.angles = description.with_flexures(
+          Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size())));
       for (std::size_t k = 0; k < angles.size(); ++k) {
         const RobotJoint& joint = description.joints[k];
         if (angles[k] >= joint.lower - 1e-9 && angles[k] <= joint.upper + 1e-9) continue;
@@ -305,6 +410,12 @@ ArmDescription parse_arm(const std::filesystem::path& file, const std::string& t
                          const std::vector<base::Override>& overrides) {
   TomlDocument document(file.string(), text, overrides);
   return read(document, file);
+}
+
+Eigen::VectorXd ArmDescription::with_flexures(const Eigen::VectorXd& angles) const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(arm.motors());
+  all.head(angles.size()) = angles;
+  return all;
 }
 
 Eigen::VectorXd ArmDescription::coordinates(const Eigen::VectorXd& angles) const {

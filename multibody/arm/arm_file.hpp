@@ -24,12 +24,15 @@ struct ArmDescription {
   std::filesystem::path file;
   std::string input;  ///< canonical text of everything that was read: equal for equal arms
   ElasticArm arm;
-  std::vector<RobotJoint> joints;  ///< the moving joints of the arm, one an elastic joint
-  std::vector<Drive> drives;       ///< at rest, held where they are
+  std::vector<RobotJoint>
+      joints;  ///< the moving joints of the arm: of the first elastic joints; flexures of its links come behind
+  std::vector<Drive> drives;  ///< of all elastic joints: at rest, held where they are
   std::vector<ArmPose> poses;
   int tip = 0;            ///< frame
   double arm_mass = 0.0;  ///< of the arm's own URDF [kg]
 
+  /// Angles of the moving joints with those of the flexures, which are zero, behind them [rad].
+  [[nodiscard]] Eigen::VectorXd with_flexures(const Eigen::VectorXd& angles) const;
   /// Coordinates (tree.coordinates()) [rad, m, -] with the elastic joints at the given angles [rad]; a free base at the origin.
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& angles) const;
 };

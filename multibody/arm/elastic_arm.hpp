@@ -16,11 +16,13 @@ namespace snare::multibody {
 /// A motor that turns a joint through an elastic gear; all of it on the output side.           theory.md (A.9)
 struct ElasticJoint {
   std::string name;
-  int body = 0;                ///< of the tree, on a revolute or prismatic joint
+  std::string link{};  ///< that it moves; of one that bends it carries a part, which has another name in the tree
+  int body = 0;        ///< of the tree, on a revolute or prismatic joint
   double motor_inertia = 0.0;  ///< B = (gear ratio)^2 times that of the rotor [kg m^2], > 0
   DeflectionLaw spring = DeflectionLaw::linear(0.0, 0.0);
   JointFriction friction;
   double back_drive = 0.0;  ///< added to the dry friction while limp [N m], >= 0
+  bool flexure = false;     ///< a link that bends: the motor stands for what holds the hinge, and never moves
 };
 
 /// A manipulator whose joints are elastic, in the two-mass form of Spong 1987. Constants only.   theory.md (A.9)

@@ -85,8 +85,10 @@ def true_amount(batch, c):
 
 def bounds(hits, count):
     """Clopper and Pearson's interval of 95 %, by bisection of the binomial's tails."""
+    ways = [math.lgamma(count + 1) - math.lgamma(i + 1) - math.lgamma(count - i + 1) for i in range(count + 1)]  # logarithms
+
     def tail(p, k):  # P(X >= k)
-        return sum(math.comb(count, i) * p**i * (1.0 - p)**(count - i) for i in range(k, count + 1))
+        return sum(math.exp(ways[i] + i * math.log(p) + (count - i) * math.log1p(-p)) for i in range(k, count + 1))
 
     def solve(k, goal):
         low, high = 0.0, 1.0

@@ -16,7 +16,7 @@ RECORDS = ("first", "second")
 @dataclass
 class Effect:
     label: str            # "name (place)" as in selected_places
-    number: str           # of the plant, or "COLUMN:delay" of a sensor
+    number: str           # of the plant, or "COLUMN:delay" of a sensor, "*:delay" of all
     guess: float
     share: bool = False   # the change is a share of the number
 
@@ -38,10 +38,13 @@ def sensor(column, what, guess):
     return Effect(f"sensor_{what} ({column})", f"{column}:{what}", guess)
 
 
-def urdf(mass, com, inertia, axis):
+TOOL = '<link name="tool"/><joint name="grip" type="fixed"><parent link="beam"/><child link="tool"/><origin xyz="1 0 0" rpy="0 0 0"/></joint>'
+
+
+def urdf(mass, com, inertia, axis, more=""):
     return f"""<robot name="machine"><link name="stand"/><link name="beam"><inertial><origin xyz="{com}" rpy="0 0 0"/><mass value="{mass}"/>
 <inertia ixx="{inertia}" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/></inertial></link>
-<joint name="hinge" type="continuous"><parent link="stand"/><child link="beam"/><axis xyz="{axis}"/></joint></robot>
+<joint name="hinge" type="continuous"><parent link="stand"/><child link="beam"/><axis xyz="{axis}"/></joint>{more}</robot>
 """
 
 
@@ -102,7 +105,7 @@ SWING = Kind(
 
 
 def step_files(p):
-    return {"arm.urdf": urdf(10.0, "0 0 0", p["link"], "0 0 1"),
+    return {"arm.urdf": urdf(10.0, "0 0 0", p["link"], "0 0 1", TOOL),
             "arm.toml": arm(f"""[link.beam]
 inertia_kg_m2 = [{p["link"]!r}, {p["link"]!r}, {p["link"]!r}]
 [joint.hinge]
@@ -138,7 +141,7 @@ ramp_s = 0.05
 STEP = Kind(
     plant=plants.step,
     truth={"link": 3.0, "stiffness": 2000.0, "damping": 6.0, "motor": 1.0, "viscous": 5.0, "proportional": 4000.0, "begin": 0.2, "course_rate": 20.0,
-           "gap": 0.0, "coulomb": 0.0},
+           "gap": 0.0, "coulomb": 0.0, "flex": 0.0},
     free={"arms[arm].joint.hinge.stiffness_Nm_rad": "stiffness", "arms[arm].joint.hinge.viscous_Nms_rad": "viscous"},
     sigma={"motor_deg": 0.003, "link_deg": 0.003}, interval=0.005, files=step_files,
     set={"second": {"phases[go].drives[1].to_deg": -7.0}},
@@ -148,7 +151,8 @@ STEP = Kind(
              Effect("servo_gain (arm::hinge)", "proportional", 0.01, True),
              Effect("ring_delay (go)", "begin", 1e-4 / 0.2, True),
              Effect("ring_rate (go.1)", "course_rate", 1e-3, True),
-             Effect("joint_coulomb_friction (arm::hinge)", "coulomb", 0.2)])
+             Effect("joint_coulomb_friction (arm::hinge)", "coulomb", 0.2),
+             Effect("link_flexibility (arm::beam)", "flex", 1e-5)])
 
 
 def drive_files(p):
@@ -226,7 +230,7 @@ ramp_s = 0.05
 PAYLOAD = Kind(
     plant=plants.payload,
     truth={"mass": 20.0, "inertia": 2.0, "translational": 8000.0, "rotational": 500.0, "translational_damping": 40.0, "rotational_damping": 4.0,
-           "start_velocity": 0.0, "start_spin": 0.0, "extra": 0.0},
+           "start_velocity": 0.0, "start_spin": 0.0, "extra": 0.0, "aside": 0.0},
     free={"bushings[fixture].translational_stiffness_N_m": "translational", "bushings[fixture].rotational_stiffness_Nm_rad": "rotational"},
     sigma={"place_x_mm": 0.1, "gyro_z_deg_s": 0.3}, interval=0.01, files=payload_files,
     set={"second": {"loads[push].force_N[1]": -25.0, "loads[push].moment_Nm[3]": 8.0}},
@@ -235,7 +239,8 @@ PAYLOAD = Kind(
              Effect("body_mass (payload)", "mass", 0.02, True),
              Effect("body_inertia (payload)", "inertia", 0.02, True),
              Effect("body_start_velocity (payload)", "start_velocity", 1e-3),
-             Effect("body_start_spin (payload)", "start_spin", 1e-3)],
+             Effect("body_start_spin (payload)", "start_spin", 1e-3),
+             Effect("body_centre_of_mass (payload)", "aside", 1e-3)],
     outside=[Effect("place_x_mm", "extra", 0.01)])
 
 
@@ -273,7 +278,7 @@ FLIGHT = Kind(
     set={"second": {"loads[thrusters].file": "pulses_second.csv", "bodies[craft].spin_rad_s": [float(v) for v in np.array([-1.5, 1.0, 1.2]) * plants.DEG]}},
     effects=[Effect("body_start_spin (craft)", "spin_x", 1e-4),
              sensor("gyro_x_deg_s", "bias", 0.005), sensor("gyro_y_deg_s", "gain", 5e-3), sensor("gyro_z_deg_s", "drift", 5e-4),
-             sensor("gyro_x_deg_s", "delay", 0.02), sensor("gyro_y_deg_s", "lag", 0.02)],
+             sensor("gyro_x_deg_s", "delay", 0.02), sensor("gyro_y_deg_s", "lag", 0.02), Effect("record_clock", "*:delay", 0.02)],
     outside=[Effect("gyro_x_deg_s", "slosh", 3.0), Effect("gyro_y_deg_s", "leak", 0.02)])
 
 

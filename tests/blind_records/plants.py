@@ -71,24 +71,29 @@ def swing(p, record):
 
 
 def step(p, record):
-    """A joint with motor, spring and link; the motor's servo follows a course."""
+    """A joint with motor, spring and link; the motor's servo follows a course. The link gives by `flex` [rad/(N m)], a tenth of its inertia before that."""
     n = len(p["link"])
     way = {"first": 5.0, "second": -7.0}[record] * DEG
     gap = p["gap"] * DEG
 
     def rate(t, y):
-        motor, w, link, v = y
+        motor, w, link, v, outer, outer_rate = y
         target, speed = ramped(t, p["begin"], way, p["course_rate"] * DEG, 0.05)
         x = link - motor
         beyond = np.sign(x) * np.maximum(0.0, np.abs(x) - gap)
         torque = p["stiffness"] * beyond + np.where(np.abs(x) >= gap, p["damping"], 0.0) * (v - w)
         drive = p["proportional"] * (target - motor) + 150.0 * (speed - w)
-        return np.array([w, (drive + torque - p["viscous"] * w) / p["motor"], v, -torque / p["link"]])
+        bends = p["flex"] > 0.0
+        bending = ((outer - link) + 1e-3 * (outer_rate - v)) / np.maximum(p["flex"], 1e-12)
+        whole = -torque / p["link"]
+        return np.array([w, (drive + torque - p["viscous"] * w) / p["motor"],
+                         v, np.where(bends, (bending - torque) / (0.1 * p["link"]), whole),
+                         outer_rate, np.where(bends, -bending / (0.9 * p["link"]), whole)])
 
     def friction(_, y, h):
-        return np.array([y[0], dry(y[1], h * p["coulomb"] / p["motor"]), y[2], y[3]])
+        return np.array([y[0], dry(y[1], h * p["coulomb"] / p["motor"]), *y[2:]])
 
-    states = integrate(rate, np.zeros((4, n)), 2e-4, 10000, 5, friction)
+    states = integrate(rate, np.zeros((6, n)), 2e-4, 10000, 5, friction)
     return {"motor_deg": states[:, 0] / DEG, "link_deg": states[:, 2] / DEG}, 1e-3
 
 
@@ -122,7 +127,8 @@ def drive(p, record):
 
 
 def payload(p, record):
-    """A body on a bushing with a pulse on it: along x and about z. `extra` of its mass hangs on a second spring of its own."""
+    """A body on a bushing with a pulse on it: along x and about z. `extra` of its mass hangs on a second spring of its own; its centre of mass is `aside`
+    [m] along y from where bushing and pulse act."""
     n = len(p["mass"])
     force = {"first": 40.0, "second": -25.0}[record]
     moment = {"first": 5.0, "second": 8.0}[record]
@@ -130,18 +136,23 @@ def payload(p, record):
     spring = second * (2.0 * np.pi * 2.1)**2
 
     def rate(t, y):
-        x, v, a, w, x2, v2 = y
+        x, v, a, w, x2, v2, across, across_rate = y  # of the centre of mass
+        rx, ry = -p["aside"] * np.sin(a), p["aside"] * np.cos(a)  # from where the forces act
+        place, place_rate = x - rx, v + w * ry
         share = pulse(t, 0.1, 0.3, 0.05)
-        between = spring * (x2 - x) + 0.02 * np.sqrt(np.maximum(spring * second, 0.0)) * (v2 - v)
-        ax = (force * share - p["translational"] * x - p["translational_damping"] * v + between) / (p["mass"] - second)
-        aw = (moment * share - p["rotational"] * a - p["rotational_damping"] * w) / p["inertia"]
-        return np.array([v, ax, w, aw, v2, np.where(second > 0.0, -between / np.maximum(second, 1e-12), 0.0)])
+        between = spring * (x2 - place) + 0.02 * np.sqrt(np.maximum(spring * second, 0.0)) * (v2 - place_rate)
+        fx = force * share - p["translational"] * place - p["translational_damping"] * place_rate + between
+        fy = -p["translational"] * (across - ry) - p["translational_damping"] * (across_rate - w * rx)
+        turning = moment * share - p["rotational"] * a - p["rotational_damping"] * w - (rx * fy - ry * fx)
+        return np.array([v, fx / (p["mass"] - second), w, turning / p["inertia"], v2,
+                         np.where(second > 0.0, -between / np.maximum(second, 1e-12), 0.0), across_rate, fy / (p["mass"] - second)])
 
-    start = np.zeros((6, n))
-    start[1] = p["start_velocity"]
+    start = np.zeros((8, n))
+    start[1] = p["start_velocity"] - p["start_spin"] * p["aside"]
     start[3] = p["start_spin"]
+    start[6] = p["aside"]
     states = integrate(rate, start, 1e-3, 3000, 2)
-    return {"place_x_mm": states[:, 0] * 1e3, "gyro_z_deg_s": states[:, 3] / DEG}, 2e-3
+    return {"place_x_mm": (states[:, 0] + p["aside"] * np.sin(states[:, 2])) * 1e3, "gyro_z_deg_s": states[:, 3] / DEG}, 2e-3
 
 
 def flight(p, record):

@@ -37,7 +37,8 @@ class Batch:
                 continue
             if ":" in effect.number:
                 column, what = effect.number.split(":")
-                sensors[column][what][c] += amount[c]
+                for of in self.kind.sigma if column == "*" else [column]:
+                    sensors[of][what][c] += amount[c]
             elif effect.share:
                 numbers[effect.number][c] *= 1.0 + amount[c]
             else:

@@ -50,6 +50,20 @@ TEST(BoundedLeastSquares, NumbersThatHangTogetherDoNotCreep) {
   EXPECT_NEAR(r.x[1], -2.0, 1e-4);
 }
 
+// Derivatives that promise a fall where there is none: steps are damped until nothing is left of them, and the search ends.
+TEST(BoundedLeastSquares, EndsWhereNoDampingHelps) {
+  BoundedProblem p;
+  p.lower = Eigen::VectorXd::Constant(1, -infinity);
+  p.upper = Eigen::VectorXd::Constant(1, infinity);
+  p.residual = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(1, 1.0 + std::abs(x[0]));
+  };
+  p.residual_jacobian = [](const Eigen::VectorXd&) -> Eigen::MatrixXd { return -Eigen::MatrixXd::Ones(1, 1); };
+  const BoundedResult r = bounded_least_squares(p, Eigen::VectorXd::Zero(1), 50, 1e-30);
+  EXPECT_EQ(r.end, BoundedEnd::converged);
+  EXPECT_EQ(r.x[0], 0.0);
+}
+
 /// y = a exp(-b t) at twenty times, from a = 2, b = 1.3; counts how often derivatives are asked for.
 struct Decay {
   BoundedProblem problem;

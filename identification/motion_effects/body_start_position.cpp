@@ -1,0 +1,15 @@
+#include "identification/motion_effects/motion_effect.hpp"
+
+namespace snare::identification {
+
+/// Place of a body at the start.
+std::vector<MotionEffect> body_start_position_effects(const MotionModel& model) {
+  return other_body_vector(model, "position_mm",
+                           {.name = "body_start_position",
+                            .channel = "body",
+                            .meaning = "the body began in another place",
+                            .independent_check = "measure the place just before"},
+                           1.0);
+}
+
+}  // namespace snare::identification
