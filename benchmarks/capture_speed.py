@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""How fast the shipped capture of a visitor runs, by model of its three wires and by their elements: a minute, 20 outputs a second, one core.
+
+usage: capture_speed.py SNARE [--elements N ...] [--models a,b] [--runs N] [--out RESULT.json]
+
+Runs take turns; of each the median of the real-time factors counts, simulated time over that of the clock, without reading and writing.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+SCENARIO = pathlib.Path(__file__).parents[1] / "data/scenarios/ssrms_htv_capture.toml"
+
+
+def summary_of(snare, model, elements):
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([snare, "simulate", SCENARIO, "--out", folder + "/out", "--threads", "1", "--quiet", "--set", "duration_s=60.0",
+                        "--set", "output_interval_s=0.05", "--set", f"snares[snare].wire.elements={elements}",
+                        "--set", f'snares[snare].wire.model="{model}"'], check=True)
+        return json.loads(pathlib.Path(folder, "out", "summary.json").read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("snare")
+    parser.add_argument("--elements", type=int, nargs="+", default=[40, 60])
+    parser.add_argument("--models", default="stretched,quasi_static,full")
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--out", type=pathlib.Path)
+    options = parser.parse_args()
+    cases = [(model, elements) for elements in options.elements for model in options.models.split(",")]
+    told = {case: [] for case in cases}
+    for _ in range(options.runs):
+        for case in cases:
+            told[case].append(summary_of(options.snare, *case))
+    rows = []
+    for model, elements in cases:
+        runs = told[model, elements]
+        rows.append({"model": model, "elements": elements, "real_time_factor": statistics.median(r["real_time_factor"] for r in runs),
+                     "slowest": min(r["real_time_factor"] for r in runs), "steps": runs[0]["steps"], "jacobians": runs[0]["jacobians"],
+                     "caught": runs[0]["outcome"]["caught"]})
+        print("{model:13} {elements:4} elements: {real_time_factor:7.1f} times real time (slowest {slowest:.1f}), {steps} steps".format(**rows[-1]),
+              flush=True)
+    if options.out:
+        options.out.write_text(json.dumps({"scenario": SCENARIO.name, "load": os.getloadavg()[0], "runs": rows}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
