@@ -167,6 +167,33 @@ std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
           rigid.kind == identification::VerdictKind::nothing_missing && rigid.selected.empty())};
 }
 
+/// A force sensor that lags on the air table, and one that does not: data/records/air_table.toml.
+std::vector<Row> air_table_rows(const std::filesystem::path& folder) {
+  const std::string group = "impulse right and peak wrong, traced on the air table";
+  const std::string source = "Abiko et al., section 4.3; records by tests/blind_records/air_table.py";
+  constexpr double made = 0.02;  // s
+  const identification::RecordSet set = identification::read_records(folder / "air_table.toml");
+  const MotionTrace lagging = identification::trace_records(set);
+  const MotionTrace plain = identification::trace_records(identification::read_records(
+      folder / "air_table.toml",
+      {{"records[1].file", "\"air_table_plain_1.csv\""}, {"records[2].file", "\"air_table_plain_2.csv\""}}));
+  const Eigen::VectorXd& measured = set.records[0].channels[0].values;
+  const Eigen::VectorXd& simulated = lagging.declared.predictions.at(0).channels.at(0);
+  double found = not_computed;
+  for (const identification::TracedNumber& n : lagging.final.numbers)
+    if (n.key == "sensor_lag[force_N]") found = n.value;
+  return {{group, "impulse as declared over that of the readings", "", source, 1.0, simulated.sum() / measured.sum(),
+           ErrorKind::absolute, 0.01},
+          yes(group, "peak as declared is a tenth larger than that of the readings, or more", source,
+              simulated.maxCoeff() > 1.1 * measured.maxCoeff()),
+          yes(group, "the lag of the force sensor is named, and nothing else, and all is explained", source,
+              lagging.kind == identification::VerdictKind::explained &&
+                  lagging.selected == std::vector<std::string>{"sensor_lag (force_N)"}),
+          {group, "lag", "s", source, made, found, ErrorKind::relative, 0.01},
+          yes(group, "without a lag nothing is named", source,
+              plain.kind == identification::VerdictKind::nothing_missing && plain.selected.empty())};
+}
+
 }  // namespace
 
 std::vector<Check> record_checks(const std::filesystem::path& shipped, const std::filesystem::path& measured) {
@@ -191,6 +218,7 @@ std::vector<Check> record_checks(const std::filesystem::path& shipped, const std
   checks.push_back({"a flight with full wires", [records] { return flight_rows(records, full); }, ""});
   checks.push_back({"a flight with turning rods", [records] { return flight_rows(records, rods); }, ""});
   checks.push_back({"an attachment that gives", [records] { return attachment_rows(records); }, ""});
+  checks.push_back({"a force sensor on the air table", [records] { return air_table_rows(records); }, ""});
   checks.push_back({"the beginning of a flight", [records] { return early_flight_rows(records, rods); }, ""});
   return checks;
 }
