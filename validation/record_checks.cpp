@@ -100,10 +100,14 @@ struct FlightTruth {
 constexpr double made_gf = 9.3e7;        // N m/rad
 constexpr double made_ring_rate = 55.0;  // deg/s
 
-const identification::TracedNumber* number_of(const MotionTrace& trace, const std::string& key) {
-  for (const identification::TracedNumber& n : trace.base.numbers)
+const identification::TracedNumber* number_of(const identification::MotionStage& stage, const std::string& key) {
+  for (const identification::TracedNumber& n : stage.numbers)
     if (n.key == key) return &n;
   return nullptr;
+}
+
+double value_of(const identification::TracedNumber* number) {
+  return number != nullptr ? number->value : not_computed;
 }
 
 bool not_identifiable(const MotionTrace& trace, const std::string& key) {
@@ -118,26 +122,26 @@ std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTr
   const std::string name = std::string(", ") + truth.how;
   const MotionTrace t =
       identification::trace_records(identification::read_records(folder / truth.file), {.effects = false});
-  const auto* gf = number_of(t, "bushings[gf].rotational_stiffness_Nm_rad");
-  const auto* rate = number_of(t, "phases[close].drives[1].rate_deg_s");
-  const auto* wire = number_of(t, truth.wire);
-  const auto value = [](const identification::TracedNumber* n) { return n != nullptr ? n->value : not_computed; };
+  const auto* gf = number_of(t.base, "bushings[gf].rotational_stiffness_Nm_rad");
+  const auto* rate = number_of(t.base, "phases[close].drives[1].rate_deg_s");
+  const auto* wire = number_of(t.base, truth.wire);
   double heldout = t.base.heldout.empty() ? not_computed : 0.0;
   for (const identification::ChannelError& e : t.base.heldout) heldout = std::max(heldout, e.rmse / e.sigma);
-  return {{group, "stiffness of the fixture's attachment" + name, "N m/rad", source, made_gf, value(gf),
-           ErrorKind::relative, 0.01},
-          {group, "rate of the ring" + name, "deg/s", source, made_ring_rate, value(rate), ErrorKind::relative, 0.01},
-          yes(group, "its interval holds the stiffness of the wire" + name, source,
-              wire != nullptr && wire->lower && *wire->lower <= truth.stiffness && truth.stiffness <= *wire->upper),
-          {group, "second flight with the numbers of the first, over the noise" + name, "", source, 0.0, heldout,
-           ErrorKind::absolute, 3.0}};
+  return {
+      {group, "stiffness of the fixture's attachment" + name, "N m/rad", source, made_gf, value_of(gf),
+       ErrorKind::relative, 0.01},
+      {group, "rate of the ring" + name, "deg/s", source, made_ring_rate, value_of(rate), ErrorKind::relative, 0.01},
+      yes(group, "its interval holds the stiffness of the wire" + name, source,
+          wire != nullptr && wire->lower && *wire->lower <= truth.stiffness && truth.stiffness <= *wire->upper),
+      {group, "second flight with the numbers of the first, over the noise" + name, "", source, 0.0, heldout,
+       ErrorKind::absolute, 3.0}};
 }
 
 /// Until just behind the first touch a flight shows the ring's rate at most.
 std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const FlightTruth& truth) {
   const MotionTrace t = identification::trace_records(
       identification::read_records(folder / truth.file, {{"records[1].to_s", "1.2"}}), {.effects = false});
-  const auto* wire = number_of(t, truth.wire);
+  const auto* wire = number_of(t.base, truth.wire);
   return {yes("numbers of a capture from three rates of a flight",
               "0.2 s behind the first touch: the wire's stiffness is called not identifiable, its interval holds it",
               "Honda et al. 2014: little effect in the early phase",
@@ -155,9 +159,7 @@ std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
   const MotionTrace rigid = identification::trace_records(identification::read_records(
       folder / "flight_attachment.toml",
       {{"records[1].file", "\"flight_rigid_1.csv\""}, {"records[2].file", "\"flight_rigid_2.csv\""}}));
-  double found = not_computed;
-  for (const identification::TracedNumber& n : soft.final.numbers)
-    if (n.key == "bushings[attachment].rotational_compliance_rad_Nm") found = n.value;
+  const double found = value_of(number_of(soft.final, "bushings[attachment].rotational_compliance_rad_Nm"));
   return {
       yes(group, "it is named, and nothing else, and all is explained", source,
           soft.kind == identification::VerdictKind::explained &&
@@ -179,9 +181,7 @@ std::vector<Row> air_table_rows(const std::filesystem::path& folder) {
       {{"records[1].file", "\"air_table_plain_1.csv\""}, {"records[2].file", "\"air_table_plain_2.csv\""}}));
   const Eigen::VectorXd& measured = set.records[0].channels[0].values;
   const Eigen::VectorXd& simulated = lagging.declared.predictions.at(0).channels.at(0);
-  double found = not_computed;
-  for (const identification::TracedNumber& n : lagging.final.numbers)
-    if (n.key == "sensor_lag[force_N]") found = n.value;
+  const double found = value_of(number_of(lagging.final, "sensor_lag[force_N]"));
   return {{group, "impulse as declared over that of the readings", "", source, 1.0, simulated.sum() / measured.sum(),
            ErrorKind::absolute, 0.01},
           yes(group, "peak as declared is a tenth larger than that of the readings, or more", source,

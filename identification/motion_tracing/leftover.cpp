@@ -49,9 +49,7 @@ std::vector<Leftover> leftovers(const MotionModel& model, const MotionData& data
   for (const ResidualPiece& piece : data.pieces) {
     const MotionRecord& record = set.records[piece.record];
     const std::string& sensor = record.channels[piece.channel].sensor;
-    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) -
-                                             data.records.begin());
-    const RecordPrediction& prediction = fit.predictions[at];
+    const RecordPrediction& prediction = fit.predictions[data.place_of(piece.record)];
     const Eigen::VectorXd& own = prediction.channels[piece.channel];
     const Eigen::Index n = piece.size;
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace snare::identification {
@@ -13,22 +15,10 @@ namespace snare::identification {
 namespace {
 
 constexpr double most_left = 0.5;  // of the sum of squares of the whole records
-constexpr double shares[] = {0.125, 0.25, 0.5};
-constexpr double round_shares[] = {0.03125, 0.0625, 0.125, 0.25, 0.5};
+constexpr std::array shares{0.03125, 0.0625, 0.125, 0.25, 0.5};
+constexpr auto shares_of_a_fit = std::span(shares).last<3>();
 constexpr int most_members = 5;  // of a class of the beginnings that are tried on the whole
 constexpr auto fewest = static_cast<Eigen::Index>(fewest_readings);
-
-/// The numbers of a fit with those of an effect as its refit has found them.
-std::vector<MotionSetting> with_candidate(const MotionFit& fit, const std::vector<MotionEffect>& effects,
-                                          const MotionCandidate& c) {
-  std::vector<MotionSetting> settings = fit.settings;
-  for (std::size_t k = 0; k < c.values.size(); ++k) {
-    MotionNumber number = effects[c.score.effect].numbers[c.score.numbers[k]];
-    number.scale = c.score.scale[k];
-    settings.push_back({number, c.values[k]});
-  }
-  return settings;
-}
 
 }  // namespace
 
@@ -39,7 +29,7 @@ MotionFit fit_from_beginnings(const MotionModel& model, const MotionData& data, 
   on_the_way.first_jacobian.resize(0, 0);
   std::vector<MotionSetting> reached = start;
   const long before = model.simulations();
-  for (const double share : shares) {
+  for (const double share : shares_of_a_fit) {
     const std::optional<MotionData> part = beginnings(data, share, fewest);
     if (!part || model.stopped()) continue;
     MotionFit fit = fit_motion(model, *part, reached, on_the_way);
@@ -56,7 +46,7 @@ RoundResult round_from_beginnings(const RoundInput& in, const std::vector<Motion
   RoundResult best;
   MotionFitOptions options;
   options.progress = in.progress;
-  for (const double share : round_shares) {
+  for (const double share : shares) {
     const std::optional<MotionData> part = beginnings(in.data, share, fewest);
     if (!part) continue;
     const MotionFit there = fit_from_beginnings(in.model, *part, start, options);
@@ -72,7 +62,7 @@ RoundResult round_from_beginnings(const RoundInput& in, const std::vector<Motion
       const MotionCandidate& c = found.round.candidates[k];
       if (c.class_index != 0 || !c.refitted) continue;
       ++tried;
-      MotionFit whole = fit_from_beginnings(in.model, in.data, with_candidate(there, in.effects, c), options);
+      MotionFit whole = fit_from_beginnings(in.model, in.data, together(there.settings, c.settings), options);
       const double limit = best.added ? best.better.chi2 : most_left * in.current.chi2;
       if (!whole.report.usable() || whole.chi2 > limit) continue;
       const MotionRecord& record = in.data.set->records[part->pieces.front().record];

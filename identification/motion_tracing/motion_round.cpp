@@ -105,7 +105,7 @@ std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise
 /// Why an effect that is significant is not named.
 std::string objection(const RoundInput& in, const MotionCandidate& c, const MotionFit& fit) {
   const MotionEffect& effect = in.effects[c.score.effect];
-  const double value = c.values.front();
+  const double value = c.settings.front().value;
   if (!c.plausible)
     return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
                        c.numbers.front().unit, effect.plausible_lower, effect.plausible_upper);
@@ -172,14 +172,14 @@ RoundResult motion_round(const RoundInput& in) {
     fits[k].chance = c.score.chance;
     fits[k].readings = static_cast<double>(in.data.rows);
     const std::vector<TracedNumber> numbers = traced_numbers(in.model, fit);
-    c.numbers.assign(numbers.begin() + static_cast<std::ptrdiff_t>(in.current.settings.size()), numbers.end());
-    c.values.clear();
-    for (std::size_t n = in.current.settings.size(); n < fit.settings.size(); ++n)
-      c.values.push_back(fit.settings[n].value);
+    const auto own = static_cast<std::ptrdiff_t>(in.current.settings.size());  // behind those of the fit
+    c.numbers.assign(numbers.begin() + own, numbers.end());
+    c.settings.assign(fit.settings.begin() + own, fit.settings.end());
     c.rmse = motion_stage(in.model, in.data, fit, nullptr, {}).rmse;
     c.delta_bic = bic(in.data, scores.noise, fit) - present;
     const MotionEffect& effect = in.effects[c.score.effect];
-    c.plausible = c.values.front() >= effect.plausible_lower && c.values.front() <= effect.plausible_upper;
+    const double value = c.settings.front().value;
+    c.plausible = value >= effect.plausible_lower && value <= effect.plausible_upper;
     c.why_not = objection(in, c, fit);
   };
   for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {

@@ -39,7 +39,7 @@ struct RoundResult {
 [[nodiscard]] bool out_of_step(const MotionData& data, const MotionFit& fit);
 
 /// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any: theory.md (I.22). Of a
-/// fit that is out of step all effects are refitted that are significant: what their scores promise is little then.
+/// fit that is out of step all effects are refitted that are significant, since what their scores promise is little then, and the best to the end.
 [[nodiscard]] RoundResult motion_round(const RoundInput& input);
 
 }  // namespace snare::identification

@@ -48,10 +48,10 @@ struct MotionStage {
 struct MotionCandidate {
   MotionScore score;
   bool refitted = false;
-  double rmse = 0.0;                  ///< after the refit, as MotionStage::rmse, in the unit of the channel or [-]
-  double delta_bic = 0.0;             ///< of the refit, of prewhitened residuals
-  std::vector<TracedNumber> numbers;  ///< of the effect after the refit, as the keys are set
-  std::vector<double> values;         ///< the same, counted from what is declared
+  double rmse = 0.0;                    ///< after the refit, as MotionStage::rmse, in the unit of the channel or [-]
+  double delta_bic = 0.0;               ///< of the refit, of prewhitened residuals
+  std::vector<TracedNumber> numbers;    ///< of the effect after the refit, as the keys are set
+  std::vector<MotionSetting> settings;  ///< the same, as the fit has them: counted from what is declared
   bool plausible = true;
   std::string why_not;  ///< it is not named although it is significant
   std::optional<bool> heldout_improves;

@@ -17,11 +17,14 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& times, const Eigen::
   const Eigen::Index count = std::min({(n - 1) / 2, most_frequencies, affordable});
   spectrum.frequencies = Eigen::VectorXd::LinSpaced(count, 1.0, static_cast<double>(count)) / length;
   spectrum.amplitudes.resize(count);
-  const Eigen::ArrayXd beside = values.array() - values.mean();
+  // A frequency on turns every reading by its own angle once more.
+  const Eigen::ArrayXd angle = 2.0 * std::numbers::pi / length * (times.array() - times[0]);
+  Eigen::ArrayXcd turn(n), turned = (values.array() - values.mean()).cast<std::complex<double>>();
+  turn.real() = angle.cos();
+  turn.imag() = angle.sin();
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::ArrayXd phase = 2.0 * std::numbers::pi * spectrum.frequencies[k] * (times.array() - times[0]);
-    const std::complex<double> sum((beside * phase.cos()).sum(), (beside * phase.sin()).sum());
-    spectrum.amplitudes[k] = 2.0 / static_cast<double>(n) * std::abs(sum);
+    turned *= turn;
+    spectrum.amplitudes[k] = 2.0 / static_cast<double>(n) * std::abs(turned.sum());
   }
   return spectrum;
 }

@@ -10,9 +10,7 @@ namespace {
 Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
   Eigen::VectorXd all(data.rows);
   for (const ResidualPiece& piece : data.pieces) {
-    const auto at = static_cast<std::size_t>(std::find(data.records.begin(), data.records.end(), piece.record) -
-                                             data.records.begin());
-    const RecordPrediction& p = predictions[at];
+    const RecordPrediction& p = predictions[data.place_of(piece.record)];
     if (!p.usable()) return {};
     all.segment(piece.begin, piece.size) = p.channels[piece.channel].head(piece.size) / piece.scale;
     if (residual)
@@ -24,6 +22,10 @@ Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPredicti
 }
 
 }  // namespace
+
+std::size_t MotionData::place_of(std::size_t record) const {
+  return static_cast<std::size_t>(std::find(records.begin(), records.end(), record) - records.begin());
+}
 
 Eigen::VectorXd MotionData::residual(const std::vector<RecordPrediction>& predictions) const {
   return stacked(*this, predictions, true);
@@ -63,8 +65,7 @@ std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen
     piece.size = static_cast<Eigen::Index>(std::ceil(share * static_cast<double>(piece.size)));
     if (piece.size < fewest) return std::nullopt;
     part.rows += piece.size;
-    const auto at = std::find(data.records.begin(), data.records.end(), piece.record) - data.records.begin();
-    part.readings[static_cast<std::size_t>(at)] = piece.size;
+    part.readings[data.place_of(piece.record)] = piece.size;
   }
   return part;
 }

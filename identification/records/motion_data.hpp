@@ -31,6 +31,8 @@ struct MotionData {
   std::vector<ResidualPiece> pieces;
   Eigen::Index rows = 0;
 
+  /// Place of a record among `records`, and so among predictions of them.
+  [[nodiscard]] std::size_t place_of(std::size_t record) const;
   /// (measured - predicted) / scale [-], piece by piece; empty where a prediction failed.
   [[nodiscard]] Eigen::VectorXd residual(const std::vector<RecordPrediction>& predictions) const;
   /// Predicted / scale [-], likewise.

@@ -150,13 +150,14 @@ std::string MotionModel::unit(const RecordChannel& channel) const {
   return column == columns_.end() ? "" : unit_of_key(column->second);
 }
 
-std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
-                                                      Eigen::Index readings) const {
+std::vector<base::Override> MotionModel::keys_of(const std::vector<MotionSetting>& settings, std::size_t count,
+                                                 std::size_t record) const {
   std::vector<base::Override> overrides = set_.set;
   const MotionRecord& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
   std::vector<std::pair<std::size_t, std::string>> counted_above;  // an override, and the key above which it is counted
-  for (const MotionSetting& s : settings) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const MotionSetting& s = settings[k];
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
     if (!s.number.above.empty()) counted_above.emplace_back(overrides.size(), s.number.above);
     for (base::Override& one : s.number.overrides(s.value, {declared_in_[record], overrides}))
@@ -166,8 +167,14 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
     const double other = StandingNumbers{declared_in_[record], overrides}.number(key).value_or(0.0);
     overrides[at].value = exact_text(std::stod(overrides[at].value) + other);
   }
+  return overrides;
+}
+
+std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
+                                                      Eigen::Index readings) const {
+  std::vector<base::Override> overrides = keys_of(settings, settings.size(), record);
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
-  overrides.push_back({"duration_s", exact_text(duration_for(r, readings, interval))});
+  overrides.push_back({"duration_s", exact_text(duration_for(set_.records[record], readings, interval))});
   return overrides;
 }
 
@@ -175,15 +182,8 @@ double MotionModel::as_set(const std::vector<MotionSetting>& settings, std::size
   const MotionNumber& own = settings[number].number;
   if (!own.overrides || !own.above.empty()) return value;
   const std::size_t record = own.record.value_or(set_.used(false).front());
-  std::vector<base::Override> overrides = set_.set;
-  overrides.insert(overrides.end(), set_.records[record].set.begin(), set_.records[record].set.end());
-  for (std::size_t k = 0; k < number; ++k) {
-    const MotionNumber& before = settings[k].number;
-    if (!before.overrides || (before.record && *before.record != record)) continue;
-    for (base::Override& one : before.overrides(settings[k].value, {declared_in_[record], overrides}))
-      overrides.push_back(std::move(one));
-  }
-  const std::vector<base::Override> last = own.overrides(value, {declared_in_[record], overrides});
+  const std::vector<base::Override> before = keys_of(settings, number, record);
+  const std::vector<base::Override> last = own.overrides(value, {declared_in_[record], before});
   const bool sets = std::ranges::any_of(last, [&](const base::Override& one) { return one.key == own.key; });
   return sets ? StandingNumbers{declared_in_[record], last}.number(own.key).value_or(value) : value;
 }

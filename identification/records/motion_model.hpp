@@ -90,6 +90,9 @@ class MotionModel {
   void bound_trials() const;
   [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record,
                                           Eigen::Index readings) const;
+  /// Keys of a record's scenario with the first `count` settings, and with all of them and the duration that so many readings want.
+  [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<MotionSetting>& settings, std::size_t count,
+                                                    std::size_t record) const;
   [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
                                                          Eigen::Index readings) const;
   void look_at_joints();

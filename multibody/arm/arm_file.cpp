@@ -3,11 +3,11 @@
 #include "base/index.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
+#include "multibody/arm/flexible_link.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -189,87 +189,26 @@ void change_links(const TomlTable& links, RobotDescription& robot) {
   }
 }
 
-/// A link that bends: two hinges across it where its joint carries it.                               theory.md (A.19)
-struct Flexure {
-  std::string link, root;             ///< names of the link, and of the part of it that its joint carries
-  std::array<std::string, 2> hinges;  ///< names of their joints
-  double stiffness = 0.0;             ///< of each [N m/rad]
-  double damping = 0.0;               ///< [N m s/rad]
-};
-
-/// Where a link goes, in its own frame: to the next joint that is elsewhere, else to its centre of mass; zero where neither is.
-Eigen::Vector3d direction_of(const RobotDescription& robot, const RobotLink& link) {
-  constexpr double nowhere = 1e-6;  // [m]
-  for (const RobotJoint& joint : robot.joints)
-    if (joint.parent == link.name && joint.X_PJ.p.norm() > nowhere) return joint.X_PJ.p.normalized();
-  const Eigen::Vector3d com = link.inertia.centre();
-  return com.norm() > nowhere ? Eigen::Vector3d(com.normalized()) : Eigen::Vector3d::Zero();
-}
-
-/// Cuts the links for which `[link.NAME]` has a bending compliance into what its joint carries, a share of its inertia, and the rest behind two hinges.
+/// Cuts the links for which `[link.NAME]` has a bending compliance.
 std::vector<Flexure> bend_links(const TomlTable& links, RobotDescription& robot) {
   constexpr double least_compliance = 1e-15, most_compliance = 1e3;  // [rad/(N m)], of a link that is not rigid
-  constexpr double inboard_share =
-      0.1;  // of the link's inertia: without any, a joint and a hinge about one axis would move nothing between them
-  constexpr double usual_damping_time = 1e-3;  // [s]
+  constexpr double usual_damping_time = 1e-3;                        // [s]
   std::vector<Flexure> flexures;
-  RobotDescription cut = robot;
-  cut.links.clear();
-  cut.joints.clear();
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    RobotLink link = robot.links[i];
-    const TomlTable own = links.table(link.name);
+    const TomlTable own = links.table(robot.links[i].name);
     const double compliance = own.number_or("bending_compliance_rad_Nm", 0.0, Range::from(0.0, most_compliance));
     const double time = own.number_or("bending_damping_time_s", usual_damping_time, Range::from(0.0, 10.0));
-    const bool carried = i > 0 && robot.joints[i - 1].kind && *robot.joints[i - 1].kind != JointKind::free;
-    Eigen::Vector3d along = Eigen::Vector3d::Zero();
     if (compliance > 0.0 && compliance < least_compliance)
       own.fail("bending_compliance_rad_Nm",
                fmt::format("must be 0, or {:g} to {:g}", least_compliance, most_compliance));
-    if (compliance >= least_compliance) {
-      if (carried && link.inertia.mass > 0.0) along = direction_of(robot, link);
-      if (along.isZero())
-        own.fail("bending_compliance_rad_Nm", "only of a link on a moving joint that has a mass and a length");
-    }
-    if (along.isZero()) {
-      if (i > 0) cut.joints.push_back(robot.joints[i - 1]);
-      cut.links.push_back(std::move(link));
+    if (!(compliance >= least_compliance)) continue;
+    if (!can_bend(robot, i)) {
+      own.fail("bending_compliance_rad_Nm", "only of a link on a moving joint that has a mass and a length");
       continue;
     }
-    Flexure flexure;
-    flexure.link = link.name;
-    flexure.root = link.name + " root";
-    flexure.hinges = {link.name + " bending 1", link.name + " bending 2"};
-    flexure.stiffness = 1.0 / compliance;
-    flexure.damping = time / compliance;
-    const Eigen::Vector3d first = along.unitOrthogonal();
-    const std::array<Eigen::Vector3d, 2> axes{first, along.cross(first)};
-    RobotJoint joint = robot.joints[i - 1];
-    RobotLink root{flexure.root, {}};
-    const SpatialInertia whole = link.inertia;
-    const auto share = [&whole](double s) {
-      return SpatialInertia::about_centre(s * whole.mass, whole.centre(), s * whole.about_own_centre());
-    };
-    root.inertia = share(inboard_share);
-    link.inertia = share(1.0 - inboard_share);
-    joint.child = root.name;
-    cut.joints.push_back(joint);
-    cut.links.push_back(root);
-    std::string parent = root.name;
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      RobotJoint hinge;
-      hinge.name = flexure.hinges[k];
-      hinge.parent = parent;
-      hinge.child = k + 1 < axes.size() ? flexure.link + " hinge" : flexure.link;
-      hinge.kind = JointKind::revolute;
-      hinge.axis = axes[k];
-      parent = hinge.child;
-      cut.joints.push_back(hinge);
-      cut.links.push_back(k + 1 < axes.size() ? RobotLink{hinge.child, {}} : link);
-    }
-    flexures.push_back(flexure);
+    flexures.push_back(bend_link(robot, i, 1.0 / compliance, time / compliance));
+    i += flexures.back().hinges.size();  // which stand before the link now
   }
-  robot = std::move(cut);
   return flexures;
 }
 

@@ -25,8 +25,8 @@ struct ArmDescription {
   std::string input;  ///< canonical text of everything that was read: equal for equal arms
   ElasticArm arm;
   std::vector<RobotJoint>
-      joints;  ///< the moving joints of the arm: of the first elastic joints; flexures of its links come behind
-  std::vector<Drive> drives;  ///< of all elastic joints: at rest, held where they are
+      joints;  ///< the moving joints: of the first elastic joints, behind which those of bending links come
+  std::vector<Drive> drives;  ///< of all elastic joints, at rest, held where they are
   std::vector<ArmPose> poses;
   int tip = 0;            ///< frame
   double arm_mass = 0.0;  ///< of the arm's own URDF [kg]

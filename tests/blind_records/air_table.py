@@ -6,35 +6,25 @@ steps of 1e-5 s from 0.1 mm before the touch; the reading y follows T y' = F - y
 """
 
 import argparse
-import math
 
 import numpy as np
 
+from plants import integrate, read_off
+
 A, B, C = 890183.0, -1297.6, 0.3457  # N/m^2, N/m, N
 MASS = 8.9
-STEP, EVERY, DURATION = 1e-5, 100, 0.3
+STEP, INTERVAL, DURATION = 1e-5, 1e-3, 0.3
 
 
 def force(x):
-    return max(0.0, (A * x + B) * x + C) if x > 0.0 else 0.0
+    return np.where(x > 0.0, np.maximum(0.0, (A * x + B) * x + C), 0.0)
 
 
 def readings(speed, lag):
-    x, v, told = -1e-4, speed, 0.0
-    for k in range(round(DURATION / STEP) + 1):
-        here = force(x)
-        if k % EVERY == 0:
-            yield k * STEP, told if lag > 0.0 else here
-        k1, a1 = v, -here / MASS
-        k2, a2 = v + 0.5 * STEP * a1, -force(x + 0.5 * STEP * k1) / MASS
-        k3, a3 = v + 0.5 * STEP * a2, -force(x + 0.5 * STEP * k2) / MASS
-        k4, a4 = v + STEP * a3, -force(x + STEP * k3) / MASS
-        x += STEP / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        v += STEP / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
-        if lag > 0.0:  # exact for a force that is straight over the step
-            next_force = force(x)
-            slope = (next_force - here) / STEP
-            told = next_force - lag * slope + (told - here + lag * slope) * math.exp(-STEP / lag)
+    states = integrate(lambda _, y: np.array([y[1], -force(y[0]) / MASS]), np.array([[-1e-4], [speed]]), STEP, round(DURATION / STEP), 1)
+    sensor = {"gain": np.ones(1), **{what: np.zeros(1) for what in ("bias", "drift", "delay")}, "lag": np.full(1, lag)}
+    times, told = read_off(force(states[:, 0]), STEP, INTERVAL, sensor)
+    return zip(times, told[:, 0])
 
 
 def main():

@@ -88,7 +88,7 @@ TEST(MotionModel, TellsWhatAKeyIsSetTo) {
   EXPECT_NEAR(model.as_set(settings, 1, 0.3 * 1.08e6), 3e5, 1e-3);
 }
 
-// What is asked of the first readings is simulated no further, and told the same but for the integration.
+// What is asked of the first readings is simulated no further, and told the same but for the integration, which starts anew at other times.
 TEST(MotionModel, PredictsTheFirstReadingsAlone) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
   const MotionModel model(set);
