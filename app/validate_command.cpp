@@ -116,7 +116,7 @@ std::vector<validation::Check> all_checks() {
        {validation::static_wire_checks(), validation::distil_checks(), validation::motion_checks(),
         validation::motion_accuracy_checks(), validation::friction_checks(), validation::contact_law_checks(),
         validation::air_table_checks(data_directory()), validation::arm_checks(data_directory() / "arms"),
-        validation::linked_motion_checks(data_directory()), validation::capture_checks(data_directory()),
+        validation::linked_motion_checks(), validation::capture_checks(data_directory()),
         validation::snare_checks(data_directory()), validation::frequency_checks(data_directory()),
         validation::tracing_checks(measured), validation::record_checks(data_directory(), measured)}) {
     checks.insert(checks.end(), some.begin(), some.end());

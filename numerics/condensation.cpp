@@ -1,17 +1,13 @@
 #include "numerics/condensation.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cassert>
 
 namespace snare::numerics {
 
-namespace {
-
-constexpr auto at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
+using base::at;
 
 Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs) {
   const int n = pattern.order;

@@ -57,6 +57,7 @@ void DaeSystem::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
 }
 
 const SparseMatrix& DaeSystem::jacobian(const DaePoint& at, double c) {
+  for (DaePart* part : parts_) stale_pattern_ = part->outgrows_pattern(at) || stale_pattern_;
   if (stale_pattern_) make_pattern_anew();
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   for (DaePart* part : parts_) part->jacobian(at, c, matrix_.value);
@@ -73,9 +74,7 @@ void DaeSystem::events(const DaePoint& at, std::span<double> values) {
 }
 
 void DaeSystem::accept(const DaePoint& at) {
-  for (DaePart* part : parts_) {
-    if (part->accept(at)) stale_pattern_ = true;
-  }
+  for (DaePart* part : parts_) part->accept(at);
 }
 
 double take(std::span<const double>& memory) {

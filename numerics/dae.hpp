@@ -48,25 +48,49 @@ class DaeLayout {
   int size_ = 0;
 };
 
+/// A pattern, and the slots of the entries that were asked for last time: those who ask in the same order again have nothing looked up.
+class PatternSlots {
+ public:
+  void attach(const SparseMatrix& pattern) {  ///< the caller's; what was asked for before is forgotten
+    pattern_ = &pattern;
+    known_.clear();
+  }
+  /// Slot of the entry (row, column) that is asked for as the k-th, k = 0, 1, ...; -1 outside the pattern.
+  [[nodiscard]] int slot(std::size_t k, int row, int column) {
+    if (k < known_.size() && known_[k].row == row && known_[k].column == column) return known_[k].slot;
+    if (k >= known_.size()) known_.resize(k + 1);
+    known_[k] = {row, column, pattern_->slot(row, column)};
+    return known_[k].slot;
+  }
+
+ private:
+  struct Known {
+    int row = -1, column = -1, slot = -1;
+  };
+  const SparseMatrix* pattern_ = nullptr;
+  std::vector<Known> known_;
+};
+
 /// Values on a pattern, by row and column, each in the unit of its row over that of its column: of any unit here. What the pattern does not have
 /// is left out.
 class PatternValues {
  public:
-  PatternValues(const SparseMatrix& pattern, std::vector<double>& values) : pattern_(pattern), values_(values) {}
+  PatternValues(PatternSlots& slots, std::vector<double>& values) : slots_(slots), values_(values) {}
   /// Adds to the entry (row, column).
   void add(int row, int column, double value) const {
-    const int slot = pattern_.slot(row, column);
+    const int slot = slots_.slot(asked_++, row, column);
     if (slot >= 0) values_[static_cast<std::size_t>(slot)] += value;
   }
   /// A stretch of a column from a row on, all of which the pattern has.
   void add(int first_row, int column, const Eigen::Ref<const Eigen::VectorXd>& stretch) const {
-    const int slot = pattern_.slot(first_row, column);
+    const int slot = slots_.slot(asked_++, first_row, column);
     if (slot >= 0) Eigen::Map<Eigen::VectorXd>(values_.data() + slot, stretch.size()) += stretch;
   }
 
  private:
-  const SparseMatrix& pattern_;
+  PatternSlots& slots_;
   std::vector<double>& values_;
+  mutable std::size_t asked_ = 0;
 };
 
 /// Where a residual is wanted: time [s], unknowns and their rates.
@@ -102,8 +126,10 @@ class DaePart {
   /// Number of functions whose zeros stop the integration.
   [[nodiscard]] virtual int event_count() const { return 0; }
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
-  /// Told every accepted step. True: `sparsity` has changed (no restart is needed for that).
-  virtual bool accept(const DaePoint& /*at*/) { return false; }
+  /// Asked before each Jacobian. True: there it has entries that the pattern has not, and `sparsity` lists them from now on.
+  [[nodiscard]] virtual bool outgrows_pattern(const DaePoint& /*at*/) { return false; }
+  /// Told every accepted step.
+  virtual void accept(const DaePoint& /*at*/) {}
   /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the same making into
   /// the same state, bit by bit.
   virtual void save_state(std::vector<double>& /*memory*/) const {}
@@ -134,7 +160,7 @@ class DaeSystem {
 
   /// F into `rows`.
   void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows);
-  /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first when a part has asked for it.
+  /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first where a part has outgrown it.
   const SparseMatrix& jacobian(const DaePoint& at, double c);
   void events(const DaePoint& at, std::span<double> values);
   /// Told every accepted step.

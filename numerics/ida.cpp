@@ -91,7 +91,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       linear(make_linear_solver(callbacks, context)),
       ida(made(IDACreate(context), "IDACreate")),
       newton(options.newton_test == NewtonTest::every_unknown
-                 ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
+                 ? make_newton_solver(callbacks, y_view.get(), {options.renewals, options.quasi_newton}, context)
                  : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
   // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
@@ -255,7 +255,10 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   // IDA's own bound acts on what it chooses after the step, not on the length that it has chosen already.
   max_step = std::min(max_step, m.options.max_step);
   check(IDASetMaxStep(m.ida.get(), std::isfinite(max_step) ? max_step : 0.0), "IDASetMaxStep");
-  const double stop = std::min(limit, m.time + max_step);
+  // A stop cuts the step behind it, too, which may go further: there is one only where this step would pass it.
+  double next = 0.0;
+  if (!m.starting) check(IDAGetCurrentStep(m.ida.get(), &next), "IDAGetCurrentStep");
+  const double stop = m.starting || next > max_step ? std::min(limit, m.time + max_step) : limit;
   check(IDASetStopTime(m.ida.get(), stop), "IDASetStopTime");
   if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(stop)), "IDASetInitStep");
   double reached = m.time;

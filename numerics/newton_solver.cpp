@@ -1,16 +1,20 @@
 #include "numerics/newton_solver.hpp"
 
+#include "numerics/quasi_newton.hpp"
+
 namespace snare::numerics {
 
 namespace {
 
-constexpr int most = 4;        // iterations, but for those after a renewal
-constexpr double slow = 0.25;  // rate of convergence beyond which a new matrix pays
+constexpr int most = 4;             // iterations, but for those after a renewal
+constexpr int most_corrected = 12;  // with a matrix of an earlier step that is corrected: a new one costs ten
+constexpr double slow = 0.25;       // rate of convergence beyond which a new matrix pays
 
 struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
-  int renewals;   // at most, of the matrix within a step
+  NewtonOptions options;
+  QuasiNewton corrected;
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -44,14 +48,18 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       return code;
     }
     int renewals = 0;
+    self.corrected.restart();
     for (int k = 0; code == SUN_NLS_SUCCESS; ++k) {
       ++self.iterations;
       auto step = map(self.step);
       step = -step;
       code = self.solve(self.step, memory);
       if (code != SUN_NLS_SUCCESS) break;
+      if (self.options.quasi_newton) self.corrected.update(step, map(weight));
       map(correction) += step;
-      const int last = current != SUNFALSE ? most + self.renewals : most;
+      const int last = current != SUNFALSE         ? most + self.options.renewals
+                       : self.options.quasi_newton ? most_corrected
+                                                   : most;
       code = callbacks.converged(k, {share, last, current != SUNFALSE}, step, map(weight));
       if (code == SUN_NLS_SUCCESS) return SUN_NLS_SUCCESS;
       if (code != SUN_NLS_CONTINUE) break;
@@ -62,8 +70,9 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = self.system(correction, self.step, memory);
       // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
-          renewals < self.renewals) {
+          renewals < self.options.renewals) {
         code = self.setup(SUNTRUE, &current, memory);
+        self.corrected.restart();
         ++renewals;
       }
     }
@@ -113,7 +122,8 @@ int snare_newton_failures(SUNNonlinearSolver solver, long* count) {
 
 }  // namespace
 
-SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals, SUNContext context) {
+SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, const NewtonOptions& options,
+                                      SUNContext context) {
   SunNonlinearSolver solver(made(SUNNonlinSolNewEmpty(context), "SUNNonlinSolNewEmpty"));
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;
@@ -123,7 +133,8 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, in
   solver->ops->setlsolvefn = snare_newton_set_solve;
   solver->ops->getnumiters = snare_newton_iterations;
   solver->ops->getnumconvfails = snare_newton_failures;
-  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), renewals};
+  solver->content =
+      new Newton{callbacks, made(N_VClone(like), "N_VClone"), options, QuasiNewton(N_VGetLength(like), most_corrected)};
   return solver;
 }
 

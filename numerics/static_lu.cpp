@@ -1,20 +1,21 @@
 #include "numerics/static_lu.hpp"
 
+#include "base/index.hpp"
+
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 namespace snare::numerics {
 
-namespace {
+using base::at;
 
-constexpr auto at(int i) {
-  return static_cast<std::size_t>(i);
-}
+namespace {
 
 /// The unknowns in their order: first those with few neighbours; one without a value on the diagonal, a multiplier for one, after
 /// the last of its neighbours that have one. What such a row asks for may only be moved by the multiplier of another one, as a rate by the
@@ -119,14 +120,18 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     }
   }
   std::vector<std::vector<int>> before(at(order_));
+  std::vector<int> both;
   for (int k = 0; k < order_; ++k) {
     std::vector<int>& list = after[at(k)];
-    for (const int child : waiting[at(k)]) {
-      const std::vector<int>& of_child = after[at(child)];
-      list.insert(list.end(), of_child.begin() + 1, of_child.end());  // the first is k
-    }
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (const int child : waiting[at(k)]) {
+      const std::vector<int>& of_child = after[at(child)];
+      both.clear();
+      std::set_union(list.begin(), list.end(), of_child.begin() + 1, of_child.end(),  // its first is k
+                     std::back_inserter(both));
+      std::swap(list, both);
+    }
     if (!list.empty()) waiting[at(list.front())].push_back(k);
     for (const int i : list) before[at(i)].push_back(k);
   }
@@ -136,7 +141,12 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     diagonal_.push_back(static_cast<int>(column_.size()));
     column_.push_back(i);
     column_.insert(column_.end(), after[at(i)].begin(), after[at(i)].end());
+    first_stretch_.push_back(static_cast<int>(stretches_.size()));
+    list_stretches(start_.back(), diagonal_.back());
+    first_upper_.push_back(static_cast<int>(stretches_.size()));
+    list_stretches(diagonal_.back() + 1, static_cast<int>(column_.size()));
   }
+  first_stretch_.push_back(static_cast<int>(stretches_.size()));
   start_.push_back(static_cast<int>(column_.size()));
   values_.assign(column_.size(), 0.0);
   inverse_.assign(at(order_), 0.0);
@@ -158,13 +168,14 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
       const int k = column_[at(e)];
       eliminations_.push_back({e, k, static_cast<int>(runs_.size())});
       Run run;
-      for (int from = diagonal_[at(k)] + 1; from < start_[at(k) + 1]; ++from) {
-        const int to = entry[at(column_[at(from)])];
-        if (run.to + run.length == to && run.length > 0) {
-          ++run.length;
+      for (int u = first_upper_[at(k)]; u < first_stretch_[at(k) + 1]; ++u) {
+        const Stretch& stretch = stretches_[at(u)];
+        const int to = entry[at(stretch.column)];  // and its neighbours: row i has all of them
+        if (run.length > 0 && run.to + run.length == to) {
+          run.length += stretch.length;
         } else {
           if (run.length > 0) runs_.push_back(run);
-          run = {from, to, 1};
+          run = {stretch.entry, to, stretch.length};
         }
       }
       if (run.length > 0) runs_.push_back(run);
@@ -172,6 +183,15 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
   }
   first_elimination_.push_back(static_cast<int>(eliminations_.size()));
   eliminations_.push_back({0, 0, static_cast<int>(runs_.size())});
+}
+
+void StaticLu::list_stretches(int begin, int end) {
+  for (int e = begin; e < end; ++e) {
+    if (e > begin && column_[at(e)] == column_[at(e - 1)] + 1)
+      ++stretches_.back().length;
+    else
+      stretches_.push_back({e, column_[at(e)], 1});
+  }
 }
 
 bool StaticLu::factorize(const SparseMatrix& matrix) {
@@ -183,21 +203,31 @@ bool StaticLu::factorize(const SparseMatrix& matrix) {
 
 void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
   const double* const values = values_.data();
-  const int* const column = column_.data();
   double* const x = work_.data();
   const auto products = [&](int begin, int end) {
-    double even = 0.0, odd = 0.0;
-    int e = begin;
-    for (; e + 1 < end; e += 2) {
-      even += values[e] * x[column[e]];
-      odd += values[e + 1] * x[column[e + 1]];
+    Two sum{0.0, 0.0}, other{0.0, 0.0};
+    double rest = 0.0;
+    for (int k = begin; k < end; ++k) {
+      const Stretch& stretch = stretches_[at(k)];
+      const double* a = values + stretch.entry;
+      const double* of_x = x + stretch.column;
+      int left = stretch.length;
+      for (; left >= 4; left -= 4, a += 4, of_x += 4) {
+        sum += *reinterpret_cast<const Two*>(a) * *reinterpret_cast<const Two*>(of_x);
+        other += *reinterpret_cast<const Two*>(a + 2) * *reinterpret_cast<const Two*>(of_x + 2);
+      }
+      if (left >= 2) {
+        sum += *reinterpret_cast<const Two*>(a) * *reinterpret_cast<const Two*>(of_x);
+        left -= 2, a += 2, of_x += 2;
+      }
+      if (left > 0) rest += *a * *of_x;
     }
-    if (e < end) even += values[e] * x[column[e]];
-    return even + odd;
+    sum += other;
+    return sum[0] + sum[1] + rest;
   };
-  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(start_[at(i)], diagonal_[at(i)]);
+  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(first_stretch_[at(i)], first_upper_[at(i)]);
   for (int i = order_ - 1; i >= 0; --i) {
-    x[i] = (x[i] - products(diagonal_[at(i)] + 1, start_[at(i) + 1])) * inverse_[at(i)];
+    x[i] = (x[i] - products(first_upper_[at(i)], first_stretch_[at(i) + 1])) * inverse_[at(i)];
     b[unknown_[at(i)]] = x[i];
   }
 }

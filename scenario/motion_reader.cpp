@@ -78,9 +78,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
 MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions& o) {
   MotionOutput output;
   output.paraview = table.boolean_or("paraview", output.paraview);
-  // Where nobody asks for another: a tenth of the duration, at most a second; of long runs a twentieth, since each costs a start at first order.
-  const double usual_interval = std::max(std::min(1.0, o.duration / 10.0), o.duration / 20.0);
-  o.checkpoint_interval = table.number_or("checkpoint_interval_s", usual_interval, durations);
+  o.checkpoint_interval = table.number_or("checkpoint_interval_s", o.duration / 10.0, durations);
   if (o.duration / o.checkpoint_interval > most_outputs)
     table.fail("checkpoint_interval_s", fmt::format("gives more than {:g} checkpoints", most_outputs));
   output.checkpoint_wall_time =

@@ -7,13 +7,16 @@
 
 namespace snare::validation {
 
-/// Captures by snares whose wires are strings: the ring's closed form, rigidizing, the shipped capture against finer tolerances and
-/// the conservation laws.
+/// Captures by snares: the ring's closed form, rigidizing, the shipped capture against finer tolerances and meshes, conservation in all
+/// that are shipped. Takes half a minute.
 [[nodiscard]] std::vector<Check> capture_checks(const std::filesystem::path& data);
 
 /// Rows of `capture_checks`.
 [[nodiscard]] std::vector<Row> tight_ring_rows(const std::filesystem::path& data);
 [[nodiscard]] std::vector<Row> rigidizing_rows(const std::filesystem::path& data);
 [[nodiscard]] std::vector<Row> snare_capture_rows(const std::filesystem::path& data);
+[[nodiscard]] std::vector<Row> refined_capture_rows(const std::filesystem::path& data);
+[[nodiscard]] std::vector<Row> payload_rows(const std::filesystem::path& data);
+[[nodiscard]] std::vector<Row> visitor_rows(const std::filesystem::path& data);
 
 }  // namespace snare::validation

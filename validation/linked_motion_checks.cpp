@@ -1,9 +1,7 @@
 #include "validation/linked_motion_checks.hpp"
 
+#include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
-#include "scenario/scenario.hpp"
-
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -127,31 +125,8 @@ std::vector<Row> moving_mount_rows() {
               ErrorKind::absolute, 1e-8)};
 }
 
-// The shipped captures, at their own tolerances: what the payload brings is 0.025 J.
-std::vector<Row> capture_rows(const std::filesystem::path& data) {
-  std::vector<Row> rows;
-  constexpr double energy = 0.5 * 500.0 * 0.01 * 0.01;
-  for (const char* name : {"jemrms_capture", "jemrms_payload_on_wire"}) {
-    const scenario::Scenario asked = scenario::read_scenario(data / "scenarios" / (std::string(name) + ".toml"));
-    const scenario::NamedMotion& run = asked.motions.runs.front();
-    MotionOptions options = run.options;
-    options.duration = 1.0;
-    const MotionResult result = coupling::simulate(run.motion, options);
-    const double usable = result.report.usable() ? 0.0 : not_computed;
-    rows.push_back(row(fmt::format("{}: integrator's energy over that of the impact", name), "", "conservation", 0.0,
-                       result.energy.integrator / energy + usable, ErrorKind::absolute, 1e-2));
-    rows.push_back(row(fmt::format("{}: momentum not accounted for, over the impulse", name), "", "conservation", 0.0,
-                       result.momentum_error.norm() / result.impulse[0].norm() + usable, ErrorKind::absolute, 1e-2));
-    rows.push_back(row(fmt::format("{}: largest gap of welds and mounts", name), "m", "held", 0.0,
-                       result.largest_drift + usable, ErrorKind::absolute, 1e-6));
-  }
-  return rows;
-}
-
-std::vector<Check> linked_motion_checks(const std::filesystem::path& data) {
-  return {{"welded bodies", welded_top_rows}, {"mounts that move", moving_mount_rows}, {"capture by an arm", [data] {
-                                                                                          return capture_rows(data);
-                                                                                        }}};
+std::vector<Check> linked_motion_checks() {
+  return {{"welded bodies", welded_top_rows}, {"mounts that move", moving_mount_rows}};
 }
 
 }  // namespace snare::validation

@@ -49,6 +49,7 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   }
   accepted_.state = rod().make_state(q, model_.controls());
   accepted_.take_directors();
+  accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);
   if (model_.is_curved()) {
@@ -226,20 +227,21 @@ MountCell RodPart::mount_cell(const DaePoint& at, End end) {
 }
 
 const SpatialState& RodPart::state_at(const DaePoint& at) {
+  if (accepted_y_.size() == at.y.size() && accepted_y_ == at.y) return accepted_.state;
   evaluate(at);
   return trial_.state;
 }
 
-bool RodPart::accept(const DaePoint& at) {
+void RodPart::accept(const DaePoint& at) {
+  accepted_y_ = at.y;
   if (is_evaluated(at)) {
     accepted_.state = trial_.state;
     accepted_.spin = trial_.spin;
-    return false;
+    return;
   }
   take_unknowns(at.y);
   set_mounts(at.y, accepted_);
   wire::accept(accepted_.state, band_);
-  return false;
 }
 
 void RodPart::save_state(std::vector<double>& memory) const {
@@ -260,6 +262,7 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
   }
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
   accepted_.take_directors();
+  accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);
 }

@@ -41,7 +41,7 @@ class RodPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Carries the reference frames along.
-  bool accept(const numerics::DaePoint& at) override;
+  void accept(const numerics::DaePoint& at) override;
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
@@ -129,7 +129,8 @@ class RodPart final : public numerics::DaePart {
   std::array<std::function<MountMotion(const numerics::VectorView& y)>, 2> carried_;
   RodSlots slots_;
 
-  RodInstant accepted_;  // the state: frames of the last accepted step
+  RodInstant accepted_;         // the state: frames of the last accepted step
+  Eigen::VectorXd accepted_y_;  // the unknowns there, empty: none told yet
 
   // Workspace: the point of the last evaluation.
   RodInstant trial_;

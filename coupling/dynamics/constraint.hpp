@@ -23,7 +23,7 @@ class Constraint : public numerics::DaePart {
       : name_(std::move(name)), carrier_(std::move(carrier)), options_(options) {}
 
   /// Keeps the pattern, whose slots the Jacobian fills.
-  void attach_pattern(const numerics::SparseMatrix& pattern) final { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) final { slots_.attach(pattern); }
 
   /// Rows of G.
   [[nodiscard]] virtual int constraints() const = 0;
@@ -49,7 +49,7 @@ class Constraint : public numerics::DaePart {
  protected:
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const MotionOptions& options() const { return options_; }
-  [[nodiscard]] const numerics::SparseMatrix& pattern() const { return *pattern_; }
+  [[nodiscard]] numerics::PatternSlots& slots() { return slots_; }
   /// Told by `declare`.
   void set_multipliers(int first) { multipliers_ = first; }
 
@@ -58,7 +58,7 @@ class Constraint : public numerics::DaePart {
   MovingFrame carrier_;
   MotionOptions options_;
   int multipliers_ = 0;
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
 };
 
 /// Adds to dv what the constraints' forces do, so that G dv + extra = 0 for all of them; returns their multipliers, one

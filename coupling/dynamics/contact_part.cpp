@@ -88,17 +88,25 @@ void ContactPart::declare(numerics::DaeLayout& layout) {
                          0});
 }
 
-bool ContactPart::look_around(const VectorView& y) {
-  search_.update(y);
-  const auto known = [this](int e) { return coupled_[base::at(e)]; };
-  if (std::all_of(search_.candidates().begin(), search_.candidates().end(), known)) return false;
-  std::fill(coupled_.begin(), coupled_.end(), false);
+bool ContactPart::outgrows_pattern(const DaePoint& at) {
+  if (search_.candidates().empty()) return false;
+  find(at.y, found_);
+  const auto known = [this](const Node& n) { return coupled_[base::at(n.element)]; };
+  if (std::ranges::all_of(found_.nodes, known)) return false;
+  std::vector<bool> wanted(coupled_.size(), false);
+  for (const int e : search_.candidates()) wanted[base::at(e)] = coupled_[base::at(e)];
   const int last = search_.curve().elements() - 1;
-  for (const int e : search_.candidates()) {
-    for (int k = std::max(0, e - coupled_beside); k <= std::min(last, e + coupled_beside); ++k)
-      coupled_[base::at(k)] = true;
+  for (const Node& n : found_.nodes) {
+    for (int k = std::max(0, n.element - coupled_beside); k <= std::min(last, n.element + coupled_beside); ++k)
+      wanted[base::at(k)] = true;
   }
+  coupled_ = std::move(wanted);
   return true;
+}
+
+void ContactPart::restore_state(const VectorView& y, std::span<const double>& /*memory*/) {
+  std::fill(coupled_.begin(), coupled_.end(), false);
+  search_.update(y);
 }
 
 void ContactPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
@@ -287,7 +295,7 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
 }
 
 void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
-  const numerics::PatternValues into(*pattern_, values);
+  const numerics::PatternValues into(slots_, values);
   find_geometries(at.y, found_);
   if (has_bristle()) {
     add_up_bristles(at.y, found_);

@@ -31,16 +31,17 @@ class ContactPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// Where an element touches that is not in the pattern: those that touch come in, with some neighbours, and those that are no
+  /// longer near go out.
+  bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may be touched next.
-  bool accept(const numerics::DaePoint& at) override { return look_around(at.y); }
-  void restore_state(const numerics::VectorView& y, std::span<const double>& /*memory*/) override {
-    static_cast<void>(look_around(y));
-  }
-  /// The same at a start, unknowns y in SI units. True: the pattern has changed.
-  bool look_around(const numerics::VectorView& y);
+  void accept(const numerics::DaePoint& at) override { search_.update(at.y); }
+  void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
+  /// The same as `accept` at a start, unknowns y in SI units.
+  void look_around(const numerics::VectorView& y) { search_.update(y); }
 
   /// Which elements are near, and where the wire's curve is.
   [[nodiscard]] const ContactSearch& search() const { return search_; }
@@ -112,7 +113,7 @@ class ContactPart final : public numerics::DaePart {
   ContactSearch search_;
   std::vector<bool> coupled_;  // elements in the pattern
   int bristle_ = 0;
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
   Found found_;  // workspace
 };
 

@@ -22,7 +22,7 @@ void FrameForces::sparsity(std::vector<std::pair<int, int>>& entries) const {
 }
 
 void FrameForces::attach_pattern(const numerics::SparseMatrix& pattern) {
-  pattern_ = &pattern;
+  slots_.attach(pattern);
   carriers_.clear();
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     const std::vector<int> coordinates = frames_[k].coordinates();
@@ -42,7 +42,7 @@ void FrameForces::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
 void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
   const std::vector<Wrench> w = wrenches(at.y);
   if (w.empty()) return;
-  const numerics::PatternValues into(*pattern_, values);
+  const numerics::PatternValues into(slots_, values);
   const MatrixXd D = derivatives(at.y);
   std::vector<MovingFrame::Derivatives> d;
   d.reserve(frames_.size());

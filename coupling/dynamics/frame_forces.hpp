@@ -58,7 +58,7 @@ class FrameForces : public numerics::DaePart {
 
   std::vector<MovingFrame> frames_;
   std::vector<Carrier> carriers_;
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
 };
 
 }  // namespace snare::coupling

@@ -413,11 +413,6 @@ void LawWirePart::look_around(const VectorView& y) {
   if (holds_) angle_ = act(now).angle;
 }
 
-bool LawWirePart::accept(const numerics::DaePoint& at) {
-  look_around(at.y);
-  return false;
-}
-
 void LawWirePart::save_state(std::vector<double>& memory) const {
   memory.push_back(within_ ? 1.0 : 0.0);
   memory.push_back(holds_ ? 1.0 : 0.0);

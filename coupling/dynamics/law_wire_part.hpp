@@ -39,7 +39,7 @@ class LawWirePart final : public PressPart {
 
   /// Looks whether the shaft is within reach, and before the wire; to be told the start, y in SI units.
   void look_around(const numerics::VectorView& y);
-  bool accept(const numerics::DaePoint& at) override;
+  void accept(const numerics::DaePoint& at) override { look_around(at.y); }
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 

@@ -57,7 +57,7 @@ void LoadPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
 void LoadPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
   const Wrench w = wrench(at);
   if (!frame_.moves_freely() || (w.force.isZero(0.0) && w.moment.isZero(0.0))) return;
-  const numerics::PatternValues into(*pattern_, values);
+  const numerics::PatternValues into(slots_, values);
   const MovingFrame::Derivatives d = frame_.differentiate(at.y);
   MatrixXd by = d.force(w);
   if (load_.in_frame) {

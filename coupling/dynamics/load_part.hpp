@@ -16,7 +16,7 @@ class LoadPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& /*layout*/) override {}
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
@@ -32,7 +32,7 @@ class LoadPart final : public numerics::DaePart {
   FrameLoad load_;
   MovingFrame frame_;
   double entered_ = 0.0;
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
 };
 
 }  // namespace snare::coupling

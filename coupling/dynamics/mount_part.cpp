@@ -117,7 +117,7 @@ void MountPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
 }
 
 void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
-  const numerics::PatternValues into(pattern(), values);
+  const numerics::PatternValues into(slots(), values);
   const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(), rows = balances();
   const MovingFrame::Derivatives d = carrier().differentiate(at.y);
   const wire::MountCell cell = rod_.mount_cell(at, end_);

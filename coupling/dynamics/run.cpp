@@ -22,8 +22,8 @@ namespace {
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
 constexpr double share_of_rods = 2e-5;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
-// Without wires in motion Newton's method forgives a matrix of another step: a third of the matrices less, as many iterations.
-constexpr double matrix_change_of_bodies = 0.5;
+// Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
+constexpr double matrix_change_without_waves = 0.5;
 // Where no wave follows, a step may go through a whole touch.
 constexpr int renewals_without_waves = 4;
 
@@ -77,8 +77,11 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.newton_test = numerics::NewtonTest::every_unknown;
   const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
-  if (rods_.empty()) ida.matrix_change = matrix_change_of_bodies;
-  if (!rods_.empty() && !waves) ida.renewals = renewals_without_waves;
+  if (!waves) ida.matrix_change = matrix_change_without_waves;
+  if (!rods_.empty() && !waves) {
+    ida.renewals = renewals_without_waves;
+    ida.quasi_newton = true;
+  }
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
@@ -210,13 +213,9 @@ bool MotionRun::write_until(double time) {
 
 void MotionRun::begin() {
   for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) {
-      if (p.look_around(y_)) system_->invalidate_pattern();
-    }
+    for (ContactPart& p : c.pieces()) p.look_around(y_);
   }
-  for (WirePairPart& p : pairs_) {
-    if (p.look_around(y_)) system_->invalidate_pattern();
-  }
+  for (WirePairPart& p : pairs_) p.look_around(y_);
   for (LawWirePart& w : law_wires_) w.look_around(y_);
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);

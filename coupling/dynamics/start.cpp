@@ -23,6 +23,13 @@ Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
   wire::PlanarRodProperties plane;
   plane.bending_stiffness = rod.properties.bending_stiffness;
   plane.axial_stiffness = rod.properties.axial_stiffness;
+  const auto in_plane = [](const wire::SpatialEnd& end) {
+    using Kind = wire::SpatialEnd::Kind;
+    const bool turns = end.kind == Kind::pin || end.kind == Kind::twisting_pin;
+    return turns ? wire::PlanarEnd::Kind::pin : wire::PlanarEnd::Kind::clamp;
+  };
+  plane.left.kind = in_plane(rod.properties.left);
+  plane.right.kind = in_plane(rod.properties.right);
   plane.right.position = {(to - from).norm(), 0.0};
   const wire::PlanarRod planar(rod.mesh(), plane);
   const wire::Controls controls = rod.controls();

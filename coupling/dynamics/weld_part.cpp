@@ -91,7 +91,7 @@ void WeldPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
 }
 
 void WeldPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& values) {
-  const numerics::PatternValues into(pattern(), values);
+  const numerics::PatternValues into(slots(), values);
   const MovingFrame::State a = carrier().state(at.y), h = held_.state(at.y);
   const Matrix3d R_AH_in_world = h.X_WF.R * a.X_WF.R.transpose();  // sum_k h_k a_k^T
   const Matrix3d trace = R_AH_in_world.trace() * Matrix3d::Identity();

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace snare::coupling {
 
@@ -21,6 +23,9 @@ namespace {
 // Rows and columns of a local block: of a place its forces; its places and velocities; bristles behind both.
 constexpr Eigen::Index rows_of_place = 12, row_of_bristle = 24;
 constexpr Eigen::Index columns_of_place = 24, column_of_velocity = 12, column_of_bristle = 48;
+
+// Elements on either side of those that touch which are in the pattern, too.
+constexpr int coupled_beside = 1;
 
 double smaller_default(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b) {
   const auto of = [](const wire::RodPart& rod, double radius) {
@@ -55,17 +60,35 @@ void WirePairPart::declare(numerics::DaeLayout& layout) {
   }
 }
 
-bool WirePairPart::look_around(const VectorView& y) {
-  search_.update(y);
-  const auto& wanted = search_.candidates();
-  if (std::includes(coupled_.begin(), coupled_.end(), wanted.begin(), wanted.end())) return false;
-  coupled_ = wanted;
+bool WirePairPart::outgrows_pattern(const DaePoint& at) {
+  if (search_.candidates().empty()) return false;
+  find(at.y, found_);
+  const auto elements = [](const Node& n) {
+    const int own = n.places[0].element, other = n.places[1].element;
+    return n.own == 0 ? std::pair(own, other) : std::pair(other, own);
+  };
+  const auto known = [&](const Node& n) { return std::ranges::binary_search(coupled_, elements(n)); };
+  if (std::ranges::all_of(found_.nodes, known)) return false;
+  std::vector<std::pair<int, int>> wanted;
+  std::ranges::set_intersection(coupled_, search_.candidates(), std::back_inserter(wanted));
+  const std::array<int, 2> last{search_.curve(0).elements() - 1, search_.curve(1).elements() - 1};
+  for (const Node& n : found_.nodes) {
+    const auto [a, b] = elements(n);
+    for (int i = std::max(0, a - coupled_beside); i <= std::min(last[0], a + coupled_beside); ++i) {
+      for (int j = std::max(0, b - coupled_beside); j <= std::min(last[1], b + coupled_beside); ++j)
+        wanted.emplace_back(i, j);
+    }
+  }
+  std::ranges::sort(wanted);
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  coupled_ = std::move(wanted);
   return true;
 }
 
 void WirePairPart::restore_state(const VectorView& y, std::span<const double>& memory) {
   touches_.restore_state(memory);
-  static_cast<void>(look_around(y));
+  coupled_.clear();
+  search_.update(y);
 }
 
 // By pairs of vertices, of either wire, that an element of one and an element of the other couple.
@@ -278,7 +301,7 @@ void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows
 }
 
 void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
-  const numerics::PatternValues into(*pattern_, values);
+  const numerics::PatternValues into(slots_, values);
   find_geometries(at.y, found_);
   if (has_bristle()) add_up_bristles(at.y, found_);
   for (std::size_t w = 0; has_bristle() && w < 2; ++w) {

@@ -28,15 +28,17 @@ class WirePairPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
+  /// Where elements touch that are not in the pattern: see ContactPart.
+  bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may touch next.
-  bool accept(const numerics::DaePoint& at) override { return look_around(at.y); }
+  void accept(const numerics::DaePoint& at) override { search_.update(at.y); }
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
-  /// The same at a start, unknowns y in SI units. True: the pattern has changed.
-  bool look_around(const numerics::VectorView& y);
+  /// The same as `accept` at a start, unknowns y in SI units.
+  void look_around(const numerics::VectorView& y) { search_.update(y); }
 
   /// Which elements of the two are near each other.
   [[nodiscard]] const WirePairSearch& search() const { return search_; }
@@ -138,7 +140,7 @@ class WirePairPart final : public numerics::DaePart {
   ContactTouches touches_;
   std::vector<std::pair<int, int>> coupled_;  // elements in the pattern, in their order
   std::array<int, 2> bristles_{0, 0};         // first of each wire
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
   Found found_;  // workspace
 };
 

@@ -71,12 +71,16 @@ struct Refit {
   [[nodiscard]] double misfit() const { return fit.chi2 + heldout.squaredNorm() + chance; }
 };
 
-/// Whether the records tell two refits apart: e is the difference of their residuals, the misfit of the worse is larger by
-/// |e|^2 + 2 e'r, of standard deviation 2 |Sigma^(1/2)' e|.
+/// Whether a refit is worse than the best beyond what noise does to the difference e of their residuals: the misfit of the worse is larger
+/// by |e|^2 + 2 e'r, of standard deviation 2 s, s = |Sigma^(1/2)' e|. Refits that are the same have e = 0 but for round-off.
+bool is_worse(const Refit& best, const Refit& other, double s) {
+  constexpr double round_off = 1e-9;
+  return other.misfit() - best.misfit() > apart * 2.0 * s + round_off * best.misfit();
+}
+
+/// Whether the records tell two refits apart.
 bool told_apart(const MotionData& data, const ColouredNoise& noise, const Refit& best, const Refit& other) {
-  const Eigen::VectorXd difference = other.fit.residual - best.fit.residual;
-  const double deviation = 2.0 * coloured(data, noise, difference).norm();
-  return other.misfit() - best.misfit() > apart * deviation;
+  return is_worse(best, other, coloured(data, noise, other.fit.residual - best.fit.residual).norm());
 }
 
 /// Among refits that the fitted records do not tell apart (indices, the best first) the records held out choose, too: what both together
@@ -97,7 +101,7 @@ std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise
   std::erase_if(members, [&](std::size_t k) {
     const double here = coloured(in.data, noise, fits[k].fit.residual - best.fit.residual).norm();
     const double beside = coloured(*in.heldout_data, there, fits[k].heldout - best.heldout).norm();
-    return fits[k].misfit() - best.misfit() > apart * 2.0 * std::hypot(here, beside);
+    return is_worse(best, fits[k], std::hypot(here, beside));
   });
   return members;
 }

@@ -57,7 +57,7 @@ class Oscillator final : public DaePart {
   }
   [[nodiscard]] int event_count() const override { return 1; }
   void events(const DaePoint& at, std::span<double> values) override { values[0] = at.y[first_]; }
-  bool accept(const DaePoint&) override { return changes_pattern; }
+  bool outgrows_pattern(const DaePoint&) override { return changes_pattern; }
 
   double fails_after = 1e300;
   bool throws = false;

@@ -41,13 +41,13 @@ class Held final : public numerics::DaePart {
     entries.emplace_back(rod_.velocity_of(vertex_) + 1, force_);
     entries.emplace_back(force_, force_);
   }
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { pattern_ = &pattern; }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
   void residual(const numerics::DaePoint& at, Eigen::Ref<VectorXd> rows) override {
     rows[force_] += at.y[rod_.position_of(vertex_) + 1] - height;
     rows[rod_.velocity_of(vertex_) + 1] -= at.y[force_];
   }
   void jacobian(const numerics::DaePoint& /*at*/, double /*c*/, std::vector<double>& values) override {
-    const numerics::PatternValues into(*pattern_, values);
+    const numerics::PatternValues into(slots_, values);
     into.add(force_, rod_.position_of(vertex_) + 1, 1.0);
     into.add(rod_.velocity_of(vertex_) + 1, force_, -1.0);
   }
@@ -56,7 +56,7 @@ class Held final : public numerics::DaePart {
 
  private:
   const wire::RodPart& rod_;
-  const numerics::SparseMatrix* pattern_ = nullptr;
+  numerics::PatternSlots slots_;
   int vertex_, force_ = 0;
 };
 
