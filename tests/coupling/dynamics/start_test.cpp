@@ -29,7 +29,7 @@ double thrust_between_pins(double stiffness, double length) {
   return 4.0 * K * K * stiffness / (length * length);
 }
 
-// Clamped in the middle of nothing, half of a wire is one between pins half as long: four times the thrust.
+// Between its inflections a clamped wire is one between pins, half as long: four times the thrust.
 TEST(RestingWire, IsThatOfItsMounts) {
   for (const auto& [kind, factor] : {std::pair(Kind::clamp, 4.0), std::pair(Kind::twisting_pin, 1.0)}) {
     for (const auto formulation : {wire::Formulation::vertices, wire::Formulation::higher_order}) {
