@@ -171,8 +171,6 @@ class DaeSystem {
   void restore_state(const VectorView& y, std::span<const double> memory);
   /// How many times the pattern was made.
   [[nodiscard]] int pattern_version() const noexcept { return pattern_version_; }
-  /// The pattern is made anew before the next Jacobian.
-  void invalidate_pattern() noexcept { stale_pattern_ = true; }
 
  private:
   void make_pattern_anew();

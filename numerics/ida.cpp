@@ -91,7 +91,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       linear(make_linear_solver(callbacks, context)),
       ida(made(IDACreate(context), "IDACreate")),
       newton(options.newton_test == NewtonTest::every_unknown
-                 ? make_newton_solver(callbacks, y_view.get(), {options.renewals, options.quasi_newton}, context)
+                 ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
                  : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
   // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
@@ -380,6 +380,12 @@ Eigen::VectorXd Ida::interpolate_integrals(double time, int derivative) const {
   const SunVector out = view(result, memory_->context);
   check(IDAGetQuadDky(memory_->ida.get(), time, derivative, out.get()), "IDAGetQuadDky");
   return result;
+}
+
+Eigen::VectorXd Ida::integral_rates() const {
+  double reached = 0.0;
+  check(IDAGetCurrentTime(memory_->ida.get(), &reached), "IDAGetCurrentTime");
+  return reached == memory_->time ? memory_->callbacks.integrated : interpolate_integrals(memory_->time, 1);
 }
 
 IdaReport integrate(Ida& ida, double end, const IdaObserver& observer) {

@@ -81,6 +81,7 @@ extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vec
     auto out = map(values);
     out.setZero();
     self.integrands({t, map(y), map(rate)}, out);
+    self.integrated = out;
     return out.allFinite();
   });
 }

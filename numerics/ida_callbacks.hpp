@@ -35,6 +35,7 @@ struct IdaCallbacks {
   std::unique_ptr<DaeSolver> solver;
   int analysed_pattern = 0;
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
+  Eigen::VectorXd integrated{};  // their rates, as IDA has evaluated them last
   // Of the Newton iteration: the last correction of this step, and what a rate of convergence leaves after one.
   double last_correction = 0.0;
   double rate = 0.0;                     ///< the last correction over the one before [-]

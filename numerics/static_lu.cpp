@@ -141,12 +141,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     diagonal_.push_back(static_cast<int>(column_.size()));
     column_.push_back(i);
     column_.insert(column_.end(), after[at(i)].begin(), after[at(i)].end());
-    first_stretch_.push_back(static_cast<int>(stretches_.size()));
-    list_stretches(start_.back(), diagonal_.back());
-    first_upper_.push_back(static_cast<int>(stretches_.size()));
-    list_stretches(diagonal_.back() + 1, static_cast<int>(column_.size()));
   }
-  first_stretch_.push_back(static_cast<int>(stretches_.size()));
   start_.push_back(static_cast<int>(column_.size()));
   values_.assign(column_.size(), 0.0);
   inverse_.assign(at(order_), 0.0);
@@ -168,14 +163,13 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
       const int k = column_[at(e)];
       eliminations_.push_back({e, k, static_cast<int>(runs_.size())});
       Run run;
-      for (int u = first_upper_[at(k)]; u < first_stretch_[at(k) + 1]; ++u) {
-        const Stretch& stretch = stretches_[at(u)];
-        const int to = entry[at(stretch.column)];  // and its neighbours: row i has all of them
-        if (run.length > 0 && run.to + run.length == to) {
-          run.length += stretch.length;
+      for (int from = diagonal_[at(k)] + 1; from < start_[at(k) + 1]; ++from) {
+        const int to = entry[at(column_[at(from)])];
+        if (run.to + run.length == to && run.length > 0) {
+          ++run.length;
         } else {
           if (run.length > 0) runs_.push_back(run);
-          run = {stretch.entry, to, stretch.length};
+          run = {from, to, 1};
         }
       }
       if (run.length > 0) runs_.push_back(run);
@@ -183,15 +177,6 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
   }
   first_elimination_.push_back(static_cast<int>(eliminations_.size()));
   eliminations_.push_back({0, 0, static_cast<int>(runs_.size())});
-}
-
-void StaticLu::list_stretches(int begin, int end) {
-  for (int e = begin; e < end; ++e) {
-    if (e > begin && column_[at(e)] == column_[at(e - 1)] + 1)
-      ++stretches_.back().length;
-    else
-      stretches_.push_back({e, column_[at(e)], 1});
-  }
 }
 
 bool StaticLu::factorize(const SparseMatrix& matrix) {
@@ -203,31 +188,21 @@ bool StaticLu::factorize(const SparseMatrix& matrix) {
 
 void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
   const double* const values = values_.data();
+  const int* const column = column_.data();
   double* const x = work_.data();
   const auto products = [&](int begin, int end) {
-    Two sum{0.0, 0.0}, other{0.0, 0.0};
-    double rest = 0.0;
-    for (int k = begin; k < end; ++k) {
-      const Stretch& stretch = stretches_[at(k)];
-      const double* a = values + stretch.entry;
-      const double* of_x = x + stretch.column;
-      int left = stretch.length;
-      for (; left >= 4; left -= 4, a += 4, of_x += 4) {
-        sum += *reinterpret_cast<const Two*>(a) * *reinterpret_cast<const Two*>(of_x);
-        other += *reinterpret_cast<const Two*>(a + 2) * *reinterpret_cast<const Two*>(of_x + 2);
-      }
-      if (left >= 2) {
-        sum += *reinterpret_cast<const Two*>(a) * *reinterpret_cast<const Two*>(of_x);
-        left -= 2, a += 2, of_x += 2;
-      }
-      if (left > 0) rest += *a * *of_x;
+    double even = 0.0, odd = 0.0;
+    int e = begin;
+    for (; e + 1 < end; e += 2) {
+      even += values[e] * x[column[e]];
+      odd += values[e + 1] * x[column[e + 1]];
     }
-    sum += other;
-    return sum[0] + sum[1] + rest;
+    if (e < end) even += values[e] * x[column[e]];
+    return even + odd;
   };
-  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(first_stretch_[at(i)], first_upper_[at(i)]);
+  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(start_[at(i)], diagonal_[at(i)]);
   for (int i = order_ - 1; i >= 0; --i) {
-    x[i] = (x[i] - products(first_upper_[at(i)], first_stretch_[at(i) + 1])) * inverse_[at(i)];
+    x[i] = (x[i] - products(diagonal_[at(i)] + 1, start_[at(i) + 1])) * inverse_[at(i)];
     b[unknown_[at(i)]] = x[i];
   }
 }

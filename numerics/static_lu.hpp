@@ -34,22 +34,15 @@ class StaticLu {
     int row = 0;        // by which
     int first_run = 0;  // up to that of the next elimination
   };
-  /// Entries of a row whose columns follow each other.
-  struct Stretch {
-    int entry = 0, column = 0, length = 0;  // of the first, in values_
-  };
-  void list_stretches(int begin, int end);
   /// The rows one after another; false as `factorize`.
   [[nodiscard]] bool eliminate(bool by_four);
   [[nodiscard]] bool eliminate_by_four();
   [[nodiscard]] bool eliminate_by_two();
 
   int order_ = 0;
-  std::vector<int> unknown_;           // at every place of the order
-  std::vector<int> start_, diagonal_;  // of every row in values_
-  std::vector<int> column_;            // of every entry
-  std::vector<Stretch> stretches_;     // of every row, before and after its diagonal
-  std::vector<int> first_stretch_, first_upper_;
+  std::vector<int> unknown_;               // at every place of the order
+  std::vector<int> start_, diagonal_;      // of every row in values_
+  std::vector<int> column_;                // of every entry
   std::vector<double> values_;             // row by row
   std::vector<int> target_;                // in values_, of every slot of the matrix
   std::vector<Elimination> eliminations_;  // row by row

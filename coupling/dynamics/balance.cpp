@@ -244,7 +244,7 @@ ContactSample MotionRun::recorded(ContactSample sample, double time, std::size_t
                                   const ContactTouches& touches) const {
   if (time == time_ || (!sample.closed && touches.held_states() < 2)) return sample;
   const auto force = [&](std::size_t i) {
-    return forces_.at(time, static_cast<Eigen::Index>(i), touches.held_states() > 2);
+    return forces_.at(time, static_cast<Eigen::Index>(i), std::max(2, touches.held_states()));
   };
   return with_force(std::move(sample), {force(3 * contact), force(3 * contact + 1), force(3 * contact + 2)},
                     force(3 * touching() + contact));

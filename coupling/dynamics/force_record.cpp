@@ -1,30 +1,38 @@
 #include "coupling/dynamics/force_record.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
 #include <utility>
 
 namespace snare::coupling {
 
+namespace {
+
+constexpr std::size_t most = 4;  // states
+
+}  // namespace
+
 void ForceRecord::add(double time, Eigen::VectorXd forces) {
   records_.push_back({time, std::move(forces)});
-  if (records_.size() > 3) records_.pop_front();
+  if (records_.size() > most) records_.pop_front();
 }
 
-// Newton's form: f_1 + [f_1, f_0] (t - t_1) + [f_1, f_0, f_-1] (t - t_1)(t - t_0), the latest being 1.
-double ForceRecord::at(double time, Eigen::Index index, bool of_three) const {
-  assert(records_.size() >= 2);
-  const auto latest = records_.rbegin();
-  const auto slope = [&](const Record& a, const Record& b) {
-    return (a.forces[index] - b.forces[index]) / (a.time - b.time);
-  };
-  const Record &last = latest[0], &before = latest[1];
-  double force = last.forces[index] + slope(last, before) * (time - last.time);
-  if (of_three && records_.size() == 3) {
-    const Record& first = latest[2];
-    const double curvature = (slope(last, before) - slope(before, first)) / (last.time - first.time);
-    force += curvature * (time - last.time) * (time - before.time);
+// Neville's scheme, from the latest state back: entry k becomes the polynomial through states k to k + degree.
+double ForceRecord::at(double time, Eigen::Index index, int states) const {
+  const std::size_t count = std::min(records_.size(), static_cast<std::size_t>(states));
+  assert(count >= 2);
+  std::array<double, most> force{};
+  for (std::size_t k = 0; k < count; ++k) force[k] = records_[records_.size() - 1 - k].forces[index];
+  for (std::size_t degree = 1; degree < count; ++degree) {
+    for (std::size_t k = 0; k + degree < count; ++k) {
+      const double late = records_[records_.size() - 1 - k].time,
+                   early = records_[records_.size() - 1 - k - degree].time;
+      force[k] += (force[k + 1] - force[k]) * (late - time) / (late - early);
+    }
   }
-  return force;
+  return force[0];
 }
 
 }  // namespace snare::coupling

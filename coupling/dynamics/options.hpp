@@ -13,7 +13,7 @@ struct MotionOptions {
   /// What a step may err by: the mean over a wire's vertices, over a body's components.        theory.md (M.12)
   double relative_tolerance = 1e-6;       ///< of velocities, forces and what else is no coordinate [-]
   double position_tolerance = 3e-7;       ///< of wires [m]
-  double velocity_tolerance = 3e-4;       ///< of wires [m/s]
+  double velocity_tolerance = 3e-4;       ///< of wires [m/s]; of quasi-static ones a third of it
   double twist_tolerance = 1e-6;          ///< of wires [rad]
   double body_position_tolerance = 1e-8;  ///< [m]
   double body_velocity_tolerance = 1e-6;  ///< [m/s]

@@ -26,6 +26,8 @@ constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 constexpr double matrix_change_without_waves = 0.5;
 // Where no wave follows, a step may go through a whole touch.
 constexpr int renewals_without_waves = 4;
+// Of the tolerance of a wire's velocities: damping makes forces of their errors, and without waves steps are long enough for that.
+constexpr double share_of_velocity_without_waves = 1.0 / 3.0;
 
 }  // namespace
 
@@ -39,9 +41,10 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
-    rods_.emplace_back(
-        w.name, rod,
-        wire::RodTolerances{options.position_tolerance, options.velocity_tolerance, options.twist_tolerance});
+    const double of_velocity = rod.quasi_static ? share_of_velocity_without_waves : 1.0;
+    rods_.emplace_back(w.name, rod,
+                       wire::RodTolerances{options.position_tolerance, of_velocity * options.velocity_tolerance,
+                                           options.twist_tolerance});
   }
   for (const MotionBody& b : motion.bodies)
     bodies_.emplace_back(b.robot ? loops_.emplace_back(b).moved() : b, motion.gravity, options);
@@ -78,10 +81,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
-  if (!rods_.empty() && !waves) {
-    ida.renewals = renewals_without_waves;
-    ida.quasi_newton = true;
-  }
+  if (!waves && !rods_.empty()) ida.renewals = renewals_without_waves;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
@@ -292,7 +292,8 @@ MotionResult MotionRun::go(double limit) {
     rate_ = ida_->rate();
     integrals_ = ida_->integrals();
     const bool phase = look_for_phase();
-    forces_.add(time_, ida_->interpolate_integrals(time_, 1).tail(of_contacts));
+    const VectorXd integrands = phase ? ida_->interpolate_integrals(time_, 1) : ida_->integral_rates();
+    forces_.add(time_, integrands.tail(of_contacts));
     measure(before);
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());

@@ -173,7 +173,6 @@ struct Touching {
     // 2 um deep: a fifth of a newton.
     y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
     contact.look_around(y);
-    system.invalidate_pattern();
   }
 };
 

@@ -101,7 +101,6 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
   contact.look_around(y);
   ASSERT_GT(contact.sums(y).force.norm(), 0.05);
-  system.invalidate_pattern();
   VectorXd rate(y.size());
   for (double& r : rate) r = 0.1 * unit(random);
   // Directions of a size that suits each unknown; the quaternion moves along the sphere, as it does in a motion.

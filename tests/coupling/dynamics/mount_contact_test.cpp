@@ -52,7 +52,6 @@ struct AtTheMount {
     rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, rod.vertices()), y);
     body.place(y);
     contact.look_around(y);
-    system.invalidate_pattern();
   }
 };
 

@@ -17,12 +17,12 @@ namespace {
 using base::mm;
 using Kind = wire::SpatialEnd::Kind;
 
-constexpr double span = 175.0 * mm;
+constexpr double mounts_apart = 175.0 * mm;
 
-/// Thrust of an inextensible elastica between pins, (2 K(k))^2 EI/L^2 with span/L = 2 E(k)/K(k) - 1 [N].
+/// Thrust of an inextensible elastica between pins, (2 K(k))^2 EI/L^2 with l/L = 2 E(k)/K(k) - 1, l between the pins [N].
 double thrust_between_pins(double stiffness, double length) {
   const auto excess = [length](double k) {
-    return 2.0 * boost::math::ellint_2(k) / boost::math::ellint_1(k) - 1.0 - span / length;
+    return 2.0 * boost::math::ellint_2(k) / boost::math::ellint_1(k) - 1.0 - mounts_apart / length;
   };
   const auto [low, high] = boost::math::tools::bisect(excess, 0.0, 0.9, boost::math::tools::eps_tolerance<double>(40));
   const double K = boost::math::ellint_1(0.5 * (low + high));
@@ -33,7 +33,7 @@ double thrust_between_pins(double stiffness, double length) {
 TEST(RestingWire, IsThatOfItsMounts) {
   for (const auto& [kind, factor] : {std::pair(Kind::clamp, 4.0), std::pair(Kind::twisting_pin, 1.0)}) {
     for (const auto formulation : {wire::Formulation::vertices, wire::Formulation::higher_order}) {
-      wire::RodInMotion rod = wire::rod_in_motion(validation::declared_specification(), span, 60);
+      wire::RodInMotion rod = wire::rod_in_motion(validation::declared_specification(), mounts_apart, 60);
       rod.properties.left.kind = rod.properties.right.kind = kind;
       rod.formulation = formulation;
       const Eigen::Matrix3Xd start = resting_wire(rod);

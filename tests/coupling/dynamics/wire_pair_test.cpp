@@ -41,10 +41,7 @@ struct Pair {
     second.place(motion.wires[1].positions, still(motion.wires[1]), y);
     look();
   }
-  void look() {
-    contact.look_around(y);
-    system.invalidate_pattern();
-  }
+  void look() { contact.look_around(y); }
   [[nodiscard]] WirePairPart::Sums sums() { return contact.sums(y); }
   /// What the contact alone adds to the rows.
   [[nodiscard]] VectorXd rows() {
