@@ -4,6 +4,7 @@
 #include "app/result_folder.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "base/parallel.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
 #include "validation/capture_checks.hpp"
@@ -23,8 +24,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace snare::app {
 
@@ -54,6 +60,20 @@ struct Validation {
     return std::ranges::count_if(rows, [](const validation::Row& row) { return !row.within(); });
   }
 };
+
+/// What the checks that are done have found, in the order in which they are asked for.
+Validation in_order(const std::vector<validation::Check>& checks,
+                    const std::vector<std::optional<std::vector<validation::Row>>>& found) {
+  Validation v;
+  v.checks = checks.size();
+  for (std::size_t k = 0; k < checks.size(); ++k) {
+    if (!found[k]) continue;
+    ++v.done;
+    if (!checks[k].skipped.empty()) v.skipped.push_back(checks[k].name + ": " + checks[k].skipped);
+    v.rows.insert(v.rows.end(), found[k]->begin(), found[k]->end());
+  }
+  return v;
+}
 
 std::string page(const Validation& v) {
   const auto& [rows, skipped, checks, done] = v;
@@ -132,35 +152,38 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
         {"--set", 0, options.overrides.front(), "", "validate reads no file, so there is no key to set"});
   const ResultFolder folder(options, {"validation.json", "report.html"});
   const std::vector<validation::Check> checks = all_checks();
-  Validation v;
-  v.checks = checks.size();
-  std::mutex mutex;  // of v: what is finished may be asked for while a check runs
+  std::vector<std::optional<std::vector<validation::Row>>> found(checks.size());
+  std::mutex mutex;  // of what is found: it may be asked for while checks run
+  const auto so_far = [&] {
+    const std::scoped_lock lock(mutex);
+    return in_order(checks, found);
+  };
   const KeepWhenInterrupted keeping(
       [&] {
-        const std::scoped_lock lock(mutex);
-        write_files(options, v);
-        return count_words(v, options);
+        const Validation part = so_far();
+        write_files(options, part);
+        return count_words(part, options);
       },
       "");
-  for (const validation::Check& check : checks) {
-    if (interrupted()) break;
-    console.progress(fmt::format("{} of {}: {}", v.done + 1, checks.size(), check.name));
-    std::vector<validation::Row> found = check.skipped.empty() ? check.run() : std::vector<validation::Row>{};
+  std::atomic<std::size_t> begun = 0;
+  base::parallel_for(checks.size(), [&](std::size_t i) {
+    if (interrupted()) return;
+    const std::size_t k = checks.size() - 1 - i;  // captures and records, which take longest, are the last
+    console.progress(fmt::format("{} of {}: {}", ++begun, checks.size(), checks[k].name));
+    std::vector<validation::Row> rows;
+    if (checks[k].skipped.empty()) rows = checks[k].run();
     const std::scoped_lock lock(mutex);
-    ++v.done;
-    if (!check.skipped.empty()) {
-      v.skipped.push_back(check.name + ": " + check.skipped);
-      console.say("skipped: " + v.skipped.back());
-    }
-    for (validation::Row& row : found) {
+    for (const validation::Row& row : rows) {
       if (!row.within())
         console.complain(
             fmt::format("out of its limit: {}, {}: {} instead of {}", row.group, row.name, row.value, row.reference));
-      v.rows.push_back(std::move(row));
     }
-  }
+    found[k] = std::move(rows);
+  });
   console.end_progress();
   begin_writing();
+  const Validation v = so_far();
+  for (const std::string& left_out : v.skipped) console.say("skipped: " + left_out);
   write_files(options, v);
   std::string group;
   for (const validation::Row& row : v.rows) {

@@ -1,5 +1,6 @@
 #include "base/csv.hpp"
 
+#include "base/byte_order_mark.hpp"
 #include "base/errors.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,7 @@ namespace snare::base {
 namespace {
 
 constexpr std::size_t chunk_size = 1u << 20u;  // bytes read at a time
-constexpr std::size_t shown_size = 40;         // of an offending cell, in bytes
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::size_t shown_cell = 40;         // of an offending cell, in bytes
 
 bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t';
@@ -41,14 +41,14 @@ bool is_ascii(std::string_view text) noexcept {
 /// A cell as it is shown in a message: shortened, control characters visible.
 std::string shown(std::string_view cell) {
   std::string text;
-  for (const char c : cell.substr(0, shown_size)) {
+  for (const char c : cell.substr(0, shown_cell)) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 0x20u || byte == 0x7Fu)
       text += fmt::format("\\x{:02x}", byte);
     else
       text += c;
   }
-  if (cell.size() <= shown_size) return text;
+  if (cell.size() <= shown_cell) return text;
   const std::size_t cut = find_invalid_utf8(text);  // the cut may have split a character
   if (cut != std::string::npos) text.resize(cut);
   return text + "...";

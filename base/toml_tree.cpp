@@ -1,5 +1,6 @@
 #include "base/toml_tree.hpp"
 
+#include "base/byte_order_mark.hpp"
 #include "base/files.hpp"
 
 #include <fmt/format.h>
@@ -19,9 +20,8 @@ namespace snare::base {
 
 namespace {
 
-constexpr std::size_t shown_size = 60;  // of an offending value, in characters
+constexpr std::size_t shown_value = 60;  // of an offending value, in characters
 constexpr std::size_t deepest_dotted_key = 32;
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::vector<std::string_view> split_lines(std::string_view text) {
   std::vector<std::string_view> lines;
@@ -53,8 +53,8 @@ std::string written_text(const toml::node& node, const std::vector<std::string_v
     return {};
   if (region.begin.line == 0 || region.begin.line > lines.size()) return {};
   const bool one_line = region.begin.line == region.end.line;
-  const std::size_t last = std::min<std::size_t>(one_line ? region.end.column : region.begin.column + shown_size,
-                                                 region.begin.column + shown_size);
+  const std::size_t last = std::min<std::size_t>(one_line ? region.end.column : region.begin.column + shown_value,
+                                                 region.begin.column + shown_value);
   std::string text = code_points(lines[region.begin.line - 1], region.begin.column, last);
   if (!one_line || region.end.column > last) text += "...";
   return text;

@@ -41,9 +41,11 @@ struct IdaOptions {
   /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in (0, 1).
   double matrix_change = 0.25;
   /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with that of its first guess;
-  /// as many iterations are added. With any, a matrix of an earlier step is corrected by what its corrections show, and has three
-  /// times as many iterations. With NewtonTest::every_unknown.                       theory.md (M.12), (N.8)
+  /// as many iterations are added. With NewtonTest::every_unknown.                            theory.md (M.12)
   int renewals = 0;
+  /// Whether a matrix of an earlier step is corrected by what its corrections show, and has three times as many iterations.
+  /// With NewtonTest::every_unknown.                                                          theory.md (N.8)
+  bool quasi_newton = false;
 };
 
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as

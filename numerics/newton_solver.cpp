@@ -17,7 +17,7 @@ struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
   int most_renewals;
-  std::optional<QuasiNewton> corrected;  // where a step may have renewals
+  std::optional<QuasiNewton> corrected;
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -73,7 +73,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
           renewals < self.most_renewals) {
         code = self.setup(SUNTRUE, &current, memory);
-        self.corrected->restart();
+        if (self.corrected) self.corrected->restart();
         ++renewals;
       }
     }
@@ -123,7 +123,8 @@ int snare_newton_failures(SUNNonlinearSolver solver, long* count) {
 
 }  // namespace
 
-SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals, SUNContext context) {
+SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, const NewtonOptions& options,
+                                      SUNContext context) {
   SunNonlinearSolver solver(made(SUNNonlinSolNewEmpty(context), "SUNNonlinSolNewEmpty"));
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;
@@ -134,8 +135,8 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, in
   solver->ops->getnumiters = snare_newton_iterations;
   solver->ops->getnumconvfails = snare_newton_failures;
   std::optional<QuasiNewton> corrected;
-  if (renewals > 0) corrected.emplace(N_VGetLength(like), most_corrected);
-  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), renewals, std::move(corrected)};
+  if (options.quasi_newton) corrected.emplace(N_VGetLength(like), most_corrected);
+  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), options.renewals, std::move(corrected)};
   return solver;
 }
 

@@ -81,6 +81,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
+  ida.quasi_newton = !rods_.empty();
   if (!waves && !rods_.empty()) ida.renewals = renewals_without_waves;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(

@@ -28,7 +28,7 @@ SOURCES = ["tests/fuzz/readers_libfuzzer.cpp", "base/errors.cpp", "base/range.cp
            "multibody/tree.cpp", "multibody/spatial.cpp", "identification/fitting/experiment.cpp",
            "identification/fitting/parameter.cpp", "identification/fitting/parameter_set.cpp",
            "identification/fitting/construction_numbers.cpp"]
-FLAGS = ["-std=c++20", "-g", "-O1", "-fsanitize=fuzzer-no-link,address,undefined", "-fno-sanitize-recover=all", "-I.",
+FLAGS = ["-std=c++20", "-gline-tables-only", "-O1", "-fsanitize=fuzzer-no-link,address,undefined", "-fno-sanitize-recover=all", "-I.",
          "-isystem", "/usr/include/eigen3"]
 MORE_FLAGS = ["-isystem", "/usr/include/suitesparse", "-DEIGEN_DONT_PARALLELIZE", "-DFMT_SHARED", "-DTOML_HEADER_ONLY=0",
               "-DTOML_SHARED_LIB=1", f'-DSNARE_SOURCE_DIR="{ROOT}"']
@@ -61,23 +61,25 @@ def is_current(made, needs):
 
 def build(clang, folder, name, sources, linked):
     def compiled(source):
-        made = folder / (source.replace("/", "_") + ".o")
-        needs = made.with_suffix(".d")
+        made, needs = source.with_suffix(".o"), source.with_suffix(".d")
         if not is_current(made, needs):
-            subprocess.run([*CACHE, clang, *FLAGS, *MORE_FLAGS, "-MD", "-MF", str(needs), "-c", source, "-o", str(made)], cwd=ROOT, check=True)
+            subprocess.run([*CACHE, clang, *FLAGS, *MORE_FLAGS, "-MD", "-MF", str(needs), "-c", str(source), "-o", str(made)], cwd=ROOT, check=True)
         return str(made)
 
-    # The effects are many and small: headers take most of the time to compile each.
-    effects = [source for source in sources if source.startswith("identification/effects/")]
-    if effects:
-        joined = folder / "effects.cpp"
-        text = "".join(f'#include "{source}"\n' for source in effects)
-        if not joined.exists() or joined.read_text() != text:
-            joined.write_text(text)
-        sources = [*(source for source in sources if source not in effects), str(joined)]
+    # Sources of a folder are joined, as the product's are: headers take most of the time to compile each.
+    by_folder = {}
+    for source in sources:
+        by_folder.setdefault(os.path.dirname(source), []).append(source)
+    joined = []
+    for place, members in by_folder.items():
+        file = folder / f"{name}_{place.replace('/', '_')}.cpp"
+        text = "".join(f'#include "{source}"\n' for source in members)
+        if not file.exists() or file.read_text() != text:
+            file.write_text(text)
+        joined.append(file)
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        objects = list(pool.map(compiled, sources))
+        objects = list(pool.map(compiled, joined))
     program = folder / name
     # Where the libraries' sources are joined, what is asked of one brings in its neighbours, which are here already: the first counts.
     subprocess.run([clang, "-fsanitize=fuzzer,address,undefined", "-Wl,--allow-multiple-definition", *objects, *linked, "-o",
