@@ -16,7 +16,7 @@ constexpr double slow = 0.25;       // rate of convergence beyond which a new ma
 struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
-  int most_renewals;
+  NewtonOptions options;
   std::optional<QuasiNewton> corrected;
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
@@ -60,8 +60,9 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       if (code != SUN_NLS_SUCCESS) break;
       if (self.corrected) self.corrected->update(step, map(weight));
       map(correction) += step;
-      const int last = current != SUNFALSE ? most + self.most_renewals : self.corrected ? most_corrected : most;
-      code = callbacks.converged(k, {share, last, current != SUNFALSE}, step, map(weight));
+      const int last = current != SUNFALSE ? most + self.options.renewals : self.corrected ? most_corrected : most;
+      const double allowed = self.corrected && current == SUNFALSE ? self.options.quasi_newton_share * share : share;
+      code = callbacks.converged(k, {allowed, last, current != SUNFALSE}, step, map(weight));
       if (code == SUN_NLS_SUCCESS) return SUN_NLS_SUCCESS;
       if (code != SUN_NLS_CONTINUE) break;
       if (k + 1 >= last) {
@@ -71,7 +72,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = self.system(correction, self.step, memory);
       // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
-          renewals < self.most_renewals) {
+          renewals < self.options.renewals) {
         code = self.setup(SUNTRUE, &current, memory);
         if (self.corrected) self.corrected->restart();
         ++renewals;
@@ -135,8 +136,8 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, co
   solver->ops->getnumiters = snare_newton_iterations;
   solver->ops->getnumconvfails = snare_newton_failures;
   std::optional<QuasiNewton> corrected;
-  if (options.quasi_newton) corrected.emplace(N_VGetLength(like), most_corrected);
-  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), options.renewals, std::move(corrected)};
+  if (options.quasi_newton_share > 0.0) corrected.emplace(N_VGetLength(like), most_corrected);
+  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), options, std::move(corrected)};
   return solver;
 }
 

@@ -17,7 +17,7 @@ using SunNonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSol
 /// Of a Newton iteration: see IdaOptions.
 struct NewtonOptions {
   int renewals = 0;
-  bool quasi_newton = false;
+  double quasi_newton_share = 0.0;
 };
 
 /// Newton's method on a step of IDA.                                                        theory.md (M.12)
