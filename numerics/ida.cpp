@@ -91,7 +91,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       linear(make_linear_solver(callbacks, context)),
       ida(made(IDACreate(context), "IDACreate")),
       newton(options.newton_test == NewtonTest::every_unknown
-                 ? make_newton_solver(callbacks, y_view.get(), {options.renewals, options.quasi_newton_share}, context)
+                 ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
                  : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
   // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a

@@ -41,11 +41,9 @@ struct IdaOptions {
   /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in (0, 1).
   double matrix_change = 0.25;
   /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with that of its first guess;
-  /// as many iterations are added. With NewtonTest::every_unknown.                            theory.md (M.12)
+  /// as many iterations are added. With any, a matrix of an earlier step is corrected by what its corrections show, and has three
+  /// times as many iterations. With NewtonTest::every_unknown.                       theory.md (M.12), (N.8)
   int renewals = 0;
-  /// Of newton_share, with a matrix of an earlier step that is corrected by what its corrections show and has three times as many
-  /// iterations [-], in (0, 1]; 0: it is not corrected. With NewtonTest::every_unknown.         theory.md (N.8)
-  double quasi_newton_share = 0.0;
 };
 
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as

@@ -16,8 +16,8 @@ constexpr double slow = 0.25;       // rate of convergence beyond which a new ma
 struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
-  NewtonOptions options;
-  std::optional<QuasiNewton> corrected;
+  int most_renewals;
+  std::optional<QuasiNewton> corrected;  // where a step may have renewals
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -60,9 +60,8 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       if (code != SUN_NLS_SUCCESS) break;
       if (self.corrected) self.corrected->update(step, map(weight));
       map(correction) += step;
-      const int last = current != SUNFALSE ? most + self.options.renewals : self.corrected ? most_corrected : most;
-      const double allowed = self.corrected && current == SUNFALSE ? self.options.quasi_newton_share * share : share;
-      code = callbacks.converged(k, {allowed, last, current != SUNFALSE}, step, map(weight));
+      const int last = current != SUNFALSE ? most + self.most_renewals : self.corrected ? most_corrected : most;
+      code = callbacks.converged(k, {share, last, current != SUNFALSE}, step, map(weight));
       if (code == SUN_NLS_SUCCESS) return SUN_NLS_SUCCESS;
       if (code != SUN_NLS_CONTINUE) break;
       if (k + 1 >= last) {
@@ -72,9 +71,9 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = self.system(correction, self.step, memory);
       // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
-          renewals < self.options.renewals) {
+          renewals < self.most_renewals) {
         code = self.setup(SUNTRUE, &current, memory);
-        if (self.corrected) self.corrected->restart();
+        self.corrected->restart();
         ++renewals;
       }
     }
@@ -124,8 +123,7 @@ int snare_newton_failures(SUNNonlinearSolver solver, long* count) {
 
 }  // namespace
 
-SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, const NewtonOptions& options,
-                                      SUNContext context) {
+SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals, SUNContext context) {
   SunNonlinearSolver solver(made(SUNNonlinSolNewEmpty(context), "SUNNonlinSolNewEmpty"));
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;
@@ -136,8 +134,8 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, co
   solver->ops->getnumiters = snare_newton_iterations;
   solver->ops->getnumconvfails = snare_newton_failures;
   std::optional<QuasiNewton> corrected;
-  if (options.quasi_newton_share > 0.0) corrected.emplace(N_VGetLength(like), most_corrected);
-  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), options, std::move(corrected)};
+  if (renewals > 0) corrected.emplace(N_VGetLength(like), most_corrected);
+  solver->content = new Newton{callbacks, made(N_VClone(like), "N_VClone"), renewals, std::move(corrected)};
   return solver;
 }
 

@@ -14,17 +14,12 @@ struct NonlinearSolverDeleter {
 };
 using SunNonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, NonlinearSolverDeleter>;
 
-/// Of a Newton iteration: see IdaOptions.
-struct NewtonOptions {
-  int renewals = 0;
-  double quasi_newton_share = 0.0;
-};
-
 /// Newton's method on a step of IDA.                                                        theory.md (M.12)
 ///
 /// As SUNDIALS' own, but every unknown must be within its share of its tolerance, and what would not converge with a matrix of an
-/// earlier step is given up as soon as that shows. The callbacks stay the caller's and outlive it; `like`: a vector of its size.
-[[nodiscard]] SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like,
-                                                    const NewtonOptions& options, SUNContext context);
+/// earlier step is given up as soon as that shows. renewals: see IdaOptions. The callbacks stay the caller's and outlive it; `like`: a
+/// vector of its size.
+[[nodiscard]] SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals,
+                                                    SUNContext context);
 
 }  // namespace snare::numerics

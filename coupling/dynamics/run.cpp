@@ -22,8 +22,6 @@ namespace {
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
 constexpr double share_of_rods = 2e-5;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
-// Of that, by a corrected matrix: the rate of its last correction says less of what is left.
-constexpr double quasi_newton_share_of_rods = 1.0 / 3.0;
 // Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
 constexpr double matrix_change_without_waves = 0.5;
 // Where no wave follows, a step may go through a whole touch.
@@ -83,7 +81,6 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
-  if (!rods_.empty()) ida.quasi_newton_share = waves ? quasi_newton_share_of_rods : 1.0;
   if (!waves && !rods_.empty()) ida.renewals = renewals_without_waves;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
