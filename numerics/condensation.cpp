@@ -52,6 +52,14 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
   visit([&](int s, int i, int j) {
     if (i >= 0) target_[at(s)] = matrix_.slot(i, j);
   });
+  for (const auto& [p, v] : pairs_) {
+    first_rate_.push_back(rates_.size());
+    for (int s = pattern.column_start[at(v)]; s < pattern.column_start[at(v) + 1]; ++s) {
+      const int row = row_index[at(pattern.row[at(s)])];
+      if (row >= 0) rates_.push_back({s, row});
+    }
+  }
+  first_rate_.push_back(rates_.size());
 }
 
 bool Condensation::update(const SparseMatrix& full) {
@@ -78,13 +86,10 @@ void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::Vect
   reduced.resize(left);
   for (Eigen::Index k = 0; k < left; ++k) reduced[k] = b[row_[static_cast<std::size_t>(k)]];
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const auto& [p, v] = pairs_[k];
-    given_[k] = b[p] / pivot_[k];
+    given_[k] = b[pairs_[k].first] / pivot_[k];
     if (given_[k] == 0.0) continue;
-    for (int s = full.column_start[at(v)]; s < full.column_start[at(v) + 1]; ++s) {
-      // The column of v ends where that of x does: target and row are the same there.
-      if (target_[at(s)] >= 0) reduced[matrix_.row[at(target_[at(s)])]] -= full.value[at(s)] * given_[k];
-    }
+    for (std::size_t e = first_rate_[k]; e < first_rate_[k + 1]; ++e)
+      reduced[rates_[e].row] -= full.value[at(rates_[e].slot)] * given_[k];
   }
 }
 

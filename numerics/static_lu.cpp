@@ -9,6 +9,8 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <span>
+#include <type_traits>
 #include <utility>
 
 namespace snare::numerics {
@@ -62,48 +64,204 @@ std::vector<int> elimination_order(const SparseMatrix& matrix) {
   return unknowns;
 }
 
-/// Two and four numbers at once, where they are.
-using Two [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+/// Four numbers at once, where they are.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+
+/// Four numbers for every row of a block, zero at first.
+template <int rows>
+struct Fours {
+  struct Lanes {
+    Four numbers = {};
+  };
+  std::array<Lanes, rows> of_row;
+
+  Four& operator[](std::size_t row) { return of_row[row].numbers; }
+};
+
+/// The work on a block of one to four rows, whose number the compiler knows.
+template <class Work>
+[[gnu::always_inline]] inline void by_rows(int rows, const Work& work) {
+  if (rows == 4)
+    work(std::integral_constant<int, 4>());
+  else if (rows == 3)
+    work(std::integral_constant<int, 3>());
+  else if (rows == 2)
+    work(std::integral_constant<int, 2>());
+  else
+    work(std::integral_constant<int, 1>());
+}
+
+/// Whether the processor takes four numbers at once.
+bool has_fours() {
+  static const bool avx2 = __builtin_cpu_supports("avx2") != 0;
+  return avx2;
+}
 
 }  // namespace
 
-// Runs are short: what the compiler makes of the plain loop spends most of its time on the question how long they are.
-[[gnu::always_inline]] inline bool StaticLu::eliminate(bool by_four) {
+// A value is taken and put back once for all rows of a block.
+template <int rows>
+[[gnu::always_inline]] inline void StaticLu::eliminate_by(const Elimination& e, int last_run) {
   double* const values = values_.data();
-  for (int i = 0; i < order_; ++i) {
-    for (int q = first_elimination_[at(i)]; q < first_elimination_[at(i) + 1]; ++q) {
-      const Elimination& e = eliminations_[at(q)];
-      const double factor = values[e.entry] * inverse_[at(e.row)];
-      values[e.entry] = factor;
-      const Two two{factor, factor};
-      const Four four{factor, factor, factor, factor};
-      const int last = eliminations_[at(q) + 1].first_run;
-      for (int r = e.first_run; r < last; ++r) {
-        const Run& run = runs_[at(r)];
-        const double* from = values + run.from;
-        double* to = values + run.to;
-        const double* const end = from + run.length;
-        for (; by_four && end - from >= 4; from += 4, to += 4)
-          *reinterpret_cast<Four*>(to) -= four * *reinterpret_cast<const Four*>(from);
-        for (; end - from >= 2; from += 2, to += 2)
-          *reinterpret_cast<Two*>(to) -= two * *reinterpret_cast<const Two*>(from);
-        if (from != end) *to -= factor * *from;
-      }
+  std::array<double, rows> factors;
+  std::array<const double*, rows> by;
+  for (int r = 0; r < rows; ++r) {
+    double value = values[e.entry + r];
+    for (int q = 0; q < r; ++q) value -= factors[at(q)] * values[diagonal_[at(e.row + q)] + r - q];
+    const double factor = value * inverse_[at(e.row + r)];
+    values[e.entry + r] = factors[at(r)] = factor;
+    by[at(r)] = values + start_[at(e.row + r + 1)] - e.common;
+  }
+  for (int k = e.first_run; k < last_run; ++k) {
+    const Run& run = runs_[at(k)];
+    double* const to = values + run.to;
+    int j = 0;
+    for (; j + 4 <= run.length; j += 4) {
+      Four left = *reinterpret_cast<const Four*>(to + j);
+      for (std::size_t r = 0; r < rows; ++r)
+        left -= factors[r] * *reinterpret_cast<const Four*>(by[r] + run.offset + j);
+      *reinterpret_cast<Four*>(to + j) = left;
     }
-    inverse_[at(i)] = 1.0 / values[diagonal_[at(i)]];
+    for (; j < run.length; ++j) {
+      double left = to[j];
+      for (std::size_t r = 0; r < rows; ++r) left -= factors[r] * by[r][run.offset + j];
+      to[j] = left;
+    }
+  }
+}
+
+[[gnu::always_inline]] inline bool StaticLu::eliminate() {
+  for (int i = 0; i < order_; ++i) {
+    for (int k = first_elimination_[at(i)]; k < first_elimination_[at(i) + 1]; ++k) {
+      const Elimination& e = eliminations_[at(k)];
+      by_rows(
+          e.rows, [&](auto rows)
+                      __attribute__((always_inline)) { eliminate_by<rows>(e, eliminations_[at(k) + 1].first_run); });
+    }
+    inverse_[at(i)] = 1.0 / values_[at(diagonal_[at(i)])];
     if (!std::isfinite(inverse_[at(i)]) || inverse_[at(i)] == 0.0) return false;
   }
   return true;
 }
 
 // No product is joined with its difference in one rounding, so that all processors give the same bits.
-[[gnu::target("avx2")]] bool StaticLu::eliminate_by_four() {
-  return eliminate(true);
+[[gnu::target("avx2")]] bool StaticLu::eliminate_in_fours() {
+  return eliminate();
 }
 
-bool StaticLu::eliminate_by_two() {
-  return eliminate(false);
+bool StaticLu::eliminate_in_pairs() {
+  return eliminate();
+}
+
+// A value of the vector is taken once for all rows of a block; four products at a time, added up in one order whatever the
+// processor takes at once.
+template <int rows>
+[[gnu::always_inline]] inline std::array<double, rows> StaticLu::add_up(const std::array<int, rows>& begin,
+                                                                        const Block& block) const {
+  Fours<rows> four;
+  std::array<double, rows> sums{};
+  for (int k = block.first; k < block.last; ++k) {
+    const Stretch& s = stretches_[at(k)];
+    const double* const x = work_.data() + s.column;
+    const double* const a = values_.data() + s.offset;
+    int e = 0;
+    for (; e + 4 <= s.length; e += 4) {
+      const Four of_vector = *reinterpret_cast<const Four*>(x + e);
+      for (std::size_t r = 0; r < rows; ++r) four[r] += *reinterpret_cast<const Four*>(a + begin[r] + e) * of_vector;
+    }
+    for (; e < s.length; ++e) {
+      for (std::size_t r = 0; r < rows; ++r) sums[r] += a[begin[r] + e] * x[e];
+    }
+  }
+  for (std::size_t r = 0; r < rows; ++r) sums[r] += (four[r][0] + four[r][2]) + (four[r][1] + four[r][3]);
+  return sums;
+}
+
+template <int rows>
+[[gnu::always_inline]] inline void StaticLu::forward(const Block& block) {
+  std::array<int, rows> begin;
+  for (int r = 0; r < rows; ++r) begin[at(r)] = start_[at(block.row + r)];
+  std::array<double, rows> x = add_up<rows>(begin, block);
+  for (int r = 0; r < rows; ++r) {
+    const double* const row = values_.data() + diagonal_[at(block.row + r)] - r;
+    double value = work_[block.row + r] - x[at(r)];
+    for (int q = 0; q < r; ++q) value -= row[q] * x[at(q)];
+    x[at(r)] = value;
+  }
+  for (int r = 0; r < rows; ++r) work_[block.row + r] = x[at(r)];
+}
+
+template <int rows>
+[[gnu::always_inline]] inline void StaticLu::backward(const Block& block) {
+  std::array<int, rows> begin;
+  for (int r = 0; r < rows; ++r) begin[at(r)] = diagonal_[at(block.row + r)] + rows - r;
+  std::array<double, rows> x = add_up<rows>(begin, block);
+  for (int r = rows - 1; r >= 0; --r) {
+    const double* const row = values_.data() + diagonal_[at(block.row + r)] - r;
+    double value = work_[block.row + r] - x[at(r)];
+    for (int q = rows - 1; q > r; --q) value -= row[q] * x[at(q)];
+    x[at(r)] = value * inverse_[at(block.row + r)];
+  }
+  for (int r = 0; r < rows; ++r) work_[block.row + r] = x[at(r)];
+}
+
+[[gnu::always_inline]] inline void StaticLu::substitute() {
+  for (const int i : alone_) work_[i] *= inverse_[at(i)];
+  for (const Block& b : before_)
+    by_rows(
+        b.rows, [&](auto rows) __attribute__((always_inline)) { forward<rows>(b); });
+  for (const Block& b : behind_)
+    by_rows(
+        b.rows, [&](auto rows) __attribute__((always_inline)) { backward<rows>(b); });
+}
+
+[[gnu::target("avx2")]] void StaticLu::substitute_in_fours() {
+  substitute();
+}
+
+void StaticLu::substitute_in_pairs() {
+  substitute();
+}
+
+void StaticLu::list_blocks() {
+  const auto part = [&](int begin, int end) { return std::span(column_).subspan(at(begin), at(end - begin)); };
+  const auto before = [&](int i) { return part(start_[at(i)], diagonal_[at(i)]); };
+  const auto behind = [&](int i) { return part(diagonal_[at(i)] + 1, start_[at(i) + 1]); };
+  // A row has what the one before has, and the diagonal of that besides.
+  const auto same_before = [&](int i) {
+    const auto own = before(i);
+    return !own.empty() && own.back() == i - 1 && std::ranges::equal(own.first(own.size() - 1), before(i - 1));
+  };
+  const auto same_behind = [&](int i) {
+    const auto others = behind(i - 1);
+    return !others.empty() && others.front() == i && std::ranges::equal(others.subspan(1), behind(i));
+  };
+  const auto list = [&](std::span<const int> columns) {
+    for (std::size_t e = 0; e < columns.size(); ++e) {
+      if (e > 0 && columns[e] == columns[e - 1] + 1)
+        ++stretches_.back().length;
+      else
+        stretches_.push_back({static_cast<int>(e), columns[e], 1});
+    }
+  };
+  const auto join = [&](std::vector<Block>& blocks, const auto& same, const auto& columns) {
+    for (int i = 0; i < order_;) {
+      int end = i + 1;
+      while (end < std::min(order_, i + most_rows) && same(end)) ++end;
+      if (!before(i).empty() || !behind(i).empty()) {
+        const auto first = static_cast<int>(stretches_.size());
+        list(columns(i, end));
+        blocks.push_back({i, end - i, first, static_cast<int>(stretches_.size())});
+      }
+      i = end;
+    }
+  };
+  join(before_, same_before, [&](int i, int) { return before(i); });
+  join(behind_, same_behind, [&](int, int end) { return behind(end - 1); });
+  std::ranges::reverse(behind_);
+  for (int i = 0; i < order_; ++i) {
+    if (before(i).empty() && behind(i).empty()) alone_.push_back(i);
+  }
 }
 
 StaticLu::StaticLu(const SparseMatrix& matrix)
@@ -143,6 +301,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     column_.insert(column_.end(), after[at(i)].begin(), after[at(i)].end());
   }
   start_.push_back(static_cast<int>(column_.size()));
+  list_blocks();
   values_.assign(column_.size(), 0.0);
   inverse_.assign(at(order_), 0.0);
   std::vector<std::vector<int>> slots(at(order_));  // of the matrix, by row
@@ -154,57 +313,51 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     }
   }
   target_.assign(matrix.row.size(), 0);
+  std::vector<int> end_of_block(at(order_));  // to which a row belongs by what is behind
+  for (const Block& b : behind_) {
+    for (int i = b.row; i < b.row + b.rows; ++i) end_of_block[at(i)] = b.row + b.rows;
+  }
   std::vector<int> entry(at(order_));  // of every column that the row has
   for (int i = 0; i < order_; ++i) {
     for (int e = start_[at(i)]; e < start_[at(i) + 1]; ++e) entry[at(column_[at(e)])] = e;
     for (const int s : slots[at(i)]) target_[at(s)] = entry[at(column_of[at(s)])];
     first_elimination_.push_back(static_cast<int>(eliminations_.size()));
-    for (int e = start_[at(i)]; e < diagonal_[at(i)]; ++e) {
+    for (int e = start_[at(i)]; e < diagonal_[at(i)];) {
       const int k = column_[at(e)];
-      eliminations_.push_back({e, k, static_cast<int>(runs_.size())});
+      const int rows = std::min({end_of_block[at(k)], i}) - k;
+      const int common = start_[at(k + rows)] - diagonal_[at(k + rows) - 1] - 1;
+      eliminations_.push_back({e, k, rows, common, static_cast<int>(runs_.size())});
       Run run;
-      for (int from = diagonal_[at(k)] + 1; from < start_[at(k) + 1]; ++from) {
-        const int to = entry[at(column_[at(from)])];
+      for (int c = 0; c < common; ++c) {
+        const int to = entry[at(column_[at(start_[at(k + rows)] - common + c)])];
         if (run.to + run.length == to && run.length > 0) {
           ++run.length;
         } else {
           if (run.length > 0) runs_.push_back(run);
-          run = {from, to, 1};
+          run = {c, to, 1};
         }
       }
       if (run.length > 0) runs_.push_back(run);
+      e += rows;
     }
   }
   first_elimination_.push_back(static_cast<int>(eliminations_.size()));
-  eliminations_.push_back({0, 0, static_cast<int>(runs_.size())});
+  eliminations_.push_back({0, 0, 0, 0, static_cast<int>(runs_.size())});
 }
 
 bool StaticLu::factorize(const SparseMatrix& matrix) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (std::size_t s = 0; s < target_.size(); ++s) values_[at(target_[s])] = matrix.value[s];
-  static const bool by_four = __builtin_cpu_supports("avx2") != 0;
-  return by_four ? eliminate_by_four() : eliminate_by_two();
+  return has_fours() ? eliminate_in_fours() : eliminate_in_pairs();
 }
 
 void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
-  const double* const values = values_.data();
-  const int* const column = column_.data();
-  double* const x = work_.data();
-  const auto products = [&](int begin, int end) {
-    double even = 0.0, odd = 0.0;
-    int e = begin;
-    for (; e + 1 < end; e += 2) {
-      even += values[e] * x[column[e]];
-      odd += values[e + 1] * x[column[e + 1]];
-    }
-    if (e < end) even += values[e] * x[column[e]];
-    return even + odd;
-  };
-  for (int i = 0; i < order_; ++i) x[i] = b[unknown_[at(i)]] - products(start_[at(i)], diagonal_[at(i)]);
-  for (int i = order_ - 1; i >= 0; --i) {
-    x[i] = (x[i] - products(diagonal_[at(i)] + 1, start_[at(i) + 1])) * inverse_[at(i)];
-    b[unknown_[at(i)]] = x[i];
-  }
+  for (int i = 0; i < order_; ++i) work_[i] = b[unknown_[at(i)]];
+  if (has_fours())
+    substitute_in_fours();
+  else
+    substitute_in_pairs();
+  for (int i = 0; i < order_; ++i) b[unknown_[at(i)]] = work_[i];
 }
 
 }  // namespace snare::numerics

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <vector>
 
 namespace snare::numerics {
@@ -11,8 +12,8 @@ namespace snare::numerics {
 /// A = L U on a fixed pattern in a fixed order, without a search for pivots.                 theory.md (N.7)
 ///
 /// Rows and columns are in the order of least degree (Amestoy, Davis and Duff 1996) of the pattern of A + A^T; what fills up is
-/// known beforehand, so that a row is eliminated by others in runs of neighbours. A chain of vertices with a few unknowns each
-/// takes a third of the time of KLU. Accurate where no pivot is small beside what stands in its row and column: the caller
+/// known beforehand, so that a row is eliminated by several at once in runs of neighbours. A chain of vertices with a few unknowns
+/// each takes less than a third of the time of KLU. Accurate where no pivot is small beside what stands in its row and column: the caller
 /// has to look at a solution. Of any unit.
 class StaticLu {
  public:
@@ -25,19 +26,46 @@ class StaticLu {
   void solve(Eigen::Ref<Eigen::VectorXd> b);
 
  private:
-  /// Of a row that is eliminated by an earlier one: entries of either that follow each other.
+  /// Of a row that is eliminated by earlier ones: entries of all of them that follow each other.
   struct Run {
-    int from = 0, to = 0, length = 0;  // in values_
+    int offset = 0, to = 0, length = 0;  // behind the first entry of an earlier row that all have; in values_
   };
   struct Elimination {
-    int entry = 0;      // of the multiplier, in values_
-    int row = 0;        // by which
-    int first_run = 0;  // up to that of the next elimination
+    int entry = 0;          // of the first multiplier, in values_
+    int row = 0, rows = 0;  // by which: a block, or what of it is before the row
+    int common = 0;         // how many last entries of these rows have the same columns
+    int first_run = 0;      // up to that of the next elimination
   };
+  /// Entries of a row whose columns follow each other.
+  struct Stretch {
+    int offset = 0;  // behind the row's first one
+    int column = 0, length = 0;
+  };
+  /// Rows that follow each other and have the same columns before or behind their square on the diagonal.
+  struct Block {
+    int row = 0, rows = 0;
+    int first = 0, last = 0;  // stretches
+  };
+  static constexpr int most_rows = 4;  // of a block
+
+  void list_blocks();
+  template <int rows>
+  void eliminate_by(const Elimination& e, int last_run);
   /// The rows one after another; false as `factorize`.
-  [[nodiscard]] bool eliminate(bool by_four);
-  [[nodiscard]] bool eliminate_by_four();
-  [[nodiscard]] bool eliminate_by_two();
+  [[nodiscard]] bool eliminate();
+  [[nodiscard]] bool eliminate_in_fours();
+  [[nodiscard]] bool eliminate_in_pairs();
+  /// Sums of products of a block's rows with work_, over its stretches; begin: in values_, of every row.
+  template <int rows>
+  [[nodiscard]] std::array<double, rows> add_up(const std::array<int, rows>& begin, const Block& block) const;
+  template <int rows>
+  void forward(const Block& block);
+  template <int rows>
+  void backward(const Block& block);
+  /// Solves in the order of the rows, in work_.
+  void substitute();
+  void substitute_in_fours();
+  void substitute_in_pairs();
 
   int order_ = 0;
   std::vector<int> unknown_;               // at every place of the order
@@ -49,6 +77,10 @@ class StaticLu {
   std::vector<int> first_elimination_;     // of every row
   std::vector<Run> runs_;
   std::vector<double> inverse_;  // of the pivots
+  std::vector<int> alone_;       // rows with nothing but a diagonal
+  std::vector<Block> before_;    // of the others, by what is before the diagonal
+  std::vector<Block> behind_;    // by what is behind it, from the last row on
+  std::vector<Stretch> stretches_;
   Eigen::VectorXd work_;
 };
 

@@ -203,6 +203,7 @@ void ContactPart::find(const VectorView& y, Found& found) const {
   const BezierWire& curve = search_.curve();
   for (const int e : search_.candidates()) {
     const BezierWire::Control c = search_.control(where, e, y);
+    if (search_.lower_bound(c) > 0.0) continue;
     const double length = curve.length(e);
     const auto gap = [&](double u) {
       const DistanceField field = search_.shape().at(c * bernstein(u));

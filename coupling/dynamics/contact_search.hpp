@@ -47,10 +47,10 @@ class ContactSearch {
   /// Control points of an element in the shape's frame [m], y in SI units.
   [[nodiscard]] BezierWire::Control control(const multibody::Pose& X_WS, int element,
                                             const numerics::VectorView& y) const;
-
- private:
+  /// A gap that no place of an element goes below [m], by its control points in the shape's frame [m].
   [[nodiscard]] double lower_bound(const BezierWire::Control& control) const;
 
+ private:
   std::shared_ptr<const ContactShape> shape_;
   multibody::Pose X_BS_;
   double wire_radius_;

@@ -2,6 +2,8 @@
 
 #include "base/index.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 
 namespace snare::coupling {
@@ -11,6 +13,7 @@ using Eigen::Vector3d;
 void CubicPieces::set(int element, const BezierWire::Control& b) {
   auto& c = pieces_[base::at(element)];
   ways_[base::at(element)] = (b.rightCols<3>() - b.leftCols<3>()).colwise().norm().sum();
+  controls_[base::at(element)] = b;
   c.col(0) = b.col(0);
   c.col(1) = 3.0 * (b.col(1) - b.col(0));
   c.col(2) = 3.0 * (b.col(0) - 2.0 * b.col(1) + b.col(2));
@@ -30,6 +33,19 @@ Vector3d CubicPieces::slope(int element, double u) const {
 Vector3d CubicPieces::bend(int element, double u) const {
   const auto& c = pieces_[base::at(element)];
   return 2.0 * c.col(2) + 6.0 * u * c.col(3);
+}
+
+bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last, double distance) {
+  const BezierWire::Control& c = own.control(element);
+  const Vector3d n = (c.col(3) - c.col(0)).cross(other.control(last).col(3) - other.control(first).col(0)).normalized();
+  const Eigen::Vector4d of_own = c.transpose() * n;
+  Eigen::Vector4d low = other.control(first).transpose() * n, high = low;
+  for (int e = first + 1; e <= last; ++e) {
+    const Eigen::Vector4d of_other = other.control(e).transpose() * n;
+    low = low.cwiseMin(of_other);
+    high = high.cwiseMax(of_other);
+  }
+  return low.minCoeff() - of_own.maxCoeff() > distance || of_own.minCoeff() - high.maxCoeff() > distance;
 }
 
 namespace {

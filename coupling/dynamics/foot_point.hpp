@@ -13,7 +13,8 @@ namespace snare::coupling {
 class CubicPieces {
  public:
   CubicPieces() = default;
-  explicit CubicPieces(int elements) : pieces_(static_cast<std::size_t>(elements)), ways_(pieces_.size()) {}
+  explicit CubicPieces(int elements)
+      : pieces_(static_cast<std::size_t>(elements)), ways_(pieces_.size()), controls_(pieces_.size()) {}
   /// Of one element, by its control points.
   void set(int element, const BezierWire::Control& control);
 
@@ -29,11 +30,20 @@ class CubicPieces {
   }
   /// A bound of an element's length [m].
   [[nodiscard]] double way(int element) const { return ways_[static_cast<std::size_t>(element)]; }
+  /// The control points of an element, in whose hull it lies [m].
+  [[nodiscard]] const BezierWire::Control& control(int element) const {
+    return controls_[static_cast<std::size_t>(element)];
+  }
 
  private:
   std::vector<Eigen::Matrix<double, 3, 4>> pieces_;
   std::vector<double> ways_;
+  std::vector<BezierWire::Control> controls_;
 };
+/// Whether an element of one wire and a run of elements of another are further apart than a distance [m], as a plane between them shows
+/// whose normal is perpendicular to both; false says nothing.
+[[nodiscard]] bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last,
+                          double distance);
 
 /// The point of a wire that is nearest to a given one.
 struct FootPoint {

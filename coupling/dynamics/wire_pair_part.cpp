@@ -174,6 +174,7 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
   const CubicPieces &along = found.pieces[own], &across = found.pieces[other];
   const double length = curve.length(near.element);
   const double thickness = pair_.radii[0] + pair_.radii[1];
+  if (parted(along, near.element, across, near.first, near.last, thickness)) return;
   const auto gap = [&](double u) {
     const Vector3d x = along.value(near.element, u);
     const FootPoint foot = foot_point(across, near.first, near.last, x);
