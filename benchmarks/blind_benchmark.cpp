@@ -219,7 +219,10 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       continue;
     }
     nlohmann::json& cell = result["matrix"][c.effect][fmt::format("{:g}", c.size)];
-    if (cell.is_null()) cell = {{"right", 0}, {"sets", 0}, {"answers", nlohmann::json::object()}};
+    if (cell.is_null())
+      cell = {{"right", 0}, {"sets", 0}, {"mean_class_size", 0.0}, {"answers", nlohmann::json::object()}};
+    const double before = cell["sets"];
+    cell["mean_class_size"] = (before * cell["mean_class_size"].get<double>() + o.class_size) / (before + 1.0);
     cell["right"] = cell.value("right", 0) + (o.right ? 1 : 0);
     cell["sets"] = cell.value("sets", 0) + 1;
     cell["answers"][o.answer] = cell["answers"].value(o.answer, 0) + 1;

@@ -324,7 +324,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     first_elimination_.push_back(static_cast<int>(eliminations_.size()));
     for (int e = start_[at(i)]; e < diagonal_[at(i)];) {
       const int k = column_[at(e)];
-      const int rows = std::min({end_of_block[at(k)], i}) - k;
+      const int rows = std::min(end_of_block[at(k)], i) - k;
       const int common = start_[at(k + rows)] - diagonal_[at(k + rows) - 1] - 1;
       eliminations_.push_back({e, k, rows, common, static_cast<int>(runs_.size())});
       Run run;
