@@ -327,17 +327,14 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
       const int rows = std::min(end_of_block[at(k)], i) - k;
       const int common = start_[at(k + rows)] - diagonal_[at(k + rows) - 1] - 1;
       eliminations_.push_back({e, k, rows, common, static_cast<int>(runs_.size())});
-      Run run;
+      const std::size_t first_run = runs_.size();
       for (int c = 0; c < common; ++c) {
         const int to = entry[at(column_[at(start_[at(k + rows)] - common + c)])];
-        if (run.to + run.length == to && run.length > 0) {
-          ++run.length;
-        } else {
-          if (run.length > 0) runs_.push_back(run);
-          run = {c, to, 1};
-        }
+        if (runs_.size() > first_run && runs_.back().to + runs_.back().length == to)
+          ++runs_.back().length;
+        else
+          runs_.push_back({c, to, 1});
       }
-      if (run.length > 0) runs_.push_back(run);
       e += rows;
     }
   }

@@ -12,7 +12,6 @@ using Eigen::Vector3d;
 
 void CubicPieces::set(int element, const BezierWire::Control& b) {
   auto& c = pieces_[base::at(element)];
-  ways_[base::at(element)] = (b.rightCols<3>() - b.leftCols<3>()).colwise().norm().sum();
   controls_[base::at(element)] = b;
   c.col(0) = b.col(0);
   c.col(1) = 3.0 * (b.col(1) - b.col(0));
@@ -33,6 +32,11 @@ Vector3d CubicPieces::slope(int element, double u) const {
 Vector3d CubicPieces::bend(int element, double u) const {
   const auto& c = pieces_[base::at(element)];
   return 2.0 * c.col(2) + 6.0 * u * c.col(3);
+}
+
+double CubicPieces::way(int element) const {
+  const BezierWire::Control& b = control(element);
+  return (b.rightCols<3>() - b.leftCols<3>()).colwise().norm().sum();
 }
 
 bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last, double distance) {

@@ -13,8 +13,7 @@ namespace snare::coupling {
 class CubicPieces {
  public:
   CubicPieces() = default;
-  explicit CubicPieces(int elements)
-      : pieces_(static_cast<std::size_t>(elements)), ways_(pieces_.size()), controls_(pieces_.size()) {}
+  explicit CubicPieces(int elements) : pieces_(static_cast<std::size_t>(elements)), controls_(pieces_.size()) {}
   /// Of one element, by its control points.
   void set(int element, const BezierWire::Control& control);
 
@@ -29,7 +28,7 @@ class CubicPieces {
     return std::max(bend(element, 0.0).norm(), bend(element, 1.0).norm());
   }
   /// A bound of an element's length [m].
-  [[nodiscard]] double way(int element) const { return ways_[static_cast<std::size_t>(element)]; }
+  [[nodiscard]] double way(int element) const;
   /// The control points of an element, in whose hull it lies [m].
   [[nodiscard]] const BezierWire::Control& control(int element) const {
     return controls_[static_cast<std::size_t>(element)];
@@ -37,11 +36,10 @@ class CubicPieces {
 
  private:
   std::vector<Eigen::Matrix<double, 3, 4>> pieces_;
-  std::vector<double> ways_;
   std::vector<BezierWire::Control> controls_;
 };
 /// Whether an element of one wire and a run of elements of another are further apart than a distance [m], as a plane between them shows
-/// whose normal is perpendicular to both; false says nothing.
+/// whose normal is perpendicular to both; false says nothing.                                 theory.md (G.13)
 [[nodiscard]] bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last,
                           double distance);
 
