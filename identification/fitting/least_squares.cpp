@@ -151,18 +151,20 @@ std::vector<const Parameter*> Fit::parameters() const {
   return result;
 }
 
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian) {
+Eigen::MatrixXd unit_directions(const Eigen::MatrixXd& jacobian) {
   const Eigen::Index n = jacobian.cols();
   if (n == 0) return {};
   Eigen::VectorXd scale(n);
   for (Eigen::Index k = 0; k < n; ++k) scale[k] = 1.0 / std::max(jacobian.col(k).norm(), 1e-300);
   const numerics::ThinSvd svd = numerics::thin_svd(jacobian * scale.asDiagonal());
-  const Eigen::VectorXd& s = svd.s;
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index k = 0; k < s.size(); ++k) {
-    if (s[k] > 1e-10 * s[0]) inverse += svd.V.col(k) * svd.V.col(k).transpose() / (s[k] * s[k]);
-  }
-  return scale.asDiagonal() * inverse * scale.asDiagonal();
+  Eigen::Index rank = 0;
+  while (rank < svd.s.size() && svd.s[rank] > 1e-10 * svd.s[0]) ++rank;
+  return scale.asDiagonal() * svd.V.leftCols(rank) * svd.s.head(rank).cwiseInverse().asDiagonal();
+}
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd directions = unit_directions(jacobian);
+  return directions * directions.transpose();
 }
 
 namespace {
@@ -292,6 +294,34 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
   return others;
 }
 
+/// chi2 with `held` settings at the optimum of the others, beginning at `others`, by steps with the derivatives of the optimum of all,
+/// which need no new ones: where these come to their end, that is expect no more of another than `enough`.
+std::optional<double> chi2_by_chords(const Model& model, const Data& data, const Eigen::MatrixXd& jacobian,
+                                     std::vector<Setting> others, const std::vector<Setting>& held, double enough) {
+  constexpr int most = 4;
+  const Eigen::MatrixXd covariance = covariance_of(jacobian);
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < most; ++k) {
+    std::vector<Setting> all = others;
+    all.insert(all.end(), held.begin(), held.end());
+    const Evaluation at = model.evaluate(all);
+    if (!at.complete) return std::nullopt;
+    const Eigen::VectorXd residual = data.residual(at);
+    const double chi2 = residual.squaredNorm();
+    const Eigen::VectorXd gradient = jacobian.transpose() * residual;
+    const Eigen::VectorXd step = covariance * gradient;
+    if (gradient.dot(step) < enough) return chi2;
+    if (!(chi2 < least)) return std::nullopt;
+    least = chi2;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      Setting& s = others[i];
+      s.coordinate = std::clamp(s.coordinate + step[static_cast<Eigen::Index>(i)], model.lower(*s.parameter),
+                                model.upper(*s.parameter));
+    }
+  }
+  return std::nullopt;
+}
+
 /// One end of a profile's interval, in the direction `sense` (-1 or 1).
 std::optional<double> profile_end(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
                                   double rise, double sense,
@@ -303,9 +333,14 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
   const std::vector<Setting> fixed = optimum.fixed();
   FitOptions options;
   options.max_iterations = 15;
-  // To a fiftieth of the rise that is looked for.
-  options.tolerance = std::clamp(0.02 * rise / std::max(optimum.chi2, 1.0), 1e-6, 1e-3);
+  const double enough = 0.02 * rise;  // of the chi2 that is looked for
+  options.tolerance = std::clamp(enough / std::max(optimum.chi2, 1.0), 1e-6, 1e-3);
   options.progress = progress;
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < optimum.jacobian.cols(); ++k) {
+    if (k != j) columns.push_back(k);
+  }
+  const Eigen::MatrixXd jacobian = optimum.jacobian(Eigen::all, columns);
   double step = std::sqrt(rise) * spread;  // where the profile is a parabola
   std::optional<double> end;
   for (int k = 0; k < 4; ++k) {
@@ -313,13 +348,19 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
     if ((at - limit) * sense >= 0.0) return std::nullopt;
     std::vector<Setting> held{{centre.parameter, at}};
     held.insert(held.end(), fixed.begin(), fixed.end());
-    const Fit other = fit(model, data, others_beside(model, optimum, which, sense * step), held, options);
-    if (other.report.termination == numerics::Termination::interrupted) return std::nullopt;
-    if (!other.report.usable()) {
-      step *= 0.5;
-      continue;
+    if (progress && !progress(k, optimum.chi2)) return std::nullopt;
+    const std::vector<Setting> others = others_beside(model, optimum, which, sense * step);
+    std::optional<double> chi2 = chi2_by_chords(model, data, jacobian, others, held, enough);
+    if (!chi2) {
+      const Fit other = fit(model, data, others, held, options);
+      if (other.report.termination == numerics::Termination::interrupted) return std::nullopt;
+      if (!other.report.usable()) {
+        step *= 0.5;
+        continue;
+      }
+      chi2 = other.chi2;
     }
-    const double risen = std::max(other.chi2 - optimum.chi2, 1e-3 * rise);
+    const double risen = std::max(*chi2 - optimum.chi2, 1e-3 * rise);
     end = at;
     if (std::abs(risen / rise - 1.0) < 0.05) break;
     step *= std::clamp(std::sqrt(rise / risen), 0.3, 3.0);

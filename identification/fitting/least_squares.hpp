@@ -70,7 +70,11 @@ struct ProfileInterval {
                                                std::size_t which, double rise,
                                                const std::function<bool(int iteration, double chi2)>& progress = {});
 
-/// (J^T J)^-1 by singular values, in the units of the columns' coordinates; directions below 1e-10 of the largest (columns scaled to one) left out.
+/// Directions D of the coordinates in which the whitened residual changes by one, in columns, D^T J^T J D = 1: by singular values, those below
+/// 1e-10 of the largest (columns of J scaled to one) left out. In the units of the columns' coordinates.
+[[nodiscard]] Eigen::MatrixXd unit_directions(const Eigen::MatrixXd& jacobian);
+
+/// (J^T J)^-1 = D D^T of these directions, in the units of the columns' coordinates.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian);
 
 }  // namespace snare::identification

@@ -143,6 +143,7 @@ std::vector<ChannelFunction> attribute(const Model& model, const Data& data, con
     f.channel = channel.channel;
     f.argument = channel.argument;
     f.effect = channel.effect;
+    f.constant = channel.constant;
     f.at = channel.at;
     const Smooth s = solve(current.jacobian, channel.columns, r, best_weight);
     const double left = (r - current.jacobian * s.free - channel.columns * s.values).squaredNorm();

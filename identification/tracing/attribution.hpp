@@ -12,6 +12,7 @@ struct ChannelFunction {
   Channel channel{};
   std::string argument;           ///< what it is a function of, with unit: "travel [mm]"
   std::string effect;             ///< what it does: "adds to the recorded force [N]"
+  std::string constant;           ///< key of the number that it is without slope; empty: none
   std::vector<double> at;         ///< stations of the argument, in its unit
   std::vector<double> value;      ///< of the function there, in the unit of `effect`
   std::vector<double> deviation;  ///< standard deviation of the values

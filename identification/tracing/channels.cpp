@@ -61,17 +61,18 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
   };
   const auto computed = [&](std::size_t k, Eigen::Index i) { return current.evaluation.force[k][i]; };
   const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument, const std::string& effect,
-                       double unit) {
+                       double unit, const std::string& constant) {
     c.channel = channel;
     c.argument = argument;
     c.effect = effect;
     c.unit = unit;
+    c.constant = constant;
     channels.push_back(std::move(c));
   };
   const auto one = [](std::size_t, Eigen::Index) { return 1.0; };
 
   add(function_of(data, displacement, one, 1e-3), Channel::sensor, "recorded travel [mm]",
-      "adds to the recorded force [N]", 1.0);
+      "adds to the recorded force [N]", 1.0, "reading.force_offset_N");
   bool timed = true;
   for (const std::size_t k : data.series)
     timed = timed && model.series()[k].readings && !model.series()[k].readings->time.empty();
@@ -81,7 +82,8 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
   };
   add(function_of(data, time, one, 1.0), Channel::sensor,
-      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]", 1.0);
+      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]", 1.0,
+      "reading.force_offset_N");
 
   const Parameter& span = parameters().at("mount.span_mm");
   const Parameter& zero = parameters().at("reading.displacement_offset_mm");
@@ -94,11 +96,11 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
       };
       add(function_of(
               data, tension, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
-          Channel::mount, "tension at the mount [N]", "moves the mounts apart [mm]", 1e-3);
+          Channel::mount, "tension at the mount [N]", "moves the mounts apart [mm]", 1e-3, span.key);
     }
     add(function_of(
             data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0),
-        Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3);
+        Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3, zero.key);
   }
   const auto sense = [&](std::size_t k, Eigen::Index i) {
     const Eigen::Index last = data.measured[k].size() - 1;
@@ -106,7 +108,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
   };
   add(function_of(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
-      "resists the pusher's motion, either way [N]", 1.0);
+      "resists the pusher's motion, either way [N]", 1.0, "");
   if (!supports) {
     const Evaluation windows = model.evaluate_windows(current.settings, stations);
     if (windows.complete) {
@@ -115,7 +117,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
       const double length = model.series().front().test.wire.length;
       for (int s = 0; s < stations; ++s) c.at.push_back(1e3 * length * s / (stations - 1));
       add(std::move(c), Channel::wire, "place along the wire from the left mount [mm]",
-          "changes the bending stiffness there, as a share", 1.0);
+          "changes the bending stiffness there, as a share", 1.0, "wire.bending_stiffness_Nm2");
     }
   }
 

@@ -17,6 +17,7 @@ struct ChannelColumns {
   std::vector<double> at;   ///< stations of the argument, in its unit
   Eigen::MatrixXd columns;  ///< whitened change of the forces for one (SI) of the function's hat at each station
   double unit = 1.0;        ///< SI of a value in the unit of `effect`
+  std::string constant;     ///< key of the number that a function without slope is: "mount.span_mm"
 };
 
 /// One function in every channel that these series have: the reading against travel and against time, the

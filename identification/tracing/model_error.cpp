@@ -1,6 +1,7 @@
 #include "identification/tracing/model_error.hpp"
 
 #include "identification/tracing/projection.hpp"
+#include "numerics/dense_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,14 +127,15 @@ std::vector<std::vector<Eigen::Index>> rows_of_legs(const Model& model, const Da
   return {last};
 }
 
-/// What a fit leaves, and its derivatives, as forces.
-struct Plain {
+/// What a fit leaves, and its derivatives.
+struct Left {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;
 };
 
-Plain plain_of(const Data& data, const Fit& fit) {
-  Plain plain{Eigen::VectorXd(data.rows()), Eigen::MatrixXd(data.rows(), fit.jacobian.cols())};
+// As forces.
+Left in_forces(const Data& data, const Fit& fit) {
+  Left forces{Eigen::VectorXd(data.rows()), Eigen::MatrixXd(data.rows(), fit.jacobian.cols())};
   Eigen::Index row = 0;
   for (const std::size_t k : data.series) {
     const Eigen::Index n = data.rows_of(k);
@@ -141,14 +143,14 @@ Plain plain_of(const Data& data, const Fit& fit) {
     const bool summarised = data.noise.summarised(k);
     const double unit = data.noise.sigma[k];
     const Eigen::VectorXd left = data.measured[k] - fit.evaluation.force[k];
-    plain.residual.segment(row, n) = summarised ? Eigen::VectorXd(unit * data.noise.whiten(k, left)) : left;
+    forces.residual.segment(row, n) = summarised ? Eigen::VectorXd(unit * data.noise.whiten(k, left)) : left;
     if (fit.jacobian.cols() > 0) {
       const Eigen::MatrixXd& by = fit.evaluation.by[k];
-      plain.jacobian.middleRows(row, n) = summarised ? Eigen::MatrixXd(unit * data.noise.whiten(k, by)) : by;
+      forces.jacobian.middleRows(row, n) = summarised ? Eigen::MatrixXd(unit * data.noise.whiten(k, by)) : by;
     }
     row += n;
   }
-  return plain;
+  return forces;
 }
 
 }  // namespace
@@ -166,10 +168,20 @@ LeftOut left_out_conditions(const Model& model, const Data& data) {
   return result;
 }
 
-double left_out_rmse(const Model& model, const Data& data, const Fit& fit) {
-  const Plain plain = plain_of(data, fit);
-  double squares = 0.0;
+namespace {
+
+/// Squares of what a fit to the others leaves in every condition that is left out, and how many there are.
+/// left: by the fit to all; by: its derivatives; both whitened, or of forces.                      theory.md (I.5)
+struct Squares {
+  double sum = 0.0;
   double count = 0.0;
+};
+
+Squares left_out(const Model& model, const Data& data, const Fit& fit, const Left& all) {
+  constexpr double least_told =
+      0.01;  // share of what all readings tell of a direction, below which the others do not predict it
+  const Eigen::MatrixXd directions = unit_directions(fit.jacobian);
+  Squares squares;
   for (const std::vector<Eigen::Index>& out : left_out_conditions(model, data).rows) {
     std::vector<bool> goes(static_cast<std::size_t>(data.rows()), false);
     for (const Eigen::Index i : out) goes[static_cast<std::size_t>(i)] = true;
@@ -178,23 +190,35 @@ double left_out_rmse(const Model& model, const Data& data, const Fit& fit) {
       if (!goes[static_cast<std::size_t>(i)]) in.push_back(i);
     }
     if (in.empty() || out.empty()) continue;
-    // Without these readings the numbers move by (J^T J)^-1 J^T r of the rows that stay.
-    const Eigen::MatrixXd rest = fit.jacobian(in, Eigen::all);
-    Eigen::VectorXd left = plain.residual(out);
-    const Eigen::MatrixXd columns = plain.jacobian(out, Eigen::all);
+    Eigen::VectorXd left = all.residual(out);
     if (fit.free > 0) {
-      left -= columns * (covariance_of(rest) * (rest.transpose() * Eigen::VectorXd(fit.residual(in))));
-      // Numbers that only the readings left out can tell (the zero of a series).
-      std::vector<Eigen::Index> own;
-      for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-        if (columns.col(j).norm() > 0.0 && rest.col(j).norm() == 0.0) own.push_back(j);
-      }
-      if (!own.empty()) left = Projection(columns(Eigen::all, own)).without(left);
+      // Without these readings the numbers move by (J^T J)^-1 J^T r of the rows that stay, but for directions that only the readings
+      // left out can tell (the zero of a series, a yield stress that nothing else reaches).
+      const Eigen::MatrixXd rest = fit.jacobian(in, Eigen::all) * directions;
+      const Eigen::MatrixXd columns = all.jacobian(out, Eigen::all) * directions;
+      const numerics::SymmetricEigen told = numerics::symmetric_eigen(rest.transpose() * rest);
+      const Eigen::VectorXd score = told.vectors.transpose() * (rest.transpose() * Eigen::VectorXd(fit.residual(in)));
+      const Eigen::Index own = (told.values.array() < least_told).count();
+      const Eigen::Index others = score.size() - own;
+      left -= columns * (told.vectors.rightCols(others) * score.tail(others).cwiseQuotient(told.values.tail(others)));
+      if (own > 0) left = Projection(columns * told.vectors.leftCols(own)).without(left);
     }
-    squares += left.squaredNorm();
-    count += static_cast<double>(left.size());
+    squares.sum += left.squaredNorm();
+    squares.count += static_cast<double>(left.size());
   }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  return squares;
+}
+
+}  // namespace
+
+double left_out_rmse(const Model& model, const Data& data, const Fit& fit) {
+  const Squares squares = left_out(model, data, fit, in_forces(data, fit));
+  return squares.count > 0.0 ? std::sqrt(squares.sum / squares.count) : 0.0;
+}
+
+double left_out_excess(const Model& model, const Data& data, const Fit& fit) {
+  const Squares squares = left_out(model, data, fit, {fit.residual, fit.jacobian});
+  return squares.sum - squares.count;
 }
 
 Eigen::VectorXd forces_of(const Series& series) {

@@ -53,6 +53,9 @@ struct LeftOut {
 /// Root mean square error [N] of every condition predicted by a fit to the others, to first order. theory.md (I.5)
 [[nodiscard]] double left_out_rmse(const Model& model, const Data& data, const Fit& fit);
 
+/// Squares of the same errors, whitened, less what noise alone would leave: excess of chi2 [-].
+[[nodiscard]] double left_out_excess(const Model& model, const Data& data, const Fit& fit);
+
 /// Series that are never fitted, with their readings.
 class HeldOut {
  public:

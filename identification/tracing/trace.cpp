@@ -131,7 +131,9 @@ const std::vector<ChannelFunction>& Tracer::functions() {
 }
 
 std::vector<ChannelFunction> Tracer::rivals() {
-  return rivals_outside(functions(), find_effect(added_.front())->channel, current_.chi2);
+  const double base = left_out_excess(model_, data_, base_);
+  const double predicted = base > 0.0 ? 1.0 - left_out_excess(model_, data_, current_) / base : 0.0;
+  return rivals_outside(functions(), classes_.front(), current_.chi2, predicted);
 }
 
 // The declared model as it is and the base model as fitted: errors and what is left.

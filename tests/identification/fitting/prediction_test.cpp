@@ -212,6 +212,31 @@ TEST(LeastSquares, ProfileOfANearlyLinearNumberIsItsStandardError) {
   EXPECT_NEAR(*interval.upper - *interval.lower, 2.0 * 1.96 * deviation, 0.1 * 3.92 * deviation);
 }
 
+// Where the numbers are held at an end and all others fitted anew, chi2 has risen by what was asked, with much noise as with little.
+TEST(LeastSquares, AtTheEndsOfAProfileAFitOfTheOthersHasRisenByWhatWasAsked) {
+  constexpr double rise = 3.84;
+  for (const double sigma : {0.05, 3.0}) {
+    const Hidden h = hidden_wire(sigma, 4);
+    const Model model(h.series, few_edges());
+    const Fit f = fit(model, h.data,
+                      {{&parameters().at("wire.length_mm"), -5e-4},
+                       {&parameters().at("wire.axial_stiffness_N"), -0.2},
+                       {&parameters().at("reading.displacement_offset_mm"), 2e-4}});
+    ASSERT_TRUE(f.report.usable());
+    for (std::size_t which = 0; which < 3; ++which) {
+      const ProfileInterval interval = profile_interval(model, h.data, f, which, rise);
+      for (const std::optional<double> end : {interval.lower, interval.upper}) {
+        if (!end) continue;
+        std::vector<Setting> others = f.fitted();
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+        const Fit beside = fit(model, h.data, others, {{f.settings[which].parameter, *end}});
+        ASSERT_TRUE(beside.report.usable());
+        EXPECT_NEAR((beside.chi2 - f.chi2) / rise, 1.0, 0.1) << sigma << " " << f.settings[which].parameter->key;
+      }
+    }
+  }
+}
+
 TEST(LeastSquares, ANumberThatNothingDependsOnHasNoStandardError) {
   const Hidden h = hidden_wire(0.05, 4);
   const Model model(h.series, few_edges());
