@@ -71,12 +71,17 @@ struct Outcome {
   double left_out = 0.0;  // error of series predicted from the others, over the noise
   std::string answer;
   double class_size = 0.0;
+  double mechanisms = 0.0;  // likewise, slips of either kind and end counted as one
   double seconds = 0.0;
   double made_size = 0.0;
   bool partial = false;  // of several effects some are named and none that is not inside, or none at all as unexplained
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
 };
+
+bool is_slip(const std::string& effect) {
+  return effect.starts_with("mount_slip") || effect.starts_with("clamp_slide");
+}
 
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   Outcome o;
@@ -85,7 +90,10 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   o.chi2_dof = t.final.chi2_dof;
   o.alternative = !t.selected.empty() && !t.alternatives.empty();
   for (const std::vector<std::string>& members : t.selected_classes) {
-    o.class_size += static_cast<double>(members.size()) / static_cast<double>(t.selected_classes.size());
+    const auto slips = static_cast<std::size_t>(std::ranges::count_if(members, is_slip));
+    const auto classes = static_cast<double>(t.selected_classes.size());
+    o.class_size += static_cast<double>(members.size()) / classes;
+    o.mechanisms += static_cast<double>(members.size() - slips + std::min<std::size_t>(slips, 1)) / classes;
     o.right = o.right || std::find(members.begin(), members.end(), set.effect) != members.end();
   }
   const std::vector<std::string> inside = validation::effects_in(set.effect);
@@ -137,25 +145,16 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"effect", c.effect},
-          {"size", c.size},
-          {"seed", c.seed},
-          {"right", o.right},
-          {"alarm", o.alarm},
-          {"channel", o.channel},
-          {"beside", o.alternative},
-          {"deviates", o.deviates},
-          {"covered", o.covered},
-          {"chi2_dof", o.chi2_dof},
-          {"left_out", o.left_out},
-          {"answer", o.answer},
-          {"class", o.class_size},
-          {"seconds", o.seconds},
-          {"made", o.made_size},
-          {"reached", o.reached},
-          {"partial", o.partial},
-          {"design", c.design},
-          {"effect_covered", o.effect_covered}};
+  return {{"effect", c.effect},      {"size", c.size},
+          {"seed", c.seed},          {"right", o.right},
+          {"alarm", o.alarm},        {"channel", o.channel},
+          {"beside", o.alternative}, {"deviates", o.deviates},
+          {"covered", o.covered},    {"chi2_dof", o.chi2_dof},
+          {"left_out", o.left_out},  {"answer", o.answer},
+          {"class", o.class_size},   {"mechanisms", o.mechanisms},
+          {"seconds", o.seconds},    {"made", o.made_size},
+          {"reached", o.reached},    {"partial", o.partial},
+          {"design", c.design},      {"effect_covered", o.effect_covered}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {
@@ -170,6 +169,7 @@ Outcome outcome_of(const nlohmann::json& line) {
   o.left_out = line["left_out"];
   o.answer = line["answer"];
   o.class_size = line["class"];
+  o.mechanisms = line.value("mechanisms", o.class_size);
   o.seconds = line["seconds"];
   o.made_size = line["made"];
   o.reached = line["reached"];
@@ -197,7 +197,8 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
 
 /// Counts of one size.
 struct Totals {
-  double inside = 0, right = 0, class_size = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0, left_out = 0;
+  double inside = 0, right = 0, class_size = 0, mechanisms = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0,
+         left_out = 0;
   double outside = 0, silent = 0, channel = 0, named = 0;
   double pairs = 0, both = 0, part = 0, asked = 0, effect_covered = 0;
 };
@@ -252,6 +253,7 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       t.effect_covered += o.effect_covered;
     }
     t.class_size += o.class_size;
+    t.mechanisms += o.mechanisms;
     t.undecided += o.alternative ? 1 : 0;
     // A gain is EI and EA by another name: they are told up to it.
     if (c.effect != "force_gain") {
@@ -274,6 +276,7 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       s["right_class"] = t.right / t.inside;
       s["right_class_at_least"] = lower_bound(t.right, t.inside);
       s["mean_class_size"] = t.class_size / t.inside;
+      s["mean_class_size_slips_as_one"] = t.mechanisms / t.inside;
       s["class_holds_a_cause_outside"] = t.undecided / t.inside;
       s["chi2_dof_within_0.8_and_1.2"] = t.at_noise / t.inside;
       s["mean_error_of_left_out_series_over_noise"] = t.left_out / t.inside;
