@@ -74,6 +74,7 @@ struct Outcome {
   double mechanisms = 0.0;  // likewise, slips of either kind and end counted as one
   double seconds = 0.0;
   double made_size = 0.0;
+  bool decided = false;
   bool partial = false;  // of several effects some are named and none that is not inside, or none at all as unexplained
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
@@ -86,6 +87,7 @@ bool is_slip(const std::string& effect) {
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   Outcome o;
   o.alarm = !t.selected.empty();
+  o.decided = t.decided;
   o.made_size = set.size;
   o.chi2_dof = t.final.chi2_dof;
   o.alternative = !t.selected.empty() && !t.alternatives.empty();
@@ -170,6 +172,7 @@ Outcome outcome_of(const nlohmann::json& line) {
   o.answer = line["answer"];
   o.class_size = line["class"];
   o.mechanisms = line.value("mechanisms", o.class_size);
+  o.decided = line.value("decided", false);
   o.seconds = line["seconds"];
   o.made_size = line["made"];
   o.reached = line["reached"];
@@ -199,6 +202,7 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
 struct Totals {
   double inside = 0, right = 0, class_size = 0, mechanisms = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0,
          left_out = 0;
+  double decided = 0, decided_right = 0;  // effects that were named, of causes inside and outside
   double outside = 0, silent = 0, channel = 0, named = 0;
   double pairs = 0, both = 0, part = 0, asked = 0, effect_covered = 0;
 };
@@ -233,6 +237,10 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
       continue;
     }
     Totals& t = totals[c.size];
+    if (o.alarm && o.decided) {
+      ++t.decided;
+      t.decided_right += o.right ? 1 : 0;
+    }
     if (c.effect.find('+') != std::string::npos) {
       ++t.pairs;
       t.both += o.right ? 1 : 0;
@@ -286,6 +294,11 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
         s["effects_numbers_covered"] = t.effect_covered / t.asked;
         s["effects_numbers_covered_at_least"] = lower_bound(t.effect_covered, t.asked);
       }
+    }
+    if (t.decided > 0) {
+      s["decided"] = t.decided;
+      s["decided_right"] = t.decided_right / t.decided;
+      s["decided_right_at_least"] = lower_bound(t.decided_right, t.decided);
     }
     if (t.pairs > 0) {
       s["pairs"] = t.pairs;

@@ -9,11 +9,14 @@
 
 namespace snare::identification {
 
+double ResidualTests::p() const {
+  if (of_published || against_replicates) return lack_of_fit;
+  return std::min(1.0, 3.0 * std::min({runs, ljung_box, lack_of_fit}));
+}
+
 bool ResidualTests::like_noise() const {
   constexpr double level = 0.002;
-  if (of_published) return lack_of_fit > least_published_p;
-  if (against_replicates) return lack_of_fit > level;
-  return 3.0 * std::min({runs, ljung_box, lack_of_fit}) > level;
+  return p() > (of_published ? least_published_p : level);
 }
 
 namespace {

@@ -16,8 +16,9 @@ struct ResidualTests {
   double noise = 0.0;               ///< of a reading [N]
   Remainder left{};                 ///< the smooth part of what is left
 
-  /// All three together at 0.2 %, so that a right answer is taken back once in five hundred; against
-  /// replicates, and of published fits, the lack of fit alone; of the latter at 1 %.
+  /// P of all three together [-]; against replicates, and of published fits, of the lack of fit alone.
+  [[nodiscard]] double p() const;
+  /// At 0.2 %, so that a right answer is taken back once in five hundred; of published fits at 1 %.
   [[nodiscard]] bool like_noise() const;
   /// At most this much is left, with 95 % confidence [N].
   [[nodiscard]] bool within(double tolerance) const { return left.upper <= tolerance; }
@@ -26,6 +27,8 @@ struct ResidualTests {
   [[nodiscard]] bool acceptable(double tolerance) const {
     return like_noise() || (!of_published && (rmse <= noise || within(tolerance)));
   }
+  /// Nothing speaks against the model: what is left is like noise at 5 %, or within the tolerance [N].
+  [[nodiscard]] bool agrees(double tolerance) const { return p() > 0.05 || (!of_published && within(tolerance)); }
 };
 
 /// All tests of what this fit leaves in the fitted series.

@@ -326,7 +326,8 @@ bool Tracer::decided() const {
                     .classes = result_.selected_classes,
                     .cause_outside = !result_.alternatives.empty(),
                     .one_condition = result_.one_condition && !result_.selected.empty(),
-                    .zero_in_doubt = result_.zero && result_.zero->doubtful};
+                    .zero_in_doubt = result_.zero && result_.zero->doubtful,
+                    .something_left = !tests_.agrees(result_.tolerance)};
   if (result_.selected.empty()) {
     return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);

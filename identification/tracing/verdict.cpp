@@ -57,7 +57,7 @@ bool worth_a_name(double before, double after, double tolerance) {
 
 bool is_decided(const Evidence& e) {
   constexpr double least_dof = 5.0;
-  if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt) return false;
+  if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt || e.something_left) return false;
   const auto alone = [](const std::vector<std::string>& members) { return members.size() == 1; };
   if (!std::all_of(e.classes.begin(), e.classes.end(), alone)) return false;
   for (std::size_t k = 1; k < e.left_out.size(); ++k) {

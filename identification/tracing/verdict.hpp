@@ -68,10 +68,12 @@ struct Evidence {
   bool cause_outside = false;                       ///< one that the catalogue does not have would do as well
   bool one_condition = false;                       ///< of readings
   bool zero_in_doubt = false;                       ///< of the travel
+  bool something_left = false;                      ///< what the noise leaves once in twenty
   /// Errors of conditions left out [N]: of the base model, then with one selected effect after the other.
   std::vector<double> left_out{};
 };
-/// Classes of one member, five degrees of freedom, and conditions left out that every effect predicts better.
+/// Classes of one member, five degrees of freedom, nothing left that speaks against it, and conditions left out that every effect
+/// predicts better.
 [[nodiscard]] bool is_decided(const Evidence& evidence);
 
 }  // namespace snare::identification

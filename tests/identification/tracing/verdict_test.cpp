@@ -181,7 +181,8 @@ TEST(Verdict, IsDecidedByAllThatIsAsked) {
   e.classes.push_back({"gravity"});
   e.left_out = {2.0, 1.0, 1.5};  // the second one does not help
   EXPECT_FALSE(is_decided(e));
-  for (bool Evidence::*what : {&Evidence::cause_outside, &Evidence::one_condition, &Evidence::zero_in_doubt}) {
+  for (bool Evidence::*what :
+       {&Evidence::cause_outside, &Evidence::one_condition, &Evidence::zero_in_doubt, &Evidence::something_left}) {
     e = good;
     e.*what = true;
     EXPECT_FALSE(is_decided(e));
