@@ -404,6 +404,7 @@ int main(int argc, char** argv) try {
   }
 
   const nlohmann::json result = summary(cases, outcomes);
+  if (!out.empty()) base::write_text(out, result.dump(1) + "\n");
   fmt::print("{}\n", result.dump(1));
   if (!required) return 0;
   // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small run.
