@@ -147,16 +147,27 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
 }
 
 nlohmann::json line_of(const Case& c, const Outcome& o) {
-  return {{"effect", c.effect},      {"size", c.size},
-          {"seed", c.seed},          {"right", o.right},
-          {"alarm", o.alarm},        {"channel", o.channel},
-          {"beside", o.alternative}, {"deviates", o.deviates},
-          {"covered", o.covered},    {"chi2_dof", o.chi2_dof},
-          {"left_out", o.left_out},  {"answer", o.answer},
-          {"class", o.class_size},   {"mechanisms", o.mechanisms},
-          {"seconds", o.seconds},    {"made", o.made_size},
-          {"reached", o.reached},    {"partial", o.partial},
-          {"design", c.design},      {"effect_covered", o.effect_covered}};
+  return {{"effect", c.effect},
+          {"size", c.size},
+          {"seed", c.seed},
+          {"right", o.right},
+          {"alarm", o.alarm},
+          {"channel", o.channel},
+          {"beside", o.alternative},
+          {"deviates", o.deviates},
+          {"covered", o.covered},
+          {"chi2_dof", o.chi2_dof},
+          {"left_out", o.left_out},
+          {"answer", o.answer},
+          {"class", o.class_size},
+          {"mechanisms", o.mechanisms},
+          {"decided", o.decided},
+          {"seconds", o.seconds},
+          {"made", o.made_size},
+          {"reached", o.reached},
+          {"partial", o.partial},
+          {"design", c.design},
+          {"effect_covered", o.effect_covered}};
 }
 
 Outcome outcome_of(const nlohmann::json& line) {
