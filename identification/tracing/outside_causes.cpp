@@ -33,10 +33,13 @@ std::vector<ChannelFunction> rivals_outside(const std::vector<ChannelFunction>& 
   return rivals;
 }
 
+bool one_for_several(const std::vector<ChannelFunction>& rivals) {
+  return std::any_of(rivals.begin(), rivals.end(), [](const ChannelFunction& f) { return f.carried_over > one_cause; });
+}
+
 bool simpler_outside(const std::vector<ChannelFunction>& rivals, const Model& model, const Data& data,
                      const Fit& current, std::size_t effects) {
-  bool simpler = effects > 1 && std::any_of(rivals.begin(), rivals.end(),
-                                            [](const ChannelFunction& f) { return f.carried_over > one_cause; });
+  bool simpler = effects > 1 && one_for_several(rivals);
   for (const ChannelColumns& c : channel_columns(model, data, current)) {
     const bool rival = std::any_of(rivals.begin(), rivals.end(), [&c](const ChannelFunction& f) {
       return f.channel == c.channel && f.argument == c.argument;

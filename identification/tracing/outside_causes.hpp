@@ -15,6 +15,9 @@ namespace snare::identification {
                                                           const std::vector<std::string>& names, double explained,
                                                           double predicted);
 
+/// Whether several effects give way to one of these causes: nearly all of it carries over.
+[[nodiscard]] bool one_for_several(const std::vector<ChannelFunction>& rivals);
+
 /// Whether one of these causes is simpler than the effects that `current` has: than several together where nearly
 /// all of it carries over, and than an effect that leaves something of it.
 [[nodiscard]] bool simpler_outside(const std::vector<ChannelFunction>& rivals, const Model& model, const Data& data,

@@ -191,7 +191,7 @@ void Tracer::add_effects() {
     rounds_.push_back(std::move(found));
     tests_ = test_residuals(model_, data_, current_);
     // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
-    if (!tests_.acceptable(tolerance) && options_.attribute && !rivals().empty()) break;
+    if (!tests_.acceptable(tolerance) && options_.attribute && one_for_several(rivals())) break;
   }
 }
 
