@@ -420,7 +420,7 @@ int main(int argc, char** argv) try {
   if (!required) return 0;
   // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small run.
   const nlohmann::json& large = result["sizes"][fmt::format("{:g}", sizes.back())];
-  const bool good = large.value("right_class", 1.0) >= 0.95 &&
+  const bool good = large.value("right_class", 1.0) >= 0.95 && large.value("pairs_both_named", 1.0) >= 0.85 &&
                     large.value("outside_right_channel_alone_or_in_the_class", 1.0) >= 0.8 &&
                     result["false_alarms"].get<double>() <= 0.2;
   return good ? 0 : 1;
