@@ -108,8 +108,10 @@ std::string reservation(const Trace& t) {
            "would "
            "look the same. Push at another position to settle it.";
   }
-  return alone ? " Conditions left out are not predicted better for every effect: take it as likely, not as settled."
-               : "";
+  if (!alone) return "";
+  if (!t.final_tests.agrees(t.tolerance))
+    return " Noise leaves as much less than once in twenty times: take it as likely, not as settled.";
+  return " Conditions left out are not predicted better for every effect: take it as likely, not as settled.";
 }
 
 std::string partly_explained(const Trace& t) {

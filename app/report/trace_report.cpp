@@ -110,7 +110,10 @@ KeyFigure effect_figure(const Trace& trace) {
   }
   if (unchanged(trace)) return {label, "none missing", "what the base model leaves looks like noise", Tone::good};
   if (!trace.decided) {
-    return {label, effects_found(trace), "these readings cannot tell which", Tone::plain};
+    const auto alone = [](const auto& members) { return members.size() == 1; };
+    const bool likely = std::ranges::all_of(trace.selected_classes, alone);
+    const char* why = likely ? "likely, but not settled" : "these readings cannot tell which";
+    return {label, effects_found(trace), why, Tone::plain};
   }
   return {label, effects_found(trace), trace.channel.empty() ? "" : "sits in: " + trace.channel, Tone::good};
 }

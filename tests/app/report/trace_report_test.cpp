@@ -201,6 +201,18 @@ TEST(TraceReport, ListsEffectsThatCannotBeToldApart) {
                                                "force on the pusher [N]", "high between 1 and 2", "40 %"}));
 }
 
+TEST(TraceReport, SaysWhyAnEffectAloneInItsClassIsNotDecided) {
+  Trace trace = explained_trace();
+  trace.selected_classes = {{"plasticity"}};
+  trace.alternatives.clear();
+  trace.decided = false;
+  trace.final_tests = {0.88, 0.083, 0.0099, false};  // three together: 3 %
+  trace.final_tests.left.upper = 0.1;                // more than the tolerance
+  expect_all(page_of(trace), {"likely, but not settled", "Noise leaves as much less than once in twenty times"});
+  trace.final_tests.lack_of_fit = 0.5;
+  expect_all(page_of(trace), {"likely, but not settled", "Conditions left out are not predicted better"});
+}
+
 TEST(TraceReport, SaysWhenNothingIsMissing) {
   Trace trace = explained_trace();
   trace.selected.clear();
