@@ -102,13 +102,12 @@ std::string effects_of(const Trace& t) {
 /// Why an answer is not the only one.
 std::string reservation(const Trace& t) {
   if (t.decided || !t.alternatives.empty()) return "";
-  const bool alone = std::ranges::all_of(t.selected_classes, [](const auto& c) { return c.size() == 1; });
   if (t.one_condition) {
     return " All readings are of one position and one slack: a cause outside the catalogue that acts on the travel "
            "would "
            "look the same. Push at another position to settle it.";
   }
-  if (!alone) return "";
+  if (!identification::each_alone(t.selected_classes)) return "";
   if (!t.final_tests.agrees(t.tolerance))
     return " Noise leaves as much less than once in twenty times: take it as likely, not as settled.";
   return " Conditions left out are not predicted better for every effect: take it as likely, not as settled.";

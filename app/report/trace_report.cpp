@@ -110,8 +110,7 @@ KeyFigure effect_figure(const Trace& trace) {
   }
   if (unchanged(trace)) return {label, "none missing", "what the base model leaves looks like noise", Tone::good};
   if (!trace.decided) {
-    const auto alone = [](const auto& members) { return members.size() == 1; };
-    const bool likely = std::ranges::all_of(trace.selected_classes, alone);
+    const bool likely = identification::each_alone(trace.selected_classes);
     const char* why = likely ? "likely, but not settled" : "these readings cannot tell which";
     return {label, effects_found(trace), why, Tone::plain};
   }

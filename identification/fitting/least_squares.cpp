@@ -297,7 +297,8 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
 /// chi2 with `held` settings at the optimum of the others, beginning at `others`, by steps with the derivatives of the optimum of all,
 /// which need no new ones: where these come to their end, that is expect no more of another than `enough`.
 std::optional<double> chi2_by_chords(const Model& model, const Data& data, const Eigen::MatrixXd& jacobian,
-                                     std::vector<Setting> others, const std::vector<Setting>& held, double enough) {
+                                     std::vector<Setting> others, const std::vector<Setting>& held, double enough,
+                                     const std::function<bool(int iteration, double chi2)>& progress) {
   constexpr int most = 4;
   const Eigen::MatrixXd covariance = covariance_of(jacobian);
   double least = std::numeric_limits<double>::infinity();
@@ -308,6 +309,7 @@ std::optional<double> chi2_by_chords(const Model& model, const Data& data, const
     if (!at.complete) return std::nullopt;
     const Eigen::VectorXd residual = data.residual(at);
     const double chi2 = residual.squaredNorm();
+    if (progress && !progress(k, chi2)) return std::nullopt;
     const Eigen::VectorXd gradient = jacobian.transpose() * residual;
     const Eigen::VectorXd step = covariance * gradient;
     if (gradient.dot(step) < enough) return chi2;
@@ -348,10 +350,10 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
     if ((at - limit) * sense >= 0.0) return std::nullopt;
     std::vector<Setting> held{{centre.parameter, at}};
     held.insert(held.end(), fixed.begin(), fixed.end());
-    if (progress && !progress(k, optimum.chi2)) return std::nullopt;
     const std::vector<Setting> others = others_beside(model, optimum, which, sense * step);
-    std::optional<double> chi2 = chi2_by_chords(model, data, jacobian, others, held, enough);
+    std::optional<double> chi2 = chi2_by_chords(model, data, jacobian, others, held, enough, progress);
     if (!chi2) {
+      if (progress && !progress(0, optimum.chi2)) return std::nullopt;
       const Fit other = fit(model, data, others, held, options);
       if (other.report.termination == numerics::Termination::interrupted) return std::nullopt;
       if (!other.report.usable()) {

@@ -38,10 +38,8 @@ struct Trace {
   double partial_rmse = 0.0;
   bool rival_explanation = false;  ///< those effects would do, but one function of one channel is the simpler cause
   VerdictKind kind = VerdictKind::not_explained;
-  bool explained = false;  ///< nothing is missing, or the selected effects explain what is
-  bool decided =
-      false;  ///< explained to the noise, every class of one member, a condition left out is predicted better, and
-              ///< the zero of the travel is not in doubt
+  bool explained = false;      ///< nothing is missing, or the selected effects explain what is
+  bool decided = false;        ///< explained, and nothing speaks against the answer being the only one: is_decided()
   bool few_readings = false;   ///< one more number would leave too few degrees of freedom: effects were not asked
   bool one_condition = false;  ///< one position and one slack: channels cannot be told from each other
   double tolerance = 0.0;      ///< error below which nothing is called missing [N]

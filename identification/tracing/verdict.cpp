@@ -55,11 +55,14 @@ bool worth_a_name(double before, double after, double tolerance) {
   return before - after > tolerance && after <= least_fall * before;
 }
 
+bool each_alone(const std::vector<std::vector<std::string>>& classes) {
+  return std::all_of(classes.begin(), classes.end(), [](const auto& members) { return members.size() == 1; });
+}
+
 bool is_decided(const Evidence& e) {
   constexpr double least_dof = 5.0;
   if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt || e.something_left) return false;
-  const auto alone = [](const std::vector<std::string>& members) { return members.size() == 1; };
-  if (!std::all_of(e.classes.begin(), e.classes.end(), alone)) return false;
+  if (!each_alone(e.classes)) return false;
   for (std::size_t k = 1; k < e.left_out.size(); ++k) {
     if (!(e.left_out[k] < e.left_out[k - 1])) return false;
   }

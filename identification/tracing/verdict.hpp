@@ -61,6 +61,9 @@ inline constexpr double usual_tolerance = 0.01;
 /// the tolerance. before, after, tolerance [N].
 [[nodiscard]] bool worth_a_name(double before, double after, double tolerance);
 
+/// Whether every class has one member: no effect has a rival that the readings cannot tell from it.
+[[nodiscard]] bool each_alone(const std::vector<std::vector<std::string>>& classes);
+
 /// What speaks for an answer being the only one.
 struct Evidence {
   double dof = 0.0;                                 ///< of the final fit [-]
