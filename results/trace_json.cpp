@@ -184,9 +184,10 @@ json findings_json(const Trace& trace) {
 json numbers_json(const std::vector<FittedNumber>& numbers) {
   json result = json::object();
   for (const FittedNumber& n : numbers) {
-    result[n.key] = {{"value", finite(n.value)}, {"stderr", finite(n.standard_error)}, {"declared", finite(n.declared)},
-                     {"unit", n.unit},           {"lower95", finite(n.lower)},         {"upper95", finite(n.upper)},
-                     {"profiled", n.profiled}};
+    result[n.key] = {{"value", finite(n.value)},       {"stderr", finite(n.standard_error)},
+                     {"declared", finite(n.declared)}, {"unit", n.unit},
+                     {"lower95", finite(n.lower)},     {"upper95", finite(n.upper)},
+                     {"profiled", n.profiled},         {"averaged", n.averaged}};
   }
   return result;
 }

@@ -331,12 +331,14 @@ void add_parameters(ReportPage& page, const Trace& trace) {
                              : value_cells(fitted->second.value, fitted->second.lower, fitted->second.upper);
       row.insert(row.end(), cells.begin(), cells.end());
     }
-    row.emplace_back(number.profiled ? "profile" : "curvature");
+    row.emplace_back(number.profiled ? "profile" : number.averaged ? "average" : "curvature");
     table.rows.push_back(std::move(row));
   }
   page.heading("The model now");
   page.paragraph(
       "Fitted numbers with the interval that holds the true value in 95 of 100 such tests, if the model is right. "
+      "Average: the same whichever effect is right of those that these data cannot tell apart or cannot rule out, each "
+      "by its likelihood. "
       "Profile: the number was moved and all others refitted until the misfit grew too much (profile likelihood). "
       "Curvature: 1.96 standard errors, from how sharply the misfit rises about its least; rougher when the interval "
       "is wide.");

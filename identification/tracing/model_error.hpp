@@ -15,9 +15,10 @@ struct FittedNumber {
   double declared = 0.0;
   double value = 0.0;
   std::optional<double> standard_error;
-  std::optional<double> lower;  ///< of the 95 % interval: profile likelihood, or 1.96 standard errors
+  std::optional<double> lower;  ///< of the 95 % interval: 1.96 standard errors, unless by one of the two below
   std::optional<double> upper;
-  bool profiled = false;
+  bool profiled = false;  ///< profile likelihood
+  bool averaged = false;  ///< over the effects that may be the right ones in the place of what is selected
   /// With every fitted number, itself among them, in their order; empty where there is no standard error.
   std::vector<double> correlation = {};
 };

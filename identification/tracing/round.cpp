@@ -254,18 +254,16 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   result.better = fits.front();
   const Fit polished = fit(model, data, result.better.fitted());
   if (polished.report.usable() && polished.chi2 <= result.better.chi2) result.better = polished;
-  const auto add_rival = [&](std::size_t i) {
-    result.rivals.push_back(fits[i]);
-    result.rival_names.push_back(round.candidates[i].score.effect->name);
-  };
-  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
-    const Candidate& c = round.candidates[i];
-    if (c.class_index == first.class_index && c.refitted && c.plausible) add_rival(i);
+  const auto in_class = [&first](const Candidate& c) { return c.class_index == first.class_index; };
+  for (const bool members : {true, false}) {
+    for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+      const Candidate& c = round.candidates[i];
+      if (in_class(c) != members || !c.refitted || !c.plausible) continue;
+      result.rivals.push_back(fits[i]);
+      result.rivals.back().evaluation = {};
+      result.rival_names.push_back(c.score.effect->name);
+    }
   }
-  // Alone in its class: the runner-up is what a next experiment should shut out.
-  if (result.rivals.size() == 1 && round.candidates.size() > 1 && round.candidates[1].refitted &&
-      round.candidates[1].plausible)
-    add_rival(1);
 }
 
 /// Of the best refits in their order; one that could not come near the leader ended before its own bottom.

@@ -42,9 +42,9 @@ struct Round {
 /// A round with the fits behind it.
 struct RoundFits {
   Round round;
-  Fit better;                            ///< the model with the added effect
-  std::vector<Fit> rivals;               ///< refits of the added effect's class, best first; the runner-up's beside one
-                                         ///< that is alone in its class
+  Fit better;               ///< the model with the added effect
+  std::vector<Fit> rivals;  ///< refits of the added effect's class, then all others that make sense, best first;
+                            ///< without their curves
   std::vector<std::string> rival_names;  ///< of their effects
 };
 

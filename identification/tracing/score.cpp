@@ -33,6 +33,7 @@ struct Trial {
   double size = 0.0;  // |g|, in standard deviations of all readings together
   std::vector<double> coordinates;
   Eigen::VectorXd direction;
+  Eigen::VectorXd shift;  // as Score::shift
 };
 
 }  // namespace
@@ -85,6 +86,7 @@ class Scoring {
   void by_trials(Score& score) const;
   [[nodiscard]] std::vector<Trial> trials_of(const Effect& effect, bool& spanned) const;
   void choose_starts(Score& score, std::vector<Trial>& trials) const;
+  [[nodiscard]] Eigen::VectorXd shift_by(const Eigen::VectorXd& column) const;
 
   const Model& model_;
   const Data& data_;
@@ -133,6 +135,11 @@ std::vector<Score> Scoring::observable_scores() {
   return scores;
 }
 
+// What takes away again as much of a column as the fitted numbers can.
+Eigen::VectorXd Scoring::shift_by(const Eigen::VectorXd& column) const {
+  return -(current_.covariance * (current_.jacobian.transpose() * column));
+}
+
 // z = g . r / |g|, g the projected derivative at null.                                     theory.md (I.4)
 void Scoring::by_derivative(Score& score) const {
   const Effect& effect = *score.effect;
@@ -156,6 +163,7 @@ void Scoring::by_derivative(Score& score) const {
     return;
   }
   score.direction = g / norm;
+  score.shift = shift_by(column) / norm;
   score.z = g.dot(r_) / norm;
   if (effect.one_sided) score.z = std::max(score.z, 0.0);
   const double dof = data_.noise.dof;
@@ -185,7 +193,7 @@ std::vector<Trial> Scoring::trials_of(const Effect& effect, bool& spanned) const
       spanned = true;
       continue;
     }
-    trials.push_back({g.dot(r_) / norm, norm, coordinates, g / norm});
+    trials.push_back({g.dot(r_) / norm, norm, coordinates, g / norm, shift_by(change) / norm});
   }
   return trials;
 }
@@ -204,6 +212,7 @@ void Scoring::by_trials(Score& score) const {
   std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.z > b.z; });
   score.z = std::max(trials.front().z, 0.0);
   score.direction = trials.front().direction;
+  score.shift = trials.front().shift;
   score.p = std::min(1.0, static_cast<double>(trials.size()) * student_tail(score.z, data_.noise.dof));
   choose_starts(score, trials);
   const auto smallest = std::min_element(trials.begin(), trials.end(), [this](const Trial& a, const Trial& b) {

@@ -18,6 +18,8 @@ struct Score {
   double adjusted_p = 1.0;                  ///< by Holm, over the observable effects
   std::vector<std::vector<double>> starts;  ///< coordinates of its numbers from which to refit, best first
   Eigen::VectorXd direction;  ///< whitened change of the forces, fitted columns projected out, unit length
+  /// By how much the coordinates of the fitted numbers move, a unit of z, when the effect is added, to first order (in their units).
+  Eigen::VectorXd shift;
   /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and ratios) that
   /// these data would show in nine of ten cases at this significance; absent when no trial would do.
   std::optional<double> detectable;

@@ -3,6 +3,7 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/base_fit.hpp"
+#include "identification/tracing/model_average.hpp"
 #include "identification/tracing/outside_causes.hpp"
 #include "identification/tracing/progress.hpp"
 #include "identification/tracing/trace_input.hpp"
@@ -81,6 +82,7 @@ class Tracer {
   void reject();
   [[nodiscard]] bool decided() const;
   void compare_models();
+  void average_intervals();
   void find_intervals();
   void propose();
   [[nodiscard]] ModelError error_of(const Fit& fit, SharedPredictions& predictions) const;
@@ -362,6 +364,25 @@ void Tracer::compare_models() {
   progress_.clock("errors of the final model");
 }
 
+// Intervals of the base model's numbers that hold whichever effect is the right one, and whether one is missing.
+void Tracer::average_intervals() {
+  if (result_.kind == VerdictKind::not_explained) return;
+  for (std::size_t k = 0; k < base_.free; ++k) {
+    std::optional<Interval> interval;
+    if (!result_.selected.empty()) {
+      interval = interval_over_rivals(final_, k, rounds_, tests_.left.inflation());
+    } else if (!result_.rounds.empty()) {
+      interval = interval_over_candidates(final_, k, result_.rounds.front().candidates);
+    }
+    if (!interval) continue;
+    const Parameter& p = *final_.settings[k].parameter;
+    FittedNumber& n = result_.final.numbers[k];
+    n.averaged = true;
+    n.lower = model_.shown({&p, interval->first});
+    n.upper = model_.shown({&p, interval->second});
+  }
+}
+
 // Profile likelihood of the selected effects' numbers.
 void Tracer::find_intervals() {
   constexpr double rise = 3.84;  // of chi2: 95 %
@@ -417,6 +438,7 @@ Trace Tracer::run() {
   conclude();
   current_ = {};  // what is selected is in final_
   compare_models();
+  average_intervals();
   if (progress_.go_on("zero of the travel")) {
     result_.zero = check_zero(model_, data_, final_);
     progress_.clock("zero of the travel");

@@ -114,6 +114,13 @@ TEST(SlowTrace, NamesAnEffectAndGivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.final.rmse, two.final.rmse);
   for (std::size_t k = 0; k < one.final.numbers.size(); ++k)
     EXPECT_EQ(one.final.numbers[k].value, two.final.numbers[k].value);
+  // By how much the stiffnesses move says the score beforehand.
+  const Candidate& first = one.rounds.front().candidates.front();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double moved = std::log(one.final.numbers[k].value / one.base.numbers[k].value);
+    const double said = first.score.z * first.score.shift[static_cast<Eigen::Index>(k)];
+    EXPECT_NEAR(said, moved, 0.1 * std::abs(moved)) << one.final.numbers[k].key;
+  }
   ASSERT_EQ(one.rounds.size(), two.rounds.size());
   for (std::size_t k = 0; k < one.rounds.front().candidates.size(); ++k) {
     EXPECT_EQ(one.rounds.front().candidates[k].score.z, two.rounds.front().candidates[k].score.z);
@@ -125,6 +132,15 @@ TEST(SlowTrace, IsSilentWhereNothingIsMissing) {
   EXPECT_TRUE(t.selected.empty());
   EXPECT_TRUE(t.explained);
   EXPECT_FALSE(t.significant);
+  // Intervals hold whether an effect is missing or not: wider than the base model's own, and not by much.
+  for (std::size_t k = 0; k < t.final.numbers.size(); ++k) {
+    const FittedNumber& base = t.base.numbers[k];
+    const FittedNumber& final = t.final.numbers[k];
+    EXPECT_TRUE(final.averaged && !base.averaged) << base.key;
+    EXPECT_LE(*final.lower, *base.lower);
+    EXPECT_GE(*final.upper, *base.upper);
+    EXPECT_LT(*final.upper - *final.lower, 4.0 * (*base.upper - *base.lower)) << base.key;
+  }
   // It says what it could have seen.
   for (const Candidate& c : t.rounds.front().candidates) {
     if (c.score.effect->name == "contact_friction") {
