@@ -129,7 +129,8 @@ double quasi_static_peak(double tau) {
   with_rates.examine_rates = true;
   const coupling::PushCurve curve = coupling::solve_push_extrapolated(test, {}).curve;
   const coupling::PushCurve rates = coupling::solve_push(test, with_rates);
-  if (!curve.report.usable() || !rates.report.usable()) throw std::runtime_error(curve.report.message);
+  for (const coupling::PushCurve* c : {&curve, &rates})
+    if (c->points.size() != test.travel.size()) throw std::runtime_error(c->report.message);
   const auto force = [&](double x, double v) {
     const double at = std::clamp(x / spacing, 0.0, points - 1e-6);
     const auto i = static_cast<std::size_t>(at);
@@ -145,6 +146,7 @@ double quasi_static_peak(double tau) {
     const double middle = v - 0.5 * step * force(x, v) / mass;
     v -= step * force(x + 0.5 * step * v, middle) / mass;
     x += step * middle;
+    if (x > points * spacing) throw std::runtime_error("the body is not stopped");
   }
   return peak;
 }
