@@ -64,6 +64,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   o.relative_tolerance = solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
   tolerance("position_tolerance_m", o.position_tolerance, 1e-3);
   tolerance("velocity_tolerance_m_s", o.velocity_tolerance, 1.0);
+  tolerance("quasi_static_velocity_tolerance_m_s", o.quasi_static_velocity_tolerance, 1.0);
   tolerance("body_position_tolerance_m", o.body_position_tolerance, 1e-3);
   tolerance("body_velocity_tolerance_m_s", o.body_velocity_tolerance, 1.0);
   tolerance("body_angle_tolerance_rad", o.angle_tolerance, 1e-3);

@@ -111,7 +111,8 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   for (double* tolerance :
        {&o.body_position_tolerance, &o.body_velocity_tolerance, &o.angle_tolerance, &o.spin_tolerance})
     *tolerance *= 1e-3;
-  for (double* tolerance : {&o.relative_tolerance, &o.position_tolerance, &o.velocity_tolerance}) *tolerance *= 0.1;
+  for (double* tolerance : {&o.relative_tolerance, &o.position_tolerance, &o.quasi_static_velocity_tolerance})
+    *tolerance *= 0.1;
   scenario::NamedMotion by_machines = by_joint;
   coupling::Motion& motion = by_machines.motion;
   motion.arms.front().drives = {multibody::Drive::locked()};

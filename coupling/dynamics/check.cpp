@@ -101,6 +101,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   positive("relative_tolerance", options.relative_tolerance);
   positive("position_tolerance", options.position_tolerance);
   positive("velocity_tolerance", options.velocity_tolerance);
+  positive("quasi_static_velocity_tolerance", options.quasi_static_velocity_tolerance);
   positive("twist_tolerance", options.twist_tolerance);
   positive("body_position_tolerance", options.body_position_tolerance);
   positive("body_velocity_tolerance", options.body_velocity_tolerance);

@@ -20,14 +20,12 @@ using numerics::DaePoint;
 namespace {
 
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
-constexpr double share_of_rods = 2e-5;
+constexpr double share_of_rods = 5e-5;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 // Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
 constexpr double matrix_change_without_waves = 0.5;
 // Where no wave follows, a step may go through a whole touch.
 constexpr int renewals_without_waves = 4;
-// Of the tolerance of a wire's velocities: damping makes forces of their errors, and without waves steps are long enough for that.
-constexpr double share_of_velocity_without_waves = 1.0 / 3.0;
 
 }  // namespace
 
@@ -41,10 +39,9 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
-    const double of_velocity = rod.quasi_static ? share_of_velocity_without_waves : 1.0;
+    const double of_velocity = rod.quasi_static ? options.quasi_static_velocity_tolerance : options.velocity_tolerance;
     rods_.emplace_back(w.name, rod,
-                       wire::RodTolerances{options.position_tolerance, of_velocity * options.velocity_tolerance,
-                                           options.twist_tolerance});
+                       wire::RodTolerances{options.position_tolerance, of_velocity, options.twist_tolerance});
   }
   for (const MotionBody& b : motion.bodies)
     bodies_.emplace_back(b.robot ? loops_.emplace_back(b).moved() : b, motion.gravity, options);

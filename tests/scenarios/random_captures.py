@@ -18,7 +18,8 @@ import sys
 import tempfile
 
 NOT_CLOSED = "energy or momentum are not kept"
-FINER = ["solver.position_tolerance_m=3e-8", "solver.velocity_tolerance_m_s=3e-5", "solver.body_position_tolerance_m=1e-9",
+FINER = ["solver.position_tolerance_m=3e-8", "solver.velocity_tolerance_m_s=3e-4", "solver.quasi_static_velocity_tolerance_m_s=1e-5",
+         "solver.body_position_tolerance_m=1e-9",
          "solver.body_velocity_tolerance_m_s=1e-7", "solver.body_angle_tolerance_rad=1e-8", "solver.body_spin_tolerance_rad_s=1e-6"]
 ENERGY_SHARE = 1e-3
 MOMENTUM_SHARE = 1e-7
