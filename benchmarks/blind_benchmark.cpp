@@ -242,7 +242,8 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
     cell["right"] = cell.value("right", 0) + (o.right ? 1 : 0);
     cell["sets"] = cell.value("sets", 0) + 1;
     cell["answers"][o.answer] = cell["answers"].value(o.answer, 0) + 1;
-    if (c.effect == "none") {
+    // A gain scales the forces as EI and EA do: no reading shows it, such a set is one without effect.
+    if (c.effect == "none" || c.effect == "force_gain") {
       nothing += 1.0;
       quiet += o.alarm ? 0.0 : 1.0;
       continue;
@@ -274,11 +275,8 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
     t.class_size += o.class_size;
     t.mechanisms += o.mechanisms;
     t.undecided += o.alternative ? 1 : 0;
-    // A gain is EI and EA by another name: they are told up to it.
-    if (c.effect != "force_gain") {
-      t.numbers += 2;
-      t.covered += o.covered;
-    }
+    t.numbers += 2;
+    t.covered += o.covered;
     t.at_noise += o.chi2_dof > 0.8 && o.chi2_dof < 1.2 ? 1 : 0;
     t.left_out += o.left_out;
   }

@@ -179,6 +179,17 @@ json findings_json(const Trace& trace) {
   return result;
 }
 
+json places_json(const Trace& trace) {
+  json result = json::array();
+  for (const identification::PlaceEstimate& p : trace.places) {
+    result.push_back({{"series", p.series},
+                      {"sigma_mm", in_mm(p.sigma)},
+                      {"shift_mm", in_mm(p.shift)},
+                      {"stderr_mm", in_mm(p.standard_error)}});
+  }
+  return result;
+}
+
 }  // namespace
 
 json numbers_json(const std::vector<FittedNumber>& numbers) {
@@ -218,6 +229,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
               {"few_readings", trace.few_readings},
               {"one_condition", trace.one_condition},
               {"findings", findings_json(trace)},
+              {"places", places_json(trace)},
               {"zero", zero_json(trace.zero)},
               {"interrupted", trace.interrupted},
               {"noise",
@@ -294,8 +306,8 @@ json fit_json(const identification::Experiment& experiment, const Trace& trace) 
   json whole = findings_document(experiment, trace);
   whole["warnings"] = trace_warnings(experiment, trace);
   json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
-  for (const char* key :
-       {"title", "source", "version", "noise", "declared", "heldout", "left_out", "mesh_error_N", "warnings"}) {
+  for (const char* key : {"title", "source", "version", "places", "noise", "declared", "heldout", "left_out",
+                          "mesh_error_N", "warnings"}) {
     result[key] = whole[key];
   }
   result["fit"] = whole["final"];

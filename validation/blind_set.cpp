@@ -205,6 +205,36 @@ Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
+/// Makes errors of the noise and of the pushes' places independent of equal size sigma: u = (a place's deviation) dF/d(place),
+/// so that sigma^2 + u u^T becomes sigma^2.
+class Places {
+ public:
+  Places(const Hidden& h, double highest_tension, const BlindDesign& design) {
+    if (design.position_deviation == 0.0) return;
+    constexpr double step = 1e-5;  // [m]
+    Hidden moved = h;
+    for (double& off : moved.position_off) off += step;
+    changes_ = design.position_deviation / step *
+               (read_all({}, moved, highest_tension, design) - read_all({}, h, highest_tension, design));
+    pushes_ = static_cast<Eigen::Index>(pushes_of(design).size());
+  }
+  [[nodiscard]] Eigen::MatrixXd white(Eigen::MatrixXd columns) const {
+    for (Eigen::Index k = 0; k < pushes_; ++k) {
+      const Eigen::Index n = columns.rows() / pushes_;
+      const Eigen::VectorXd u = changes_.segment(k * n, n) / sigma;
+      const double square = u.squaredNorm();
+      const Eigen::RowVectorXd along =
+          (1.0 - 1.0 / std::sqrt(1.0 + square)) / square * (u.transpose() * columns.middleRows(k * n, n));
+      columns.middleRows(k * n, n) -= u * along;
+    }
+    return columns;
+  }
+
+ private:
+  Eigen::VectorXd changes_;  // [N]
+  Eigen::Index pushes_ = 0;
+};
+
 /// Deviations of a record with so many readings a leg: white noise, and a smooth one over the path where it is a replicate.
 /// Drawn at the finest readings, of which every record has its own.
 struct Deviations {
@@ -306,8 +336,10 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   h.clamp_compliance = curved ? 0.5 : 0.0;
 
   double highest_tension = 0.0;
-  for (const Push& p : made) {
-    for (const BlindReading& r : blind_push(wire_of(p, h), travel_of(p, design.readings_a_leg))) {
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    BlindWire wire = wire_of(made[k], h);
+    wire.position += h.position_off[k];
+    for (const BlindReading& r : blind_push(wire, travel_of(made[k], design.readings_a_leg))) {
       highest_tension = std::max(highest_tension, r.tension_left);
     }
   }
@@ -324,24 +356,35 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   set.axial_stiffness = h.axial;
   std::vector<Dose> doses;
   for (const std::string& one : inside) {
-    Eigen::MatrixXd base(plain.size(), 2);
-    for (const int k : {0, 1}) {
+    constexpr double ratio = 1e-3;   // of a stiffness
+    constexpr double longer = 1e-5;  // [m]
+    Eigen::MatrixXd base(plain.size(), design.length_deviation > 0.0 ? 3 : 2);
+    for (Eigen::Index k = 0; k < base.cols(); ++k) {
       Hidden other = h;
-      (k == 0 ? other.bending : other.axial) *= 1.001;
+      if (k == 0) other.bending *= 1.0 + ratio;
+      if (k == 1) other.axial *= 1.0 + ratio;
+      if (k == 2) other.length += longer;
       base.col(k) = read_all({}, other, highest_tension, design) - plain;
     }
+    const Places places(h, highest_tension, design);
+    base = places.white(base);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly.
+    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly. Beside a length
+    // it moves it by more, and they are taken to the end.
+    const int most_steps = base.cols() > 2 ? 40 : 2;
     const auto size_of = [&](const Eigen::VectorXd& changed) {
       Hidden fitted = h;
       Eigen::VectorXd left = changed - plain;
-      for (int k = 0; k < 2; ++k) {
-        const Eigen::VectorXd step = 1e-3 * qr.solve(left);
-        fitted.bending *= std::exp(std::clamp(step[0], -0.5, 0.5));
-        fitted.axial *= std::exp(std::clamp(step[1], -0.5, 0.5));
+      for (int k = 0; k < most_steps; ++k) {
+        const Eigen::VectorXd step = qr.solve(places.white(left));
+        fitted.bending *= std::exp(std::clamp(ratio * step[0], -0.5, 0.5));
+        fitted.axial *= std::exp(std::clamp(ratio * step[1], -0.5, 0.5));
+        if (step.size() > 2) fitted.length += std::clamp(longer * step[2], -0.5 * mm, 0.5 * mm);
         left = changed - read_all({}, fitted, highest_tension, design);
+        if (k > 1 && (base * step).norm() < 0.1 * sigma) break;
       }
-      return (left - base * qr.solve(left)).norm() / sigma;
+      const Eigen::VectorXd white = places.white(left);
+      return (white - base * qr.solve(white)).norm() / sigma;
     };
     // The size rises steadily with the amount: proportional steps, held inside what is known to be too small
     // and too large.
@@ -401,6 +444,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     t.travel = readings.displacement;
     series.readings = readings;
     if (!replicate) series.force_sigma = sigma;
+    series.position_sigma = design.position_deviation;
     experiment.series.push_back(std::move(series));
   }
   return set;

@@ -15,8 +15,9 @@ struct BlindSet {
   std::string effect;   ///< what is inside: a name of the catalogue, "none", "damage" or "drift"; several
                         ///< with "+" between them
   double amount = 0.0;  ///< of the (first) effect, in its own measure
-  double size = 0.0;    ///< of its change of the forces over the noise of one reading, after the best fit of the base
-      ///< model's numbers: sqrt(sum (projected change / sigma)^2); of several, each alone, the smallest
+  /// Of its change of the forces over the errors of reading and placing, after the best fit of the base model's numbers: the
+  /// norm of V^(-1/2) (projected change); of several, each alone, the smallest.
+  double size = 0.0;
   std::string key;                 ///< of the (first) effect's first number; empty: it is in no catalogue
   double truth = 0.0;              ///< of that number, in its unit
   double bending_stiffness = 0.0;  ///< true [N m^2]
@@ -28,7 +29,7 @@ struct BlindDesign {
   int readings_a_leg = 20;          ///< a divisor of 40, or more
   double length_deviation = 0.0;    ///< standard deviation of the wire's length about the declared one [m]; where it is
                                     ///< > 0 the length is freed as well
-  double position_deviation = 0.0;  ///< of every push's position about the declared one [m]
+  double position_deviation = 0.0;  ///< of every push's position about the declared one [m]; declared as well
   /// Of three pushes so many records each, every one with a deviation of its own that goes with the force and is
   /// correlated over a quarter of the travel, 1 % of it, beside the noise; nothing of this is declared. 1: six pushes, one
   /// record each, with noise alone.

@@ -345,6 +345,22 @@ void add_parameters(ReportPage& page, const Trace& trace) {
   page.table(table);
 }
 
+void add_places(ReportPage& page, const Trace& trace) {
+  if (trace.places.empty()) return;
+  Table table{"",
+              {"Series"_text, "Declared: \u00b1 [mm]"_number, "Found: from the declared place [mm]"_number,
+               "\u00b1 [mm]"_number}};
+  for (const identification::PlaceEstimate& p : trace.places) {
+    table.rows.push_back(
+        {joined(p.series), shown(1e3 * p.sigma), shown(1e3 * p.shift, 2), shown(1e3 * p.standard_error, 2)});
+  }
+  page.heading("Where the pusher stood");
+  page.paragraph(
+      "The file says how exactly the places are known. No effect is named for what such an error explains; the curves "
+      "are computed at the places that the readings make likeliest (standard deviations).");
+  page.table(table);
+}
+
 /// {"recorded travel", "mm"} of "recorded travel [mm]".
 Axis axis_of(const std::string& label) {
   const auto open = label.rfind(" [");
@@ -453,6 +469,7 @@ std::string trace_report_html(const identification::Experiment& experiment, cons
   add_residuals(page, trace);
   add_rounds(page, trace);
   add_parameters(page, trace);
+  add_places(page, trace);
   add_functions(page, trace);
   add_alternatives(page, trace);
   add_next(page, trace);

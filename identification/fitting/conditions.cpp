@@ -34,13 +34,13 @@ bool same_speed(const Series& a, const Series& b) {
   return one == 0.0 || other == 0.0 || std::max(one, other) <= much * std::min(one, other);
 }
 
-}  // namespace
+using Alike = bool (*)(const Series& a, const Series& b);
 
-std::vector<std::vector<std::size_t>> conditions(const std::vector<Series>& series) {
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<Series>& series, Alike alike) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const auto like = std::find_if(groups.begin(), groups.end(), [&](const std::vector<std::size_t>& g) {
-      return same_test(series[g.front()].test, series[k].test) && same_speed(series[g.front()], series[k]);
+      return alike(series[g.front()], series[k]);
     });
     if (like == groups.end())
       groups.push_back({k});
@@ -48,6 +48,17 @@ std::vector<std::vector<std::size_t>> conditions(const std::vector<Series>& seri
       like->push_back(k);
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> tests(const std::vector<Series>& series) {
+  return groups_of(series, [](const Series& a, const Series& b) { return same_test(a.test, b.test); });
+}
+
+std::vector<std::vector<std::size_t>> conditions(const std::vector<Series>& series) {
+  return groups_of(series,
+                   [](const Series& a, const Series& b) { return same_test(a.test, b.test) && same_speed(a, b); });
 }
 
 }  // namespace snare::identification

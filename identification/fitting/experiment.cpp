@@ -29,9 +29,10 @@ constexpr std::string_view schema = "snare-experiment/1";
 using base::mm;
 
 // Upper bounds keep slips of the unit out (a length in um, a modulus in Pa) and every product finite.
-constexpr double largest_length = 1e5;     // [mm]
-constexpr double largest_travel = 1000.0;  // [mm]
-constexpr double largest_force = 1e9;      // [N]
+constexpr double largest_length = 1e5;        // [mm]
+constexpr double largest_travel = 1000.0;     // [mm]
+constexpr double largest_force = 1e9;         // [N]
+constexpr double largest_place_error = 10.0;  // [mm]
 constexpr int most_points = 1'000'000;
 constexpr std::size_t most_travels = 10'000'000;  // points of a path
 constexpr int default_law_points = 20;
@@ -180,6 +181,8 @@ Series read_series(TomlDocument& document, const TomlTable& table, const scenari
   series.test.contact_position = read_contact_position(table, series.test.mount.span);
   series.modulus_declared = tables.wire.has("youngs_modulus_GPa");
   series.force_sigma = table.optional_number("force_sigma_N", Range::above(0.0, largest_force));
+  series.position_sigma =
+      base::mm * table.number_or("contact_position_sigma_mm", 0.0, Range::from(0.0, largest_place_error));
   static_cast<void>(table.has("points"));
   switch (read_source(table)) {
     case Source::none:

@@ -43,6 +43,7 @@ struct Series {
   std::optional<Readings> readings;
   std::optional<QuadraticLaw> law;
   std::optional<double> force_sigma;  ///< of one reading [N], > 0
+  double position_sigma = 0.0;        ///< of the pusher's place about the declared one [m], >= 0; 0: exact
   bool modulus_declared = true;       ///< else the modulus is the one that gives the declared stiffness
 };
 

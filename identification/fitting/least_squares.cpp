@@ -104,35 +104,6 @@ class Observer final : public ceres::IterationCallback {
 
 }  // namespace
 
-Eigen::Index Data::rows() const {
-  Eigen::Index n = 0;
-  for (const std::size_t k : series) n += rows_of(k);
-  return n;
-}
-
-Eigen::VectorXd Data::residual(const Evaluation& evaluation) const {
-  Eigen::VectorXd result(rows());
-  Eigen::Index row = 0;
-  for (const std::size_t k : series) {
-    const Eigen::Index n = rows_of(k);
-    result.segment(row, n) = noise.whiten(k, measured[k] - evaluation.force[k]);
-    row += n;
-  }
-  return result;
-}
-
-Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
-  if (evaluation.by.empty()) return Eigen::MatrixXd::Zero(rows(), 0);
-  Eigen::MatrixXd result(rows(), evaluation.by.front().cols());
-  Eigen::Index row = 0;
-  for (const std::size_t k : series) {
-    const Eigen::Index n = rows_of(k);
-    result.middleRows(row, n) = noise.whiten(k, evaluation.by[k]);
-    row += n;
-  }
-  return result;
-}
-
 double Fit::bic() const {
   return chi2 + static_cast<double>(free) * std::log(static_cast<double>(std::max<Eigen::Index>(residual.size(), 1)));
 }

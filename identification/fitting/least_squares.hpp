@@ -1,7 +1,7 @@
 #pragma once
 
+#include "identification/fitting/data.hpp"
 #include "identification/fitting/model.hpp"
-#include "identification/fitting/noise.hpp"
 #include "numerics/report.hpp"
 
 #include <functional>
@@ -9,23 +9,6 @@
 #include <vector>
 
 namespace snare::identification {
-
-/// Measured forces of some of a model's series, with their noise.
-struct Data {
-  std::vector<std::size_t> series;        ///< which of the model's
-  std::vector<Eigen::VectorXd> measured;  ///< of every series of the model [N]
-  Noise noise;                            ///< of every series of the model
-
-  /// Whitened numbers of one series: its readings, or three where only a fit was published.
-  [[nodiscard]] Eigen::Index rows_of(std::size_t of_series) const {
-    return noise.rows(of_series, measured[of_series].size());
-  }
-  [[nodiscard]] Eigen::Index rows() const;
-  /// (measured - computed), whitened [-], the data's series one below the other.
-  [[nodiscard]] Eigen::VectorXd residual(const Evaluation& evaluation) const;
-  /// Whitened derivatives [1 over the unit of the coordinate], likewise.
-  [[nodiscard]] Eigen::MatrixXd jacobian(const Evaluation& evaluation) const;
-};
 
 /// What a fit has found; usable or not says its report.
 struct Fit {

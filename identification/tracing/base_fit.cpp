@@ -67,13 +67,16 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
 }
 
 void settle_noise(const Model& model, Data& data, Fit& base) {
-  if (!data.noise.source.empty()) return;
-  std::vector<Eigen::VectorXd> residuals;
-  for (std::size_t k = 0; k < data.measured.size(); ++k) {
-    residuals.push_back(data.measured[k] - base.evaluation.force[k]);
+  const bool declared = !data.noise.source.empty();
+  if (!declared) {
+    std::vector<Eigen::VectorXd> residuals;
+    for (std::size_t k = 0; k < data.measured.size(); ++k) {
+      residuals.push_back(data.measured[k] - base.evaluation.force[k]);
+    }
+    data.noise = noise_from_residuals(model.series(), residuals, base.evaluation.force);
   }
-  data.noise = noise_from_residuals(model.series(), residuals, base.evaluation.force);
-  base = fit(model, data, base.fitted());
+  data.placings = find_placings(model, base.settings, parameters().at(place_key));
+  if (!declared || !data.placings.empty()) base = fit(model, data, base.fitted());
 }
 
 }  // namespace snare::identification

@@ -37,17 +37,15 @@ ChannelColumns function_of(const Data& data, const std::function<double(std::siz
     }
   }
   ChannelColumns result;
-  result.columns.resize(data.rows(), stations);
-  Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
+  const auto hats = [&](std::size_t k) {
     const Eigen::Index n = data.measured[k].size();
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, stations);
     for (Eigen::Index i = 0; i < n; ++i) {
       add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), own, i);
     }
-    result.columns.middleRows(row, data.rows_of(k)) = data.noise.whiten(k, own);
-    row += data.rows_of(k);
-  }
+    return own;
+  };
+  result.columns = data.whiten(hats, stations);
   for (int s = 0; s < stations; ++s) result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
   return result;
 }

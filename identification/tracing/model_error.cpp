@@ -78,9 +78,10 @@ ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& 
 double fitted_rmse(const Data& data, const Evaluation& evaluation) {
   double squares = 0.0;
   double count = 0.0;
-  for (const std::size_t k : data.series) {
-    squares += (data.measured[k] - evaluation.force[k]).squaredNorm();
-    count += static_cast<double>(data.measured[k].size());
+  for (const Eigen::MatrixXd& left :
+       data.placed([&](std::size_t k) { return data.measured[k] - evaluation.force[k]; }, 1)) {
+    squares += left.squaredNorm();
+    count += static_cast<double>(left.rows());
   }
   return std::sqrt(squares / std::max(1.0, count));
 }
@@ -136,18 +137,20 @@ struct Left {
 // As forces.
 Left in_forces(const Data& data, const Fit& fit) {
   Left forces{Eigen::VectorXd(data.rows()), Eigen::MatrixXd(data.rows(), fit.jacobian.cols())};
+  const auto left = data.placed([&](std::size_t k) { return data.measured[k] - fit.evaluation.force[k]; }, 1);
+  const auto by = fit.jacobian.cols() > 0
+                      ? data.placed([&](std::size_t k) { return fit.evaluation.by[k]; }, fit.jacobian.cols())
+                      : std::vector<Eigen::MatrixXd>();
   Eigen::Index row = 0;
-  for (const std::size_t k : data.series) {
+  for (std::size_t i = 0; i < data.series.size(); ++i) {
+    const std::size_t k = data.series[i];
     const Eigen::Index n = data.rows_of(k);
     // Of a published fit its three numbers, times the scatter.
-    const bool summarised = data.noise.summarised(k);
-    const double unit = data.noise.sigma[k];
-    const Eigen::VectorXd left = data.measured[k] - fit.evaluation.force[k];
-    forces.residual.segment(row, n) = summarised ? Eigen::VectorXd(unit * data.noise.whiten(k, left)) : left;
-    if (fit.jacobian.cols() > 0) {
-      const Eigen::MatrixXd& by = fit.evaluation.by[k];
-      forces.jacobian.middleRows(row, n) = summarised ? Eigen::MatrixXd(unit * data.noise.whiten(k, by)) : by;
-    }
+    const auto seen = [&](const Eigen::MatrixXd& forces_of_it) -> Eigen::MatrixXd {
+      return data.noise.summarised(k) ? data.noise.sigma[k] * data.noise.whiten(k, forces_of_it) : forces_of_it;
+    };
+    forces.residual.segment(row, n) = seen(left[i]);
+    if (!by.empty()) forces.jacobian.middleRows(row, n) = seen(by[i]);
     row += n;
   }
   return forces;

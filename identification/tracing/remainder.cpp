@@ -91,19 +91,37 @@ Eigen::SparseMatrix<double> hats_of(const Model& model, const Data& data) {
   return result;
 }
 
+/// Rows of one series after another.
+Eigen::VectorXd rows_of(const Data& data, const std::vector<Eigen::MatrixXd>& forces) {
+  Eigen::Index rows = 0;
+  for (const std::size_t k : data.series) rows += data.measured[k].size();
+  Eigen::VectorXd result(rows);
+  Eigen::Index row = 0;
+  for (const Eigen::MatrixXd& f : forces) {
+    result.segment(row, f.rows()) = f;
+    row += f.rows();
+  }
+  return result;
+}
+
+/// The part of a series in a column over all of them.
+Data::Forces split(const Data& data, const Eigen::VectorXd& column) {
+  return [&data, &column](std::size_t of_series) -> Eigen::MatrixXd {
+    Eigen::Index row = 0;
+    for (const std::size_t k : data.series) {
+      if (k == of_series) return column.segment(row, data.measured[k].size());
+      row += data.measured[k].size();
+    }
+    return {};
+  };
+}
+
 /// Columns over all series, whitened. One at a time: of a million readings all together are large.
 Eigen::MatrixXd whiten(const Data& data, const Eigen::SparseMatrix<double>& columns) {
   Eigen::MatrixXd result(data.rows(), columns.cols());
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     const Eigen::VectorXd column = columns.col(c);
-    Eigen::Index row = 0;
-    Eigen::Index reading = 0;
-    for (const std::size_t k : data.series) {
-      const Eigen::Index n = data.measured[k].size();
-      result.col(c).segment(row, data.rows_of(k)) = data.noise.whiten(k, column.segment(reading, n));
-      row += data.rows_of(k);
-      reading += n;
-    }
+    result.col(c) = data.whiten(split(data, column), 1);
   }
   return result;
 }
@@ -165,6 +183,7 @@ Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
   if (fit.jacobian.cols() > 0) {
     function -= plain_jacobian(data, fit, hats.rows()) * numerics::least_squares(fit.jacobian, white * values);
   }
+  if (!data.placings.empty()) function = rows_of(data, data.placed(split(data, function), 1));
   const double size = std::sqrt(function.squaredNorm() / static_cast<double>(function.size()));
   result.rmse = size * std::sqrt(std::max(0.0, q - d) / q);
   result.upper = size * std::sqrt(noncentrality_upper(result.ratio, d, data.noise.dof, 0.95) / q);

@@ -27,6 +27,7 @@ constexpr std::size_t most_refits = 6;
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
+constexpr double most_ratio = 0.7;  // of the logarithm of a number that an effect moves, at the start of its refit
 // Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much better.
 constexpr double nearly_all = 0.95;
 
@@ -39,12 +40,16 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
   best.free = current.free;
   best.report.termination = numerics::Termination::step_too_small;
   double to_beat = rival;
-  for (const std::vector<double>& coordinates : score.starts) {
+  for (const RefitStart& from : score.starts) {
     std::vector<Setting> start = current.fitted();
-    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    for (std::size_t k = 0; k < start.size(); ++k) {
+      const double most = start[k].parameter->parametrisation == Parametrisation::shift ? 1e300 : most_ratio;
+      start[k].coordinate += std::clamp(from.shift[static_cast<Eigen::Index>(k)], -most, most);
+    }
+    for (std::size_t k = 0; k < from.coordinates.size(); ++k) {
       const EffectNumber& number = score.effect->numbers[k];
-      if (number.optional && coordinates[k] == 0.0) continue;
-      start.push_back({&number.parameter, coordinates[k]});
+      if (number.optional && from.coordinates[k] == 0.0) continue;
+      start.push_back({&number.parameter, from.coordinates[k]});
     }
     FitOptions fitting;
     fitting.max_iterations = 30;

@@ -168,7 +168,8 @@ void Scoring::by_derivative(Score& score) const {
   if (effect.one_sided) score.z = std::max(score.z, 0.0);
   const double dof = data_.noise.dof;
   score.p = effect.one_sided ? student_tail(score.z, dof) : 2.0 * student_tail(std::abs(score.z), dof);
-  score.starts = {{bounded(model_, first, score.z / norm)}};
+  const double start = bounded(model_, first, score.z / norm);
+  score.starts = {{{start}, start * norm * score.shift}};
   const double declared = model_.declared(first);
   score.detectable = first.parametrisation == Parametrisation::shift
                          ? needed_ / norm / first.unit_size
@@ -242,11 +243,12 @@ void Scoring::choose_starts(Score& score, std::vector<Trial>& trials) const {
     if (score.starts.size() == 2) break;
     if (scalable && trial.z < 0.7 * score.z) break;
     std::vector<double> start = trial.coordinates;
+    double seen = 1.0;
     if (scalable) {
-      const double seen = std::clamp(trial.z / trial.size, 0.05, 5.0);
+      seen = std::clamp(trial.z / trial.size, 0.05, 5.0);
       start.front() = std::clamp(start.front() * seen, model_.lower(first), model_.upper(first));
     }
-    score.starts.push_back(start);
+    score.starts.push_back({start, seen * trial.size * trial.shift});
   }
 }
 

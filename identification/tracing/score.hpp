@@ -8,16 +8,22 @@
 
 namespace snare::identification {
 
+/// Where a refit with an effect may begin.
+struct RefitStart {
+  std::vector<double> coordinates;  ///< of the effect's numbers [SI units; -]
+  Eigen::VectorXd shift;  ///< by how much the fitted numbers' coordinates move beside it, to first order [likewise]
+};
+
 /// Score test of one effect against a fitted model.                                  theory.md (I.4)
 struct Score {
   const Effect* effect = nullptr;
-  std::string unobservable;                 ///< why these data cannot show it; empty when they can
-  bool absorbed = false;                    ///< the numbers already fitted change the curves in the same way
-  double z = 0.0;                           ///< normal deviate of the best trial; >= 0 for one-sided effects
-  double p = 1.0;                           ///< of the score, trials counted
-  double adjusted_p = 1.0;                  ///< by Holm, over the observable effects
-  std::vector<std::vector<double>> starts;  ///< coordinates of its numbers from which to refit, best first
-  Eigen::VectorXd direction;  ///< whitened change of the forces, fitted columns projected out, unit length
+  std::string unobservable;        ///< why these data cannot show it; empty when they can
+  bool absorbed = false;           ///< the numbers already fitted change the curves in the same way
+  double z = 0.0;                  ///< normal deviate of the best trial; >= 0 for one-sided effects
+  double p = 1.0;                  ///< of the score, trials counted
+  double adjusted_p = 1.0;         ///< by Holm, over the observable effects
+  std::vector<RefitStart> starts;  ///< best first
+  Eigen::VectorXd direction;       ///< whitened change of the forces, fitted columns projected out, unit length
   /// By how much the coordinates of the fitted numbers move, a unit of z, when the effect is added, to first order (in their units).
   Eigen::VectorXd shift;
   /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and ratios) that

@@ -86,6 +86,7 @@ class Tracer {
   void find_intervals();
   void propose();
   [[nodiscard]] ModelError error_of(const Fit& fit, SharedPredictions& predictions) const;
+  [[nodiscard]] std::vector<Setting> with_places(const Fit& fit) const;
   [[nodiscard]] const std::vector<ChannelFunction>& functions();
   [[nodiscard]] std::vector<ChannelFunction> rivals();
 
@@ -122,8 +123,24 @@ Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Divisi
   result_.heldout = series.is_heldout;
 }
 
+// The settings of a fit, and every series pushed from where its readings say that the pusher stood.
+std::vector<Setting> Tracer::with_places(const Fit& fit) const {
+  std::vector<Setting> settings = fit.settings;
+  for (const PlaceEstimate& place : data_.places(model_, fit.evaluation, fit.covariance)) {
+    for (const std::string& series : place.series) {
+      const Parameter& own = parameters().at(fmt::format("series[{}].{}", series, place_key));
+      double shift = place.shift;  // beside what the model itself shifts it by: the later setting counts
+      for (const Setting& s : fit.settings) {
+        if (s.parameter == &own || s.parameter->key == place_key) shift += s.coordinate;
+      }
+      settings.push_back({&own, shift});
+    }
+  }
+  return settings;
+}
+
 ModelError Tracer::error_of(const Fit& fit, SharedPredictions& predictions) const {
-  predictions = all_.evaluate(fit.settings).predictions;
+  predictions = all_.evaluate(with_places(fit)).predictions;
   return model_error(result_.series, result_.heldout, predictions, model_, fit);
 }
 
@@ -343,6 +360,7 @@ bool Tracer::decided() const {
 // Errors of the final model, on fitted series, held-out ones, and each of them left out.
 void Tracer::compare_models() {
   result_.final_settings = final_.settings;
+  result_.places = data_.places(model_, final_.evaluation, final_.covariance);
   if (result_.selected.empty()) {
     result_.final_tests = result_.base_tests;
     result_.final = result_.base;

@@ -45,9 +45,10 @@ struct Trace {
   double tolerance = 0.0;      ///< error below which nothing is called missing [N]
   double peak_force = 0.0;     ///< largest measured one [N]
   Remaining remaining;
-  std::vector<Finding> findings;  ///< of the final model
-  std::optional<ZeroCheck> zero;  ///< beside a final model that has none
-  std::string channel;            ///< of the first effect selected, or where the residual comes from; empty: unknown
+  std::vector<Finding> findings;      ///< of the final model
+  std::vector<PlaceEstimate> places;  ///< by the final model, of conditions whose place is not declared exact
+  std::optional<ZeroCheck> zero;      ///< beside a final model that has none
+  std::string channel;  ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
   std::vector<ChannelFunction>
       alternatives;  ///< when it does: causes outside it, in other channels, that would as well
@@ -64,10 +65,10 @@ struct Trace {
 struct TraceOptions {
   std::vector<std::string> free;  ///< keys of the base model; empty: the experiment's own, else the two stiffnesses
   int most_effects = 3;
-  double significance = 0.02;           ///< of the first effect's score after Holm: one false alarm in fifty
-  double further_significance = 0.002;  ///< of a further effect's: one by chance beside a true one is an error too
-  bool attribute = true;                ///< ask the channels when the catalogue does not explain the residual
-  bool intervals = true;                ///< profile likelihood of the selected effects' numbers
+  double significance = 0.02;            ///< of the first effect's score after Holm: one false alarm in fifty
+  double further_significance = 0.0001;  ///< of a further effect's: one by chance beside a true one is an error too
+  bool attribute = true;                 ///< ask the channels when the catalogue does not explain the residual
+  bool intervals = true;                 ///< profile likelihood of the selected effects' numbers
   std::function<bool(const std::string& stage)> progress;  ///< false stops
   /// Is given the trace as it would be if it ended here, whenever more of it is whole: after the base fit, and once the final
   /// model is chosen. Marked as interrupted. May be empty.

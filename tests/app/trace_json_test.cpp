@@ -33,6 +33,16 @@ TEST(TraceJson, HasTheNumbersOfTheTrace) {
   EXPECT_EQ(t["next_experiment"]["difference_sigma"], 8.4);
 }
 
+TEST(TraceJson, TellsWhereThePusherStood) {
+  identification::Trace trace = explained_trace();
+  EXPECT_EQ(trace_json(traced_experiment(), trace)["places"], json::array());
+  trace.places = {{{"s40", "s40b"}, 2e-5, -1.5e-5, 4e-6}};
+  const json places = trace_json(traced_experiment(), trace)["places"];
+  EXPECT_EQ(
+      places,
+      json::array({{{"series", {"s40", "s40b"}}, {"sigma_mm", 0.02}, {"shift_mm", -0.015}, {"stderr_mm", 0.004}}}));
+}
+
 TEST(TraceJson, WritesNullForWhatIsNotKnown) {
   identification::Trace trace = explained_trace();
   trace.noise.sigma.clear();

@@ -102,6 +102,15 @@ TEST(TraceReport, ShowsTheParametersAndTests) {
 
 // Law minus model at 0, 1, 2 mm: base 0.0533, -0.0404, 0.2057, rms 0.125; final 0.0533, 0.0596, 0.1057, rms 0.0765.
 // Scatter of that law over 3 mm: sqrt(0.0024 / 0.9976 (4 p^2/45 + p q/6 + q^2/12)) = 0.0942, p = 6.479, q = -0.0407.
+TEST(TraceReport, TellsWhereThePusherStood) {
+  Trace trace = explained_trace();
+  EXPECT_FALSE(contains(page_of(trace), "Where the pusher stood"));
+  trace.places = {{{"s40", "s65"}, 2e-5, -1.5e-5, 4e-6}};
+  const std::string html = page_of(trace);
+  EXPECT_TRUE(contains(html, "Where the pusher stood"));
+  EXPECT_EQ(row_of(html, {"s40 and s65"}), (Strings{"s40 and s65", "0.02", "-0.015", "0.004"}));
+}
+
 TEST(TraceReport, ComparesWithThePublishedLaw) {
   const std::string html = page_of(explained_trace());
   const Strings row = row_of(html, {"s40", "0.9976"});

@@ -83,6 +83,8 @@ const WrongFile wrong_files[] = {
     {"contact_position_mm = 40.0", "contact_position_mm = 1.0",
      "x.toml:24: series[s40].contact_position_mm = 1.0, must be >= 1.75 and <= 173.25: inside the span of "
      "175 mm, 1 % of it from each mount"},
+    {"contact_position_mm = 40.0", "contact_position_mm = 40.0\ncontact_position_sigma_mm = -0.1",
+     "x.toml:25: series[s40].contact_position_sigma_mm = -0.1, must be >= 0 and <= 10"},
     {"contact_position_mm = 40.0", "contact_position_mm = 40.0\nforce_sigma_N = 0.0",
      "x.toml:25: series[s40].force_sigma_N = 0.0, must be > 0 and <= 1e+09"},
     {"travel_mm = 2.0", "travel_mm = 0.0", "x.toml:25: series[s40].travel_mm = 0.0, must be > 0 and <= 1000"},
@@ -192,7 +194,8 @@ const WrongFile wrong_files[] = {
     {"points = 21", "points = 21\nmount.spam_mm = 174.0",
      "x.toml:27: series[s40].mount.spam_mm = 174.0, unknown key; did you mean span_mm?"},
     {"points = 21", "points = 21\nsolver.elements = 64",
-     "x.toml:27: series[s40].solver, unknown key; known here: bulge, contact_position_mm, file, force_sigma_N, "
+     "x.toml:27: series[s40].solver, unknown key; known here: bulge, contact_position_mm, contact_position_sigma_mm, "
+     "file, force_sigma_N, "
      "gravity, law, "
      "mount, name, path_mm, points, pusher, travel_mm, wire"},
     {"length_mm = 180.0",

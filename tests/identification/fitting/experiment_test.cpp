@@ -111,6 +111,7 @@ TEST(Experiment, ValidFileIsReadInSi) {
   EXPECT_NEAR(test.travel[1], 1e-4, 1e-18);  // two roundings of 1e-4
   EXPECT_EQ(test.travel.back(), 0.002);      // the end is reached exactly
   EXPECT_FALSE(experiment.series[0].readings || experiment.series[0].law || experiment.series[0].force_sigma);
+  EXPECT_EQ(experiment.series[0].position_sigma, 0.0);
 
   const Series& law = experiment.series[1];
   ASSERT_TRUE(law.law.has_value());
@@ -135,7 +136,8 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
       "rotational_stiffness_Nm_rad = 20\nslip_tension_N = 30\n"
       "[pusher]\nshape = 'cylinder'\nradius_mm = 0\nfriction = 0.3\ndirection = 'inward'\ntilt_deg = "
       "2\nmisalignment_deg = -1\n"
-      "[[series]]\nname = 'a'\ncontact_position_mm = 90\nforce_sigma_N = 0.05\npath_mm = [0, 2, 1]\npoints = 3\n";
+      "[[series]]\nname = 'a'\ncontact_position_mm = 90\ncontact_position_sigma_mm = 0.2\n"
+      "force_sigma_N = 0.05\npath_mm = [0, 2, 1]\npoints = 3\n";
   const Experiment experiment = parse_experiment("x.toml", text, parameters());
   const coupling::PushProblem& test = experiment.series.at(0).test;
   EXPECT_EQ(test.gravity, (std::array<double, 3>{0.0, -9.81, 1.0}));
@@ -157,6 +159,7 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
   EXPECT_NEAR(test.pusher.tilt, std::numbers::pi / 90.0, 1e-16);  // as above
   EXPECT_NEAR(test.pusher.misalignment, -std::numbers::pi / 180.0, 1e-16);
   EXPECT_EQ(experiment.series[0].force_sigma, 0.05);
+  EXPECT_NEAR(experiment.series[0].position_sigma, 2e-4, 1e-19);  // roundings
   // Three points a leg, the turning point in common.
   EXPECT_EQ(test.travel, (std::vector<double>{0.0, 0.001, 0.002, 0.0015, 0.001}));
 }

@@ -150,6 +150,25 @@ TEST(SlowTrace, IsSilentWhereNothingIsMissing) {
   }
 }
 
+// Six places off by 0.02 mm (of one standard deviation), which is tens of standard deviations of the readings.
+TEST(SlowTrace, ErrorsOfPlacesThatAreDeclaredAreNoEffect) {
+  const validation::BlindDesign places{.length_deviation = 1e-4, .position_deviation = 2e-5};
+  Experiment e = validation::make_blind_set("none", 0.0, 2001, places).experiment;
+  const Trace silent = trace(e);
+  EXPECT_EQ(silent.kind, VerdictKind::nothing_missing);
+  EXPECT_LT(silent.base.rmse, 1.1 * 0.05);  // the curves are those of the places found
+  ASSERT_EQ(silent.places.size(), 6);
+  for (const PlaceEstimate& place : silent.places) {
+    EXPECT_LT(std::abs(place.shift), 3.0 * 2e-5);
+    EXPECT_LT(place.standard_error, 2e-5);
+  }
+  for (Series& s : e.series) s.position_sigma = 0.0;
+  EXPECT_NE(trace(e).kind, VerdictKind::nothing_missing);
+  const Trace named = trace(validation::make_blind_set("contact_friction", 30.0, 2001, places).experiment);
+  EXPECT_EQ(named.selected, std::vector<std::string>{"contact_friction"});
+  EXPECT_TRUE(named.explained);
+}
+
 TEST(SlowTrace, SaysSoWhenTheCatalogueHasNoExplanation) {
   const Trace t = trace(blind("drift", 30.0, 2));
   EXPECT_FALSE(t.explained);
