@@ -120,7 +120,6 @@ std::vector<PlaceEstimate> Data::places(const Model& model, const Evaluation& op
 std::vector<Placing> find_placings(const Model& model, const std::vector<Setting>& settings, const Parameter& place) {
   const std::vector<Series>& series = model.series();
   std::vector<Placing> result;
-  if (std::all_of(series.begin(), series.end(), [](const Series& s) { return s.position_sigma == 0.0; })) return result;
   const Evaluation at = model.evaluate(settings, {&place});
   if (!at.complete) return result;
   for (const std::vector<std::size_t>& group : tests(series)) {

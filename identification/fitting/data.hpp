@@ -66,8 +66,8 @@ struct Data {
   [[nodiscard]] std::vector<Direction> directions() const;
 };
 
-/// The placings of a model's series, their derivatives with these settings; none where no series declares how exact its place
-/// is. Series of one test share a place.
+/// The placings of a model's series, their derivatives with these settings. Series of one test share a place, the largest
+/// standard deviation counts. None where all places are exact, and where the model cannot be computed.
 [[nodiscard]] std::vector<Placing> find_placings(const Model& model, const std::vector<Setting>& settings,
                                                  const Parameter& place);
 

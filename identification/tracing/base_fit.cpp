@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace snare::identification {
@@ -39,7 +40,21 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
     return progress.go_on(fmt::format("base model: iteration {}", iteration));
   };
   Fit best = fit(model, data, start, {}, fitting);
+  const auto begin_at = [&](const std::vector<Setting>& other_start) {
+    const Fit other = fit(model, data, other_start, {}, fitting);
+    if (other.report.usable() && (!best.report.usable() || other.chi2 < best.chi2)) best = other;
+  };
   if (length) {
+    // Where a wire goes from loose to taut there is a minimum on either side.
+    const coupling::PushProblem& test = model.series().front().test;
+    for (const double of_slack : {0.6, 1.3}) {
+      std::vector<Setting> looser = start;
+      for (Setting& s : looser) {
+        if (s.parameter->key == "wire.length_mm")
+          s.coordinate = (of_slack - 1.0) * std::max(0.0, test.wire.length - test.mount.span);
+      }
+      begin_at(looser);
+    }
     // A loose wire that is nearly straight lies in a valley of its own.
     for (Setting& s : start) {
       if (s.parameter->key == "wire.bending_stiffness_Nm2") s.coordinate = std::log(0.05);
@@ -49,8 +64,7 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
             s.parameter->coordinate(model.declared(*s.parameter), 1.002 * model.series().front().test.mount.span);
       }
     }
-    const Fit other = fit(model, data, start, {}, fitting);
-    if (other.report.usable() && (!best.report.usable() || other.chi2 < best.chi2)) best = other;
+    begin_at(start);
     // So does one whose record began before the touch.
     bool zero = false;
     for (Setting& s : start) {
@@ -58,10 +72,7 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
       zero = true;
       s.coordinate = 1e-3;
     }
-    if (zero && progress.go_on("base model: with a late touch")) {
-      const Fit late = fit(model, data, start, {}, fitting);
-      if (late.report.usable() && (!best.report.usable() || late.chi2 < best.chi2)) best = late;
-    }
+    if (zero && progress.go_on("base model: with a late touch")) begin_at(start);
   }
   return best;
 }
@@ -75,8 +86,13 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
     }
     data.noise = noise_from_residuals(model.series(), residuals, base.evaluation.force);
   }
-  data.placings = find_placings(model, base.settings, parameters().at(place_key));
-  if (!declared || !data.placings.empty()) base = fit(model, data, base.fitted());
+  const bool exact = std::ranges::all_of(model.series(), [](const Series& s) { return s.position_sigma == 0.0; });
+  if (!exact) data.placings = find_placings(model, base.settings, parameters().at(place_key));
+  if (!declared || !exact) base = fit(model, data, base.fitted());
+  if (!exact && data.placings.empty()) {
+    base.report.end(numerics::Termination::step_too_small,
+                    "the base model cannot be computed beside its places: contact_position_sigma_mm cannot be weighed");
+  }
 }
 
 }  // namespace snare::identification

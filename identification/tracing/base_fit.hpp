@@ -14,7 +14,8 @@ namespace snare::identification {
 [[nodiscard]] Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model,
                            Data& data, Progress& progress);
 
-/// Where the noise is not known before a fit: takes it from the residual and fits again.    theory.md (I.3)
+/// What the readings' errors are: the noise, where it is not known before a fit, from the residual, (I.3), and that of places
+/// with a tolerance, (I.14). Fits again where either is new; the report of `base` says so where that cannot be done.
 void settle_noise(const Model& model, Data& data, Fit& base);
 
 }  // namespace snare::identification

@@ -11,7 +11,8 @@ namespace snare::identification {
 /// Where a refit with an effect may begin.
 struct RefitStart {
   std::vector<double> coordinates;  ///< of the effect's numbers [SI units; -]
-  Eigen::VectorXd shift;  ///< by how much the fitted numbers' coordinates move beside it, to first order [likewise]
+  /// By how much the fitted numbers' coordinates move beside it, to first order [likewise]; zero beside a threshold.
+  Eigen::VectorXd shift;
 };
 
 /// Score test of one effect against a fitted model.                                  theory.md (I.4)

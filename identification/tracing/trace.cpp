@@ -1,6 +1,7 @@
 #include "identification/tracing/trace.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "identification/fitting/conditions.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/base_fit.hpp"
 #include "identification/tracing/model_average.hpp"
@@ -126,9 +127,14 @@ Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Divisi
 // The settings of a fit, and every series pushed from where its readings say that the pusher stood.
 std::vector<Setting> Tracer::with_places(const Fit& fit) const {
   std::vector<Setting> settings = fit.settings;
+  const std::vector<std::vector<std::size_t>> groups = tests(result_.series);
   for (const PlaceEstimate& place : data_.places(model_, fit.evaluation, fit.covariance)) {
-    for (const std::string& series : place.series) {
-      const Parameter& own = parameters().at(fmt::format("series[{}].{}", series, place_key));
+    // Those held out were pushed from there, too.
+    const auto same = std::ranges::find_if(groups, [&](const std::vector<std::size_t>& group) {
+      return std::ranges::any_of(group, [&](std::size_t k) { return result_.series[k].name == place.series.front(); });
+    });
+    for (const std::size_t k : *same) {
+      const Parameter& own = parameters().at(fmt::format("series[{}].{}", result_.series[k].name, place_key));
       double shift = place.shift;  // beside what the model itself shifts it by: the later setting counts
       for (const Setting& s : fit.settings) {
         if (s.parameter == &own || s.parameter->key == place_key) shift += s.coordinate;
@@ -443,6 +449,10 @@ Trace Tracer::run() {
     return finished();
   }
   settle_noise(model_, data_, base_);
+  if (!base_.report.usable()) {
+    result_.report = base_.report;
+    return finished();
+  }
   result_.noise = data_.noise;
   result_.rows = static_cast<std::size_t>(data_.rows());
   result_.peak_force = peak_force(data_);
