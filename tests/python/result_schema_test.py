@@ -21,9 +21,9 @@ except ImportError:
 RUNS = {
     "push": ["push", "tests/ranges/readings.toml", "--json"],
     "push_law": ["push", "data/experiments/published_static.toml", "--json", "--set", "solver.elements=16"],
-    "fit": ["fit", "tests/ranges/readings.toml"],
+    "fit": ["fit", "tests/ranges/readings.toml", "--set", "series[1].contact_position_sigma_mm=0.05"],
     "fit_record": ["fit", "WORK/records.toml", "--set", 'fit.profile=["arms[pendulum].joint.bearing.viscous_Nms_rad"]'],
-    "trace": ["trace", "tests/ranges/readings.toml"],
+    "trace": ["trace", "tests/ranges/readings.toml", "--set", "series[1].contact_position_sigma_mm=0.05"],
     "trace_law": ["trace", "data/experiments/published_static.toml", "--set", "solver.elements=16", "--set", "solver.extrapolate=false"],
     "trace_record": ["trace", "tests/ranges/record.toml", "--set", "fit.most_effects=1", "--set",
                      'fit.free=["arms[pendulum].rates_deg_s[1]"]', "--set", "scenario.arms[pendulum].joint.bearing.viscous_Nms_rad=0.0",
