@@ -31,6 +31,29 @@ constexpr double most_ratio = 0.7;  // of the logarithm of a number that an effe
 // Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much better.
 constexpr double nearly_all = 0.95;
 
+/// The first settings moved by so much (their coordinates), within their bounds; ratios at most by `most_ratio`.
+std::vector<Setting> moved(const Model& model, std::vector<Setting> settings, const Eigen::VectorXd& shift) {
+  for (Eigen::Index k = 0; k < shift.size(); ++k) {
+    Setting& s = settings[static_cast<std::size_t>(k)];
+    const double most = s.parameter->parametrisation == Parametrisation::shift ? 1e300 : most_ratio;
+    s.coordinate = std::clamp(s.coordinate + std::clamp(shift[k], -most, most), model.lower(*s.parameter),
+                              model.upper(*s.parameter));
+  }
+  return settings;
+}
+
+/// Those of two settings that leave less: numbers that are hardly told may move far, to first order.
+std::vector<Setting> nearer(const Model& model, const Data& data, const std::vector<Setting>& one,
+                            const std::vector<Setting>& other) {
+  const auto same = [](const Setting& a, const Setting& b) { return a.coordinate == b.coordinate; };
+  if (std::equal(one.begin(), one.end(), other.begin(), same)) return one;
+  const auto left = [&](const std::vector<Setting>& settings) {
+    const Evaluation at = model.evaluate(settings);
+    return at.complete ? data.residual(at).squaredNorm() : std::numeric_limits<double>::infinity();
+  };
+  return left(other) < left(one) ? other : one;
+}
+
 /// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
 /// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first has reached.
 Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival,
@@ -42,15 +65,12 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
   double to_beat = rival;
   for (const RefitStart& from : score.starts) {
     std::vector<Setting> start = current.fitted();
-    for (std::size_t k = 0; k < start.size(); ++k) {
-      const double most = start[k].parameter->parametrisation == Parametrisation::shift ? 1e300 : most_ratio;
-      start[k].coordinate += std::clamp(from.shift[static_cast<Eigen::Index>(k)], -most, most);
-    }
     for (std::size_t k = 0; k < from.coordinates.size(); ++k) {
       const EffectNumber& number = score.effect->numbers[k];
       if (number.optional && from.coordinates[k] == 0.0) continue;
       start.push_back({&number.parameter, from.coordinates[k]});
     }
+    start = nearer(model, data, start, moved(model, start, from.shift));
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
