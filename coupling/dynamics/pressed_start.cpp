@@ -80,7 +80,7 @@ Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius, const R
   options.duration = duration;
   options.output_interval = 0.5 * duration;
   options.position_tolerance = 1e-9;
-  options.quasi_static_velocity_tolerance = 3e-6;
+  options.quasi_static_velocity_tolerance = 1e-5 / 3.0;
   Matrix3Xd before, now = arc;
   const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
     before = now;
