@@ -14,7 +14,7 @@ namespace snare::identification {
 /// Key of the number that moves the pusher along the chord.
 inline constexpr const char* place_key = "contact_position.shift_mm";
 
-/// Where the pusher stands in one condition, known to a standard deviation.              theory.md (I.14)
+/// Where the pusher stands in one test, at any speed, known to a standard deviation.     theory.md (I.14)
 struct Placing {
   std::vector<std::size_t> series;  ///< of the model, those pushed from this place
   double sigma = 0.0;               ///< of the place about the declared one [m], > 0
@@ -36,7 +36,7 @@ struct Data {
   std::vector<std::size_t> series;        ///< which of the model's
   std::vector<Eigen::VectorXd> measured;  ///< of every series of the model [N]
   Noise noise;                            ///< of every series of the model
-  std::vector<Placing> placings;          ///< of conditions whose place is not exact; none until find_placings()
+  std::vector<Placing> placings;          ///< of tests whose place is not exact; none until find_placings()
 
   /// Whitened numbers of one series: its readings, or three where only a fit was published.
   [[nodiscard]] Eigen::Index rows_of(std::size_t of_series) const {

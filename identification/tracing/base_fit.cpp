@@ -60,8 +60,7 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
       if (s.parameter->key == "wire.bending_stiffness_Nm2") s.coordinate = std::log(0.05);
       if (s.parameter->key == "wire.axial_stiffness_N") s.coordinate = std::log(0.3);
       if (s.parameter->key == "wire.length_mm") {
-        s.coordinate =
-            s.parameter->coordinate(model.declared(*s.parameter), 1.002 * model.series().front().test.mount.span);
+        s.coordinate = s.parameter->coordinate(model.declared(*s.parameter), 1.002 * test.mount.span);
       }
     }
     begin_at(start);

@@ -46,7 +46,7 @@ struct Trace {
   double peak_force = 0.0;     ///< largest measured one [N]
   Remaining remaining;
   std::vector<Finding> findings;      ///< of the final model
-  std::vector<PlaceEstimate> places;  ///< by the final model, of conditions whose place is not declared exact
+  std::vector<PlaceEstimate> places;  ///< by the final model, of tests whose place is not declared exact
   std::optional<ZeroCheck> zero;      ///< beside a final model that has none
   std::string channel;  ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
