@@ -54,23 +54,35 @@ std::vector<Setting> nearer(const Model& model, const Data& data, const std::vec
   return left(other) < left(one) ? other : one;
 }
 
-/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
-/// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first has reached.
-Fit refit(const Model& model, const Data& data, const Fit& current, const Score& score, double rival,
+/// The numbers with which an effect begins, behind those of a fit.
+std::vector<Setting> with(std::vector<Setting> settings, const Effect& effect, const RefitStart& from) {
+  for (std::size_t k = 0; k < from.coordinates.size(); ++k) {
+    const EffectNumber& number = effect.numbers[k];
+    if (number.optional && from.coordinates[k] == 0.0) continue;
+    settings.push_back({&number.parameter, from.coordinates[k]});
+  }
+  return settings;
+}
+
+/// The model with an effect added, from each of its starts and, in the end, beside the earlier effects begun anew; not
+/// usable where none of them gives a fit. What takes away nearly all that is beside the noise needs no other start, and
+/// another start is not followed where it does not come near what the first has reached.
+Fit refit(const Model& model, const Data& data, const Current& current, const Score& score, double rival,
           Progress& progress) {
   Fit best;
   best.chi2 = std::numeric_limits<double>::max();
-  best.free = current.free;
+  best.free = current.fit.free;
   best.report.termination = numerics::Termination::step_too_small;
   double to_beat = rival;
-  for (const RefitStart& from : score.starts) {
-    std::vector<Setting> start = current.fitted();
-    for (std::size_t k = 0; k < from.coordinates.size(); ++k) {
-      const EffectNumber& number = score.effect->numbers[k];
-      if (number.optional && from.coordinates[k] == 0.0) continue;
-      start.push_back({&number.parameter, from.coordinates[k]});
+  const std::size_t starts = score.starts.size() + (current.anew.empty() || score.starts.empty() ? 0 : 1);
+  for (std::size_t k = 0; k < starts; ++k) {
+    std::vector<Setting> start;
+    if (k < score.starts.size()) {
+      start = with(current.fit.fitted(), *score.effect, score.starts[k]);
+      start = nearer(model, data, start, moved(model, start, score.starts[k].shift));
+    } else {
+      start = with(current.anew, *score.effect, score.starts.front());
     }
-    start = nearer(model, data, start, moved(model, start, from.shift));
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
@@ -81,7 +93,7 @@ Fit refit(const Model& model, const Data& data, const Fit& current, const Score&
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
     if (!best.report.usable()) continue;
-    if (current.chi2 - best.chi2 > nearly_all * (current.chi2 - best.dof())) break;
+    if (current.fit.chi2 - best.chi2 > nearly_all * (current.fit.chi2 - best.dof())) break;
     to_beat = rival > 0.0 ? std::min(rival, best.chi2) : best.chi2;
   }
   return best;
@@ -201,11 +213,11 @@ std::vector<Candidate> by_score(std::vector<Score> scores) {
 }
 
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
-std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                             const Demands& demands, std::vector<Candidate>& candidates, const std::string& round,
                             Progress& progress) {
   std::vector<Fit> fits(candidates.size());
-  const std::optional<double> before = heldout.rmse(current.settings);
+  const std::optional<double> before = heldout.rmse(current.fit.settings);
   std::size_t refits = 0;
   double best_gain = 0.0;
   for (std::size_t i = 0; i < candidates.size() && refits < most_refits; ++i) {
@@ -214,31 +226,31 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
     if (refits > 0 && c.score.z * c.score.z < refit_share * best_gain - 10.0) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     // What cannot come near the best so far is not followed to its own bottom.
-    const double rival = best_gain > 0.0 ? current.chi2 - best_gain + out_of_class_bic : 0.0;
+    const double rival = best_gain > 0.0 ? current.fit.chi2 - best_gain + out_of_class_bic : 0.0;
     fits[i] = refit(model, data, current, c.score, rival, progress);
-    judge(model, data, heldout, current, demands, before, c, fits[i]);
-    if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.chi2 - fits[i].chi2);
+    judge(model, data, heldout, current.fit, demands, before, c, fits[i]);
+    if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.fit.chi2 - fits[i].chi2);
     ++refits;
   }
   return fits;
 }
 
 /// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it from it.
-void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                   const Demands& demands, std::vector<Candidate>& candidates, std::vector<Fit>& fits,
                   const std::string& round, Progress& progress) {
   const Candidate& leader = candidates.front();
   if (!leader.refitted || leader.score.direction.size() == 0) return;
-  const double gain = current.chi2 - fits.front().chi2;
-  const std::optional<double> before = heldout.rmse(current.settings);
+  const double gain = current.fit.chi2 - fits.front().chi2;
+  const std::optional<double> before = heldout.rmse(current.fit.settings);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& c = candidates[i];
     if (c.refitted || fits[i].free > 0 || !c.score.unobservable.empty() || c.score.direction.size() == 0) continue;
     const double cosine = c.score.direction.dot(leader.score.direction);
     if (gain * (1.0 - cosine * cosine) > separable_chi2) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
-    fits[i] = refit(model, data, current, c.score, current.chi2 - gain + out_of_class_bic, progress);
-    judge(model, data, heldout, current, demands, before, c, fits[i]);
+    fits[i] = refit(model, data, current, c.score, current.fit.chi2 - gain + out_of_class_bic, progress);
+    judge(model, data, heldout, current.fit, demands, before, c, fits[i]);
   }
 }
 
@@ -276,6 +288,7 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   round.added = first.score.effect->name;
   round.reason = fmt::format("its score has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
                              first.score.adjusted_p, -first.delta_bic);
+  if (first.score.effect->trials != nullptr) result.begun = with({}, *first.score.effect, first.score.starts.front());
   result.better = fits.front();
   const Fit polished = fit(model, data, result.better.fitted());
   if (polished.report.usable() && polished.chi2 <= result.better.chi2) result.better = polished;
@@ -313,13 +326,13 @@ double fewest_dof(std::size_t numbers) {
   return std::max(5.0, 2.0 * static_cast<double>(numbers));
 }
 
-RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current,
+RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                           std::size_t number, const Demands& demands, Progress& progress) {
   const double significance = demands.significance;
   const std::string name = fmt::format("round {}", number);
   RoundFits result;
   Round& round = result.round;
-  round.candidates = by_score(score_effects(model, data, current, significance));
+  round.candidates = by_score(score_effects(model, data, current.fit, significance));
   progress.clock(name + ": scores");
   std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
   rank(round.candidates, fits, significance);
@@ -330,7 +343,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
     inflation = remainder(model, data, fits.front()).inflation();
   }
   progress.clock(name + ": refits");
-  classify(current, inflation, round, fits);
+  classify(current.fit, inflation, round, fits);
   round.curves = best_curves(data, round.candidates, fits);
   if (!round.candidates.empty() && eligible(round.candidates.front(), significance)) {
     add_first(model, data, fits, result);

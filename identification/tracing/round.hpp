@@ -42,10 +42,19 @@ struct Round {
 /// A round with the fits behind it.
 struct RoundFits {
   Round round;
-  Fit better;               ///< the model with the added effect
-  std::vector<Fit> rivals;  ///< refits of the added effect's class, then all others that make sense, best first;
-                            ///< without their curves
+  Fit better;                  ///< the model with the added effect
+  std::vector<Setting> begun;  ///< the added effect's numbers as first tried, of one that has only finite trials
+  std::vector<Fit> rivals;     ///< refits of the added effect's class, then all others that make sense, best first;
+                               ///< without their curves
   std::vector<std::string> rival_names;  ///< of their effects
+};
+
+/// The model of a round.
+struct Current {
+  const Fit& fit;
+  /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
+  /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
+  std::vector<Setting> anew;
 };
 
 /// What an effect must bring to be named.
@@ -60,7 +69,7 @@ struct Demands {
 /// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
-                                        const Fit& current, std::size_t number, const Demands& demands,
+                                        const Current& current, std::size_t number, const Demands& demands,
                                         Progress& progress);
 
 }  // namespace snare::identification

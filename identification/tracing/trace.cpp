@@ -75,6 +75,7 @@ class Tracer {
   void look_at_base();
   void tell_part() const;
   void add_effects();
+  [[nodiscard]] std::vector<Setting> begun_anew() const;
   [[nodiscard]] bool accept();
   void drop_unneeded();
   [[nodiscard]] bool needed(std::size_t which, double inflation, Fit& without);
@@ -192,6 +193,21 @@ void Tracer::tell_part() const {
   options_.reached(part);
 }
 
+// The numbers of the current fit where they began; empty where no effect among them was tried at finite sizes only.
+std::vector<Setting> Tracer::begun_anew() const {
+  std::vector<Setting> begun;
+  for (const RoundFits& round : rounds_) begun.insert(begun.end(), round.begun.begin(), round.begun.end());
+  if (begun.empty()) return {};
+  begun.insert(begun.end(), base_.settings.begin(), base_.settings.end());
+  std::vector<Setting> settings = current_.fitted();
+  for (Setting& s : settings) {
+    const auto same = [&s](const Setting& one) { return one.parameter == s.parameter; };
+    const auto at = std::find_if(begun.begin(), begun.end(), same);
+    if (at != begun.end()) s.coordinate = at->coordinate;
+  }
+  return settings;
+}
+
 // Effects one at a time, until what is left is no more than noise or no effect of the catalogue helps.
 void Tracer::add_effects() {
   current_ = base_;
@@ -205,7 +221,8 @@ void Tracer::add_effects() {
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found = look_for_effect(model_, data_, heldout_, current_, number, {significance, tolerance}, progress_);
+    RoundFits found = look_for_effect(model_, data_, heldout_, {current_, begun_anew()}, number,
+                                      {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
     if (round.added.empty()) break;
