@@ -1,10 +1,14 @@
 #include "numerics/dae_solver.hpp"
 
+#include "base/index.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace snare::numerics {
+
+using base::at;
 
 DaeSolver::DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs)
     : condensation_(pattern, pairs), no_rates_(pairs.empty()) {}
@@ -37,36 +41,45 @@ bool DaeSolver::solve(const SparseMatrix& matrix, Eigen::Ref<Eigen::VectorXd> b)
   return true;
 }
 
+template <bool with_size>
+void DaeSolver::find_rest() {
+  const SparseMatrix& a = condensation_.matrix();
+  rest_ = right_;
+  if constexpr (with_size) size_ = right_.cwiseAbs();
+  for (int j = 0; j < a.order; ++j) {
+    for (int s = a.column_start[at(j)]; s < a.column_start[at(j) + 1]; ++s) {
+      const double product = a.value[at(s)] * solution_[j];
+      rest_[a.row[at(s)]] -= product;
+      if constexpr (with_size) size_[a.row[at(s)]] += std::abs(product);
+    }
+  }
+}
+
 // The first solution is put into the equations, and where that shows lost digits what is left is solved for, there and in all later ones.
 bool DaeSolver::solve_without_pivots() {
   constexpr double most = 1e-8;
   lu_->solve(solution_);
-  if (tried_ && !refined_) return true;
-  const double error = backward_error(solution_, right_);
-  if (!tried_) refined_ = !(error <= most);
-  if (refined_) {
+  const auto refine = [this] {
     lu_->solve(rest_);
     solution_ += rest_;
+  };
+  if (tried_) {
+    if (refined_) {
+      find_rest<false>();
+      refine();
+    }
+    return true;
   }
-  const bool accurate = tried_ || !refined_ || backward_error(solution_, right_) <= most;
   tried_ = true;
-  return accurate;
+  refined_ = !(backward_error() <= most);
+  if (refined_) refine();
+  return !refined_ || backward_error() <= most;
 }
 
 // max_i |b - A x|_i/(|A| |x| + |b|)_i: the least relative change of A and b that makes x a solution (Oettli and Prager 1964).
 // Rows in which nothing happens are left out.
-double DaeSolver::backward_error(const Eigen::VectorXd& x, const Eigen::VectorXd& b) {
-  const SparseMatrix& a = condensation_.matrix();
-  rest_ = b;
-  size_ = b.cwiseAbs();
-  for (int j = 0; j < a.order; ++j) {
-    for (int s = a.column_start[static_cast<std::size_t>(j)]; s < a.column_start[static_cast<std::size_t>(j) + 1];
-         ++s) {
-      const double product = a.value[static_cast<std::size_t>(s)] * x[j];
-      rest_[a.row[static_cast<std::size_t>(s)]] -= product;
-      size_[a.row[static_cast<std::size_t>(s)]] += std::abs(product);
-    }
-  }
+double DaeSolver::backward_error() {
+  find_rest<true>();
   const double nothing = 1e-20 * size_.maxCoeff();
   double worst = 0.0;
   for (Eigen::Index i = 0; i < rest_.size(); ++i) {

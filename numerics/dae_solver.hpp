@@ -33,7 +33,9 @@ class DaeSolver {
   [[nodiscard]] bool pivot();
   /// False where digits are lost even so.
   [[nodiscard]] bool solve_without_pivots();
-  [[nodiscard]] double backward_error(const Eigen::VectorXd& x, const Eigen::VectorXd& b);
+  template <bool with_size>
+  void find_rest();
+  [[nodiscard]] double backward_error();
 
   Condensation condensation_;
   bool no_rates_;
@@ -43,7 +45,9 @@ class DaeSolver {
   bool tried_ = false;    // a solution of the last factorisation has been looked at
   bool refined_ = false;  // its solutions need what is left of the equations solved for
   long pivoted_ = 0;
-  Eigen::VectorXd right_, solution_, rest_, size_;
+  Eigen::VectorXd right_, solution_;
+  Eigen::VectorXd rest_;  // b - A x
+  Eigen::VectorXd size_;  // |A| |x| + |b|
 };
 
 }  // namespace snare::numerics
