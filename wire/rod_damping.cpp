@@ -100,19 +100,20 @@ void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell
                                   const RodSlots& slots, std::vector<double>& values) {
   const std::array<double, 2> stiffness = viscous_stiffness(model, cell);
   PairHessian turned;  // sum k (g.r) H
-  CellMatrix by_place = CellMatrix::Zero();
-  CellMatrix by_rate = CellMatrix::Zero();
-  for (int j = 0; j < 2; ++j) {
-    const BendingCell::Derivatives kappa = cell.differentiate(j);
-    const CellVector slope = to_cell(kappa.gradient);
-    const CellVector weighted = stiffness[base::at(j)] * slope;
-    by_place += weighted * to_cell(times_rates(kappa.hessian, cell)).transpose();
-    by_rate += weighted * slope.transpose();
-    add_scaled(kappa.hessian, weighted.dot(cell.rate), turned);
+  RodSlots::CellProducts products;
+  for (std::size_t j = 0; j < 2; ++j) {
+    const BendingCell::Derivatives kappa = cell.differentiate(static_cast<int>(j));
+    products.rate[j] = to_cell(kappa.gradient);
+    products.force[j] = stiffness[j] * products.rate[j];
+    products.place[j] = to_cell(times_rates(kappa.hessian, cell));
+    add_scaled(kappa.hessian, products.force[j].dot(cell.rate), turned);
   }
-  by_place += to_cell(turned);
-  if (model.end_of(i)) by_place += by_rate * cell.rate_by_place();
-  slots.add_cell(i, by_place, by_rate, c, values);
+  products.m = to_cell(turned);
+  if (model.end_of(i)) {
+    for (std::size_t j = 0; j < 2; ++j)
+      products.place[j] += (products.rate[j].transpose() * cell.rate_by_place()).transpose();
+  }
+  slots.add_cell(i, products, c, values);
 }
 
 }  // namespace snare::wire

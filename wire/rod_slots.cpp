@@ -146,6 +146,29 @@ void RodSlots::add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_
   add_all(cells_[base::at(i)].rate, by_rate, values);
 }
 
+void RodSlots::add_cell(int i, const CellProducts& products, double c, std::vector<double>& values) const {
+  constexpr std::size_t n = CellRows::count;
+  const auto& [force, place, rate, m] = products;
+  const CellSlots& slots = cells_[base::at(i)];
+  for (std::size_t b = 0; b < n; ++b) {
+    const auto column = static_cast<Eigen::Index>(b);
+    std::array<double, n> by_place{}, by_rate{};
+    for (std::size_t a = 0; a < n; ++a) {
+      const auto row = static_cast<Eigen::Index>(a);
+      by_place[a] = force[0][row] * place[0][column] + force[1][row] * place[1][column] + m(row, column);
+      by_rate[a] = force[0][row] * rate[0][column] + force[1][row] * rate[1][column];
+    }
+    if (column == CellRows::angle_before || column == CellRows::angle_after) {
+      for (std::size_t a = 0; a < n; ++a) add_to(values, slots.place[n * b + a], by_place[a] + c * by_rate[a]);
+      continue;
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      add_to(values, slots.place[n * b + a], by_place[a]);
+      add_to(values, slots.rate[n * b + a], by_rate[a]);
+    }
+  }
+}
+
 void RodSlots::add_curvature(int i, const CurvatureColumns& by_cell, const Eigen::Matrix2d& own,
                              std::vector<double>& values) const {
   const CurvatureSlots& slots = curvature_[base::at(i)];
