@@ -83,11 +83,17 @@ std::string nothing_missing(const Trace& t) {
         "Nothing missing: the base model explains the readings to the noise (rmse {:.3g} N); no effect "
         "is missing. Hidden in the noise could be up to {:.2g} N rms, {}.",
         t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper));
-  } else {
+  } else if (t.base_tests.within(t.tolerance)) {
     text = fmt::format(
         "Nothing missing worth a name: the base model leaves {:.3g} N rms, at most {:.2g} N of it not "
         "noise ({}), within the tolerance of {:.3g} N; no effect is missing beyond that.",
         t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), t.tolerance);
+  } else {
+    text = fmt::format(
+        "Nothing missing worth a name: the base model leaves {:.3g} N rms, some {:.2g} N of it not noise, less than "
+        "the tolerance of {:.3g} N; but it may be {:.2g} N ({}), and no effect of the catalogue lowers that by more "
+        "than the tolerance.",
+        t.base.rmse, t.remaining.rmse, t.tolerance, t.remaining.upper, share_of_peak(t, t.remaining.upper));
   }
   return t.few_readings ? text + take_more(t) : text;
 }

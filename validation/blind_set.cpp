@@ -348,7 +348,10 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   h.highest_stress =
       std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
                0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
-  const Eigen::VectorXd plain = read_all({}, h, highest_tension, design);
+  // An effect is of one size whatever the density of its readings.
+  BlindDesign sized = design;
+  sized.readings_a_leg = BlindDesign{}.readings_a_leg;
+  const Eigen::VectorXd plain = read_all({}, h, highest_tension, sized);
   Eigen::VectorXd force = plain;
   BlindSet set;
   set.effect = effect;
@@ -364,9 +367,9 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
       if (k == 0) other.bending *= 1.0 + ratio;
       if (k == 1) other.axial *= 1.0 + ratio;
       if (k == 2) other.length += longer;
-      base.col(k) = read_all({}, other, highest_tension, design) - plain;
+      base.col(k) = read_all({}, other, highest_tension, sized) - plain;
     }
-    const Places places(h, highest_tension, design);
+    const Places places(h, highest_tension, sized);
     base = places.white(base);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
     // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly. Beside a length
@@ -380,7 +383,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
         fitted.bending *= std::exp(std::clamp(ratio * step[0], -0.5, 0.5));
         fitted.axial *= std::exp(std::clamp(ratio * step[1], -0.5, 0.5));
         if (step.size() > 2) fitted.length += std::clamp(longer * step[2], -0.5 * mm, 0.5 * mm);
-        left = changed - read_all({}, fitted, highest_tension, design);
+        left = changed - read_all({}, fitted, highest_tension, sized);
         if (k > 1 && (base * step).norm() < 0.1 * sigma) break;
       }
       const Eigen::VectorXd white = places.white(left);
@@ -395,7 +398,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     Dose dose{one, a};
     for (int k = 0; k < 20; ++k) {
       dose.amount = a;
-      force = read_all({dose}, h, highest_tension, design);
+      force = read_all({dose}, h, highest_tension, sized);
       reached = size_of(force);
       if (std::abs(reached / size - 1.0) < 0.05 || (a >= 1.0 && reached < size)) break;
       (reached < size ? low : high) = a;
@@ -407,7 +410,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     if (doses.empty()) std::tie(set.key, set.truth) = number_of(dose, h, highest_tension);
     doses.push_back(dose);
   }
-  if (doses.size() > 1) force = read_all(doses, h, highest_tension, design);
+  if (doses.size() > 1 || design.readings_a_leg != sized.readings_a_leg)
+    force = read_all(doses, h, highest_tension, design);
 
   identification::Experiment& experiment = set.experiment;
   experiment.file = "blind.toml";

@@ -26,7 +26,7 @@ struct BlindSet {
 
 /// How the readings of a blind set are taken, and what of them the laboratory does not know.
 struct BlindDesign {
-  int readings_a_leg = 20;          ///< a divisor of 40, or more
+  int readings_a_leg = 20;          ///< a divisor of 40, or more; sizes are counted over 20
   double length_deviation = 0.0;    ///< standard deviation of the wire's length about the declared one [m]; where it is
                                     ///< > 0 the length is freed as well
   double position_deviation = 0.0;  ///< of every push's position about the declared one [m]; declared as well

@@ -108,7 +108,8 @@ KeyFigure effect_figure(const Trace& trace) {
     const std::string why = partial.empty() ? "no effect of the catalogue fits" : "not settled by " + partial;
     return {label, "not explained", why, Tone::bad};
   }
-  if (unchanged(trace)) return {label, "none missing", "what the base model leaves looks like noise", Tone::good};
+  if (unchanged(trace))
+    return {label, "none missing", "what the base model leaves is no more than noise and tolerance", Tone::good};
   if (!trace.decided) {
     const bool likely = identification::each_alone(trace.selected_classes);
     const char* why = likely ? "likely, but not settled" : "these readings cannot tell which";
@@ -295,7 +296,7 @@ void add_residuals(ReportPage& page, const Trace& trace) {
       fmt::format("What a model leaves unexplained: a good one leaves points without pattern, 95 % of them "
                   "inside the band.{}",
                   trace.significant ? " What the base model leaves is more than noise."
-                                    : " What the base model leaves cannot be told from noise."));
+                                    : " What the base model leaves is no more than noise and tolerance."));
   for (const Abscissa abscissa : {Abscissa::travel, Abscissa::model_force, Abscissa::time}) {
     const PlotSpecification before = residual_plot(trace, "base", trace.base_predictions, abscissa);
     page.line_plot(before);

@@ -1,7 +1,6 @@
 #include "identification/tracing/round.hpp"
 
 #include "identification/effects/catalogue.hpp"
-#include "identification/tracing/remainder.hpp"
 #include "identification/tracing/verdict.hpp"
 
 #include <fmt/format.h>
@@ -123,14 +122,20 @@ void judge_plausibility(const Model& model, const Fit& current, const Fit& refit
 }
 
 /// Why what an effect changes is not to be named; empty when it may be.
-std::string too_small(const Data& data, const Fit& current, const Fit& refitted, double tolerance) {
+std::string too_small(const Model& model, const Data& data, const Current& now, const Fit& refitted, double tolerance) {
+  const Fit& current = now.fit;
   const double before = fitted_rmse(data, current.evaluation);
   const double after = fitted_rmse(data, refitted.evaluation);
   if (refitted.dof() < fewest_dof(refitted.free)) {
     return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
                        refitted.dof(), refitted.free, fewest_dof(refitted.free));
   }
-  if (tolerance > 0.0 && !worth_a_name(before, after, tolerance)) {
+  // By the error itself or, where noise hides how much of it falls, by the bound of what is left beside the noise.
+  const auto worth = [&] {
+    return worth_a_name(before, after, before - after, tolerance) ||
+           worth_a_name(before, after, now.left.upper - remainder(model, data, refitted).upper, tolerance);
+  };
+  if (tolerance > 0.0 && !worth()) {
     return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
                        before - after, tolerance);
   }
@@ -142,8 +147,9 @@ std::string too_small(const Data& data, const Fit& current, const Fit& refitted,
 }
 
 /// What a refit says of an effect: BIC, plausibility, size, and whether held-out series gain by it.
-void judge(const Model& model, const Data& data, const HeldOut& heldout, const Fit& current, const Demands& demands,
+void judge(const Model& model, const Data& data, const HeldOut& heldout, const Current& now, const Demands& demands,
            std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) {
+  const Fit& current = now.fit;
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
   candidate.rmse = fitted_rmse(data, refitted.evaluation);
@@ -151,7 +157,7 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const F
   const std::vector<FittedNumber> all = numbers_of(model, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   judge_plausibility(model, current, refitted, candidate);
-  candidate.why_too_small = too_small(data, current, refitted, demands.tolerance);
+  candidate.why_too_small = too_small(model, data, now, refitted, demands.tolerance);
   if (heldout.empty()) return;
   const std::optional<double> after = heldout.rmse(refitted.settings);
   // At the noise already it need not improve any more.
@@ -228,7 +234,7 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
     // What cannot come near the best so far is not followed to its own bottom.
     const double rival = best_gain > 0.0 ? current.fit.chi2 - best_gain + out_of_class_bic : 0.0;
     fits[i] = refit(model, data, current, c.score, rival, progress);
-    judge(model, data, heldout, current.fit, demands, before, c, fits[i]);
+    judge(model, data, heldout, current, demands, before, c, fits[i]);
     if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.fit.chi2 - fits[i].chi2);
     ++refits;
   }
@@ -250,7 +256,7 @@ void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, 
     if (gain * (1.0 - cosine * cosine) > separable_chi2) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     fits[i] = refit(model, data, current, c.score, current.fit.chi2 - gain + out_of_class_bic, progress);
-    judge(model, data, heldout, current.fit, demands, before, c, fits[i]);
+    judge(model, data, heldout, current, demands, before, c, fits[i]);
   }
 }
 

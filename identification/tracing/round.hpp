@@ -2,6 +2,7 @@
 
 #include "identification/tracing/model_error.hpp"
 #include "identification/tracing/progress.hpp"
+#include "identification/tracing/remainder.hpp"
 #include "identification/tracing/score.hpp"
 
 #include <optional>
@@ -52,6 +53,7 @@ struct RoundFits {
 /// The model of a round.
 struct Current {
   const Fit& fit;
+  Remainder left;  ///< beside the noise
   /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
   /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
   std::vector<Setting> anew;

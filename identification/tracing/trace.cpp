@@ -221,7 +221,7 @@ void Tracer::add_effects() {
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found = look_for_effect(model_, data_, heldout_, {current_, begun_anew()}, number,
+    RoundFits found = look_for_effect(model_, data_, heldout_, {current_, tests_.left, begun_anew()}, number,
                                       {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
@@ -294,12 +294,16 @@ bool Tracer::accept() {
 void Tracer::conclude() {
   drop_unneeded();
   const double tolerance = result_.tolerance;
-  const bool base_does = result_.base_tests.acceptable(tolerance);
+  // What may be more than the tolerance and has no name is not called missing unless it is more.
+  const ResidualTests& base = result_.base_tests;
+  const bool small =
+      added_.empty() && !result_.few_readings && !base.of_published && tolerance > 0.0 && base.left.rmse <= tolerance;
+  const bool base_does = small || base.acceptable(tolerance);
   result_.significant = !base_does || !added_.empty();
   Remaining& remaining = result_.remaining;
   const auto leave = [&](const Remainder& left, double share) { remaining = {left.rmse, left.upper, share, ""}; };
-  const Remainder& before = result_.base_tests.left;
-  if (tests_.acceptable(tolerance) && accept()) {
+  const Remainder& before = base.left;
+  if ((small || tests_.acceptable(tolerance)) && accept()) {
     leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));
     result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
     select();

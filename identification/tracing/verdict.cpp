@@ -50,9 +50,9 @@ bool is_partial(const Remainder& base, const Remainder& final, double peak) {
   return final.upper <= most_force_left * peak && share_left(base, final) <= most_share_left;
 }
 
-bool worth_a_name(double before, double after, double tolerance) {
+bool worth_a_name(double before, double after, double fall, double tolerance) {
   constexpr double least_fall = 0.9;
-  return before - after > tolerance && after <= least_fall * before;
+  return fall > tolerance && after <= least_fall * before;
 }
 
 bool each_alone(const std::vector<std::vector<std::string>>& classes) {

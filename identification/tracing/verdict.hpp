@@ -57,9 +57,9 @@ inline constexpr double usual_tolerance = 0.01;
 /// Whether what is left is small enough for a partial answer: both limits above. peak: largest force [N].
 [[nodiscard]] bool is_partial(const Remainder& base, const Remainder& final, double peak);
 
-/// Whether an effect lowers the error enough to be named, where a size is asked for: by more than a tenth and by more than
-/// the tolerance. before, after, tolerance [N].
-[[nodiscard]] bool worth_a_name(double before, double after, double tolerance);
+/// Whether an effect lowers the error enough to be named, where a size is asked for: by more than a tenth, and by more than
+/// the tolerance. before, after: the error; fall: of it or of what is left beside the noise; tolerance, all [N].
+[[nodiscard]] bool worth_a_name(double before, double after, double fall, double tolerance);
 
 /// Whether every class has one member: no effect has a rival that the readings cannot tell from it.
 [[nodiscard]] bool each_alone(const std::vector<std::vector<std::string>>& classes);

@@ -227,8 +227,25 @@ TEST(TraceReport, SaysWhenNothingIsMissing) {
   trace.selected.clear();
   trace.significant = false;
   trace.kind = identification::VerdictKind::nothing_missing;
-  expect_all(page_of(trace),
-             {"none missing", "no effect is missing.", "What the base model leaves cannot be told from noise."});
+  expect_all(page_of(trace), {"none missing", "no effect is missing.",
+                              "What the base model leaves is no more than noise and tolerance."});
+}
+
+TEST(TraceReport, SaysWhenWhatMayBeMissingHasNoName) {
+  Trace trace = explained_trace();
+  trace.selected.clear();
+  trace.kind = identification::VerdictKind::nothing_missing;
+  trace.explained = true;
+  trace.decided = false;
+  trace.from_laws = false;
+  trace.tolerance = 1.3;
+  trace.peak_force = 130.0;
+  trace.base.rmse = 1.2;
+  trace.base_tests = {.lack_of_fit = 1e-9, .against_replicates = true, .rmse = 1.2, .noise = 0.4};
+  trace.base_tests.left = {.rmse = 1.1, .upper = 1.5, .p = 1e-9};
+  trace.remaining = {1.1, 1.5, 1.0, ""};
+  expect_all(page_of(trace), {"some 1.1 N of it not noise, less than the tolerance of 1.3 N",
+                              "it may be 1.5 N (1.2 % of the largest force), and no effect of the catalogue lowers"});
 }
 
 TEST(TraceReport, SaysWhatIsLeftOfAPartialAnswer) {

@@ -160,9 +160,9 @@ TEST(Verdict, APartialAnswerLeavesLittle) {
 }
 
 TEST(Verdict, AnEffectThatLowersTheErrorByLittleHasNoName) {
-  EXPECT_TRUE(worth_a_name(1.0, 0.85, 0.1));
-  EXPECT_FALSE(worth_a_name(1.0, 0.95, 0.01));  // less than a tenth
-  EXPECT_FALSE(worth_a_name(1.0, 0.85, 0.2));   // less than the tolerance
+  EXPECT_TRUE(worth_a_name(1.0, 0.85, 0.15, 0.1));
+  EXPECT_FALSE(worth_a_name(1.0, 0.95, 0.05, 0.01));  // less than a tenth
+  EXPECT_FALSE(worth_a_name(1.0, 0.85, 0.15, 0.2));   // less than the tolerance
 }
 
 TEST(Verdict, IsDecidedByAllThatIsAsked) {
