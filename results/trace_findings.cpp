@@ -78,7 +78,7 @@ std::string nothing_missing(const Trace& t) {
         "scatters (p = "
         "{:.2g}); no effect is missing.",
         t.base.numbers.size(), t.rows, t.base_tests.lack_of_fit);
-  } else if (t.base_tests.like_noise() || t.base.rmse <= t.base_tests.noise) {
+  } else if (t.base_tests.within_noise()) {
     text = fmt::format(
         "Nothing missing: the base model explains the readings to the noise (rmse {:.3g} N); no effect "
         "is missing. Hidden in the noise could be up to {:.2g} N rms, {}.",

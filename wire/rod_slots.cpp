@@ -126,46 +126,51 @@ void RodSlots::attach(const RodModel& model, const numerics::SparseMatrix& patte
 
 namespace {
 
+using CellColumn = std::array<double, CellRows::count>;
+
+/// What a cell does to its balances by one of its unknowns: an angle's rate is c times the angle, a place's an unknown of its own.
 template <class Slots>
-void add_all(const Slots& slots, const CellMatrix& m, std::vector<double>& values) {
-  const double* entry = m.data();
-  for (const int slot : slots) RodSlots::add_to(values, slot, *entry++);
+void add_column(const Slots& slots, std::size_t column, const CellColumn& by_place, const CellColumn& by_rate, double c,
+                std::vector<double>& values) {
+  const int* place = slots.place.data() + by_place.size() * column;
+  const int* rate = slots.rate.data() + by_rate.size() * column;
+  const bool angle = column == CellRows::angle_before || column == CellRows::angle_after;
+  for (std::size_t a = 0; a < by_place.size(); ++a) {
+    RodSlots::add_to(values, place[a], angle ? by_place[a] + c * by_rate[a] : by_place[a]);
+    if (!angle) RodSlots::add_to(values, rate[a], by_rate[a]);
+  }
 }
 
 }  // namespace
 
 void RodSlots::add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const {
-  add_all(cells_[base::at(i)].place, by_place, values);
+  const double* entry = by_place.data();
+  for (const int slot : cells_[base::at(i)].place) add_to(values, slot, *entry++);
 }
 
 void RodSlots::add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
                         std::vector<double>& values) const {
-  CellMatrix whole = by_place;
-  for (const int angle : {CellRows::angle_before, CellRows::angle_after}) whole.col(angle) += c * by_rate.col(angle);
-  add_all(cells_[base::at(i)].place, whole, values);
-  add_all(cells_[base::at(i)].rate, by_rate, values);
+  for (std::size_t b = 0; b < CellRows::count; ++b) {
+    CellColumn place, rate;
+    for (std::size_t a = 0; a < CellRows::count; ++a) {
+      place[a] = by_place(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      rate[a] = by_rate(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+    }
+    add_column(cells_[base::at(i)], b, place, rate, c, values);
+  }
 }
 
 void RodSlots::add_cell(int i, const CellProducts& products, double c, std::vector<double>& values) const {
-  constexpr std::size_t n = CellRows::count;
   const auto& [force, place, rate, m] = products;
-  const CellSlots& slots = cells_[base::at(i)];
-  for (std::size_t b = 0; b < n; ++b) {
+  for (std::size_t b = 0; b < CellRows::count; ++b) {
     const auto column = static_cast<Eigen::Index>(b);
-    std::array<double, n> by_place{}, by_rate{};
-    for (std::size_t a = 0; a < n; ++a) {
+    CellColumn by_place, by_rate;
+    for (std::size_t a = 0; a < CellRows::count; ++a) {
       const auto row = static_cast<Eigen::Index>(a);
       by_place[a] = force[0][row] * place[0][column] + force[1][row] * place[1][column] + m(row, column);
       by_rate[a] = force[0][row] * rate[0][column] + force[1][row] * rate[1][column];
     }
-    if (column == CellRows::angle_before || column == CellRows::angle_after) {
-      for (std::size_t a = 0; a < n; ++a) add_to(values, slots.place[n * b + a], by_place[a] + c * by_rate[a]);
-      continue;
-    }
-    for (std::size_t a = 0; a < n; ++a) {
-      add_to(values, slots.place[n * b + a], by_place[a]);
-      add_to(values, slots.rate[n * b + a], by_rate[a]);
-    }
+    add_column(cells_[base::at(i)], b, by_place, by_rate, c, values);
   }
 }
 

@@ -108,8 +108,12 @@ KeyFigure effect_figure(const Trace& trace) {
     const std::string why = partial.empty() ? "no effect of the catalogue fits" : "not settled by " + partial;
     return {label, "not explained", why, Tone::bad};
   }
-  if (unchanged(trace))
-    return {label, "none missing", "what the base model leaves is no more than noise and tolerance", Tone::good};
+  if (unchanged(trace)) {
+    const bool noise = trace.base_tests.within_noise();
+    return {label, "none missing",
+            noise ? "what the base model leaves looks like noise" : "what the base model leaves is not worth a name",
+            Tone::good};
+  }
   if (!trace.decided) {
     const bool likely = identification::each_alone(trace.selected_classes);
     const char* why = likely ? "likely, but not settled" : "these readings cannot tell which";
@@ -292,11 +296,13 @@ void add_tests(ReportPage& page, const Trace& trace) {
 
 void add_residuals(ReportPage& page, const Trace& trace) {
   page.heading("Residuals");
+  const char* left = trace.significant                 ? "is more than noise"
+                     : trace.base_tests.within_noise() ? "cannot be told from noise"
+                                                       : "is not worth a name";
   page.paragraph(
       fmt::format("What a model leaves unexplained: a good one leaves points without pattern, 95 % of them "
-                  "inside the band.{}",
-                  trace.significant ? " What the base model leaves is more than noise."
-                                    : " What the base model leaves is no more than noise and tolerance."));
+                  "inside the band. What the base model leaves {}.",
+                  left));
   for (const Abscissa abscissa : {Abscissa::travel, Abscissa::model_force, Abscissa::time}) {
     const PlotSpecification before = residual_plot(trace, "base", trace.base_predictions, abscissa);
     page.line_plot(before);

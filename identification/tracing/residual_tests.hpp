@@ -22,10 +22,12 @@ struct ResidualTests {
   [[nodiscard]] bool like_noise() const;
   /// At most this much is left, with 95 % confidence [N].
   [[nodiscard]] bool within(double tolerance) const { return left.upper <= tolerance; }
-  /// Nothing worth naming is left: it is like noise, smaller than the noise, or within the tolerance [N].
-  /// Published fits must agree with the computed ones: of them there is no reading whose noise could hide anything.
+  /// What is left is like noise, or smaller than the noise. Published fits must agree with the computed ones: of them there is
+  /// no reading whose noise could hide anything.
+  [[nodiscard]] bool within_noise() const { return like_noise() || (!of_published && rmse <= noise); }
+  /// Nothing worth naming is left: it is within the noise or within the tolerance [N].
   [[nodiscard]] bool acceptable(double tolerance) const {
-    return like_noise() || (!of_published && (rmse <= noise || within(tolerance)));
+    return within_noise() || (!of_published && within(tolerance));
   }
   /// Nothing speaks against the model: what is left is like noise at 5 %, or within the tolerance [N].
   [[nodiscard]] bool agrees(double tolerance) const { return p() > 0.05 || (!of_published && within(tolerance)); }

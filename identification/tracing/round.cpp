@@ -130,12 +130,11 @@ std::string too_small(const Model& model, const Data& data, const Current& now, 
     return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
                        refitted.dof(), refitted.free, fewest_dof(refitted.free));
   }
-  // By the error itself or, where noise hides how much of it falls, by the bound of what is left beside the noise.
-  const auto worth = [&] {
-    return worth_a_name(before, after, before - after, tolerance) ||
-           worth_a_name(before, after, now.left.upper - remainder(model, data, refitted).upper, tolerance);
-  };
-  if (tolerance > 0.0 && !worth()) {
+  double fall = before - after;
+  // Noise hides how much of the error falls: the bound of what is left beside it tells.
+  if (tolerance > 0.0 && fall <= tolerance && after <= least_fall * before)
+    fall = now.left.upper - remainder(model, data, refitted).upper;
+  if (tolerance > 0.0 && !worth_a_name(before, after, fall, tolerance)) {
     return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
                        before - after, tolerance);
   }

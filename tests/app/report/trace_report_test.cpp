@@ -227,13 +227,14 @@ TEST(TraceReport, SaysWhenNothingIsMissing) {
   trace.selected.clear();
   trace.significant = false;
   trace.kind = identification::VerdictKind::nothing_missing;
-  expect_all(page_of(trace), {"none missing", "no effect is missing.",
-                              "What the base model leaves is no more than noise and tolerance."});
+  expect_all(page_of(trace),
+             {"none missing", "no effect is missing.", "What the base model leaves cannot be told from noise."});
 }
 
 TEST(TraceReport, SaysWhenWhatMayBeMissingHasNoName) {
   Trace trace = explained_trace();
   trace.selected.clear();
+  trace.significant = false;
   trace.kind = identification::VerdictKind::nothing_missing;
   trace.explained = true;
   trace.decided = false;
@@ -245,7 +246,8 @@ TEST(TraceReport, SaysWhenWhatMayBeMissingHasNoName) {
   trace.base_tests.left = {.rmse = 1.1, .upper = 1.5, .p = 1e-9};
   trace.remaining = {1.1, 1.5, 1.0, ""};
   expect_all(page_of(trace), {"some 1.1 N of it not noise, less than the tolerance of 1.3 N",
-                              "it may be 1.5 N (1.2 % of the largest force), and no effect of the catalogue lowers"});
+                              "it may be 1.5 N (1.2 % of the largest force), and no effect of the catalogue lowers",
+                              "What the base model leaves is not worth a name."});
 }
 
 TEST(TraceReport, SaysWhatIsLeftOfAPartialAnswer) {
