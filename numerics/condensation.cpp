@@ -56,7 +56,13 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
     first_rate_.push_back(rates_.size());
     for (int s = pattern.column_start[at(v)]; s < pattern.column_start[at(v) + 1]; ++s) {
       const int row = row_index[at(pattern.row[at(s)])];
-      if (row >= 0) rates_.push_back({s, row});
+      if (row < 0) continue;
+      const bool goes_on = rates_.size() > first_rate_.back() && rates_.back().slot + rates_.back().length == s &&
+                           rates_.back().row + rates_.back().length == row;
+      if (goes_on)
+        ++rates_.back().length;
+      else
+        rates_.push_back({s, row, 1});
     }
   }
   first_rate_.push_back(rates_.size());
@@ -88,8 +94,11 @@ void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::Vect
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     given_[k] = b[pairs_[k].first] / pivot_[k];
     if (given_[k] == 0.0) continue;
-    for (std::size_t e = first_rate_[k]; e < first_rate_[k + 1]; ++e)
-      reduced[rates_[e].row] -= full.value[at(rates_[e].slot)] * given_[k];
+    for (std::size_t e = first_rate_[k]; e < first_rate_[k + 1]; ++e) {
+      const Run& run = rates_[e];
+      const Eigen::Map<const Eigen::VectorXd> entries(full.value.data() + run.slot, run.length);
+      reduced.segment(run.row, run.length) -= given_[k] * entries;
+    }
   }
 }
 

@@ -34,9 +34,9 @@ class Condensation {
   void expand(const Eigen::VectorXd& reduced, Eigen::Ref<Eigen::VectorXd> x) const;
 
  private:
-  /// Of the column of a rate: a slot of the full matrix, and the row of what is left that has it.
-  struct RateEntry {
-    int slot = 0, row = 0;
+  /// Entries of the column of a rate that follow each other: slots of the full matrix, and rows of what is left.
+  struct Run {
+    int slot = 0, row = 0, length = 0;
   };
 
   SparseMatrix matrix_;
@@ -45,7 +45,7 @@ class Condensation {
   std::vector<int> target_;                    // of every slot of the full pattern; -1: none
   std::vector<int> pair_of_;                   // of every full column: the pair whose v it is; -1: none
   std::vector<int> own_slot_, rate_slot_;      // of a and b
-  std::vector<RateEntry> rates_;               // pair by pair
+  std::vector<Run> rates_;                     // pair by pair
   std::vector<std::size_t> first_rate_;        // of every pair
   std::vector<double> ratio_, pivot_, given_;  // -a/b, b, and r/b of every pair
 };

@@ -1,6 +1,9 @@
 #include "numerics/newton_solver.hpp"
 
+#include "numerics/correction_guess.hpp"
 #include "numerics/quasi_newton.hpp"
+
+#include <idas/idas.h>
 
 #include <optional>
 #include <utility>
@@ -9,15 +12,23 @@ namespace snare::numerics {
 
 namespace {
 
-constexpr int most = 4;             // iterations, but for those after a renewal
-constexpr int most_corrected = 12;  // with a matrix of an earlier step that is corrected: a new one costs ten
+constexpr int most_with_own = 8;    // iterations with a matrix of the step, but for those after a renewal
+constexpr int most_with_old = 4;    // with that of an earlier step: a new one costs about as much
+constexpr int most_corrected = 12;  // with such a one that is corrected
 constexpr double slow = 0.25;       // rate of convergence beyond which a new matrix pays
+constexpr double on_its_way = 0.5;  // rate below which what an old matrix has corrected is kept
+// Of the share, with a matrix of another leading coefficient. Forces within are in balance whatever the matrix; with the inertia of
+// another step momentum is not.
+constexpr double with_other_inertia = 0.2;
 
 struct Newton {
   IdaCallbacks& callbacks;
   N_Vector step;  // workspace
   int most_renewals;
   std::optional<QuasiNewton> corrected;  // where a step may have renewals
+  CorrectionGuess guess{};
+  double coefficient = 0.0;  // leading one, of the matrix
+  bool worn = false;         // the matrix of an earlier step took as many iterations as a new one costs
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -35,6 +46,25 @@ SUNNonlinearSolver_Type snare_newton_type(SUNNonlinearSolver) {
   return SUNNONLINEARSOLVER_ROOTFIND;
 }
 
+// A start of IDA.
+int snare_newton_initialize(SUNNonlinearSolver solver) {
+  content(solver).guess.restart();
+  content(solver).worn = false;
+  return SUN_NLS_SUCCESS;
+}
+
+// The state that is corrected and the order and length of the step, as IDA tries it.
+void guess_correction(CorrectionGuess& guess, void* ida, N_Vector correction) {
+  long accepted = 0;
+  int order = 0;
+  double time = 0.0, step = 0.0;
+  static_cast<void>(IDAGetNumSteps(ida, &accepted));
+  static_cast<void>(IDAGetCurrentOrder(ida, &order));
+  static_cast<void>(IDAGetCurrentTime(ida, &time));
+  static_cast<void>(IDAGetCurrentStep(ida, &step));
+  guess.begin(accepted, time - step, time, order, map(correction));
+}
+
 int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector weight, realtype share,
                        booleantype call_setup, void* memory) {
   Newton& self = content(solver);
@@ -42,10 +72,17 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
   self.iterations = self.failures = 0;  // IDA adds them up
   booleantype current = SUNFALSE;       // whether the matrix is of this step
   bool bad = false;
+  double coefficient = 0.0;  // of the step
+  static_cast<void>(IDAGetCurrentCj(memory, &coefficient));
+  guess_correction(self.guess, memory, correction);
+  if (self.worn) call_setup = SUNTRUE;
+  self.worn = false;
   while (true) {
     int code = self.system(correction, self.step, memory);
-    if (code == SUN_NLS_SUCCESS && call_setup != SUNFALSE)
+    if (code == SUN_NLS_SUCCESS && call_setup != SUNFALSE) {
       code = self.setup(bad ? SUNTRUE : SUNFALSE, &current, memory);
+      self.coefficient = coefficient;
+    }
     if (code != SUN_NLS_SUCCESS) {  // no matter of the matrix
       ++self.failures;
       return code;
@@ -60,9 +97,16 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       if (code != SUN_NLS_SUCCESS) break;
       if (self.corrected) self.corrected->update(step, map(weight));
       map(correction) += step;
-      const int last = current != SUNFALSE ? most + self.most_renewals : self.corrected ? most_corrected : most;
-      code = callbacks.converged(k, {share, last, current != SUNFALSE}, step, map(weight));
-      if (code == SUN_NLS_SUCCESS) return SUN_NLS_SUCCESS;
+      const int last = current != SUNFALSE ? most_with_own + self.most_renewals
+                       : self.corrected    ? most_corrected
+                                           : most_with_old;
+      const double of_share = self.coefficient == coefficient ? 1.0 : with_other_inertia;
+      code = callbacks.converged(k, {of_share * share, last, current != SUNFALSE}, step, map(weight));
+      if (code == SUN_NLS_SUCCESS) {
+        self.worn = current == SUNFALSE && k + 1 >= most_with_old;
+        self.guess.end(map(correction), map(weight));
+        return SUN_NLS_SUCCESS;
+      }
       if (code != SUN_NLS_CONTINUE) break;
       if (k + 1 >= last) {
         code = SUN_NLS_CONV_RECVR;
@@ -79,10 +123,11 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
     }
     ++self.failures;
     if (code <= 0 || current != SUNFALSE) return code;
-    // With a matrix of this step once more.
+    // With a matrix of this step once more, from where the old one was on its way to.
     call_setup = SUNTRUE;
     bad = true;
-    map(correction).setZero();
+    if (!(code == SUN_NLS_CONV_RECVR && callbacks.rate < on_its_way && map(correction).allFinite()))
+      map(correction).setZero();
   }
 }
 
@@ -128,6 +173,7 @@ SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, in
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;
   solver->ops->free = snare_newton_free;
+  solver->ops->initialize = snare_newton_initialize;
   solver->ops->setsysfn = snare_newton_set_system;
   solver->ops->setlsetupfn = snare_newton_set_setup;
   solver->ops->setlsolvefn = snare_newton_set_solve;

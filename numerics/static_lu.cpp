@@ -67,17 +67,6 @@ std::vector<int> elimination_order(const SparseMatrix& matrix) {
 /// Four numbers at once, where they are.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 
-/// Four numbers for every row of a block, zero at first.
-template <int rows>
-struct Fours {
-  struct Lanes {
-    Four numbers = {};
-  };
-  std::array<Lanes, rows> of_row;
-
-  Four& operator[](std::size_t row) { return of_row[row].numbers; }
-};
-
 /// The work on a block of one to four rows, whose number the compiler knows.
 template <class Work>
 [[gnu::always_inline]] inline void by_rows(int rows, const Work& work) {
@@ -153,66 +142,32 @@ bool StaticLu::eliminate_in_pairs() {
   return eliminate();
 }
 
-// A value of the vector is taken once for all rows of a block; four products at a time, added up in one order whatever the
-// processor takes at once.
-template <int rows>
-[[gnu::always_inline]] inline std::array<double, rows> StaticLu::add_up(const std::array<int, rows>& begin,
-                                                                        const Block& block) const {
-  Fours<rows> four;
-  std::array<double, rows> sums{};
-  for (int k = block.first; k < block.last; ++k) {
-    const Stretch& s = stretches_[at(k)];
-    const double* const x = work_.data() + s.column;
-    const double* const a = values_.data() + s.offset;
-    int e = 0;
-    for (; e + 4 <= s.length; e += 4) {
-      const Four of_vector = *reinterpret_cast<const Four*>(x + e);
-      for (std::size_t r = 0; r < rows; ++r) four[r] += *reinterpret_cast<const Four*>(a + begin[r] + e) * of_vector;
-    }
-    for (; e < s.length; ++e) {
-      for (std::size_t r = 0; r < rows; ++r) sums[r] += a[begin[r] + e] * x[e];
-    }
+// The four rows of a block are the four numbers at once: what a column takes from them needs one number of the vector. Rows that a
+// block does not have are others' and stay: nothing is taken from them, and their part of the square is 1.
+[[gnu::always_inline]] inline void StaticLu::solve_block(const Block& block, const double* inverse) {
+  const Four* const entries = reinterpret_cast<const Four*>(columns_.data()) + block.first;
+  const Four* const square = reinterpret_cast<const Four*>(inverse);
+  const int* const column = listed_.data() + block.first;
+  const int count = block.last - block.first;
+  double* const x = work_.data();
+  Four* const own = reinterpret_cast<Four*>(x + block.row);
+  Four even = *own, odd = {};
+  int k = 0;
+  for (; k + 2 <= count; k += 2) {
+    even -= x[column[k]] * entries[k];
+    odd -= x[column[k + 1]] * entries[k + 1];
   }
-  for (std::size_t r = 0; r < rows; ++r) sums[r] += (four[r][0] + four[r][2]) + (four[r][1] + four[r][3]);
-  return sums;
-}
-
-template <int rows>
-[[gnu::always_inline]] inline void StaticLu::forward(const Block& block) {
-  std::array<int, rows> begin;
-  for (int r = 0; r < rows; ++r) begin[at(r)] = start_[at(block.row + r)];
-  std::array<double, rows> x = add_up<rows>(begin, block);
-  for (int r = 0; r < rows; ++r) {
-    const double* const row = values_.data() + diagonal_[at(block.row + r)] - r;
-    double value = work_[block.row + r] - x[at(r)];
-    for (int q = 0; q < r; ++q) value -= row[q] * x[at(q)];
-    x[at(r)] = value;
-  }
-  for (int r = 0; r < rows; ++r) work_[block.row + r] = x[at(r)];
-}
-
-template <int rows>
-[[gnu::always_inline]] inline void StaticLu::backward(const Block& block) {
-  std::array<int, rows> begin;
-  for (int r = 0; r < rows; ++r) begin[at(r)] = diagonal_[at(block.row + r)] + rows - r;
-  std::array<double, rows> x = add_up<rows>(begin, block);
-  for (int r = rows - 1; r >= 0; --r) {
-    const double* const row = values_.data() + diagonal_[at(block.row + r)] - r;
-    double value = work_[block.row + r] - x[at(r)];
-    for (int q = rows - 1; q > r; --q) value -= row[q] * x[at(q)];
-    x[at(r)] = value * inverse_[at(block.row + r)];
-  }
-  for (int r = 0; r < rows; ++r) work_[block.row + r] = x[at(r)];
+  if (k < count) even -= x[column[k]] * entries[k];
+  even += odd;
+  *own = (even[0] * square[0] + even[1] * square[1]) + (even[2] * square[2] + even[3] * square[3]);
 }
 
 [[gnu::always_inline]] inline void StaticLu::substitute() {
-  for (const int i : alone_) work_[i] *= inverse_[at(i)];
-  for (const Block& b : before_)
-    by_rows(
-        b.rows, [&](auto rows) __attribute__((always_inline)) { forward<rows>(b); });
-  for (const Block& b : behind_)
-    by_rows(
-        b.rows, [&](auto rows) __attribute__((always_inline)) { backward<rows>(b); });
+  for (const int i : alone_) work_[at(i)] *= inverse_[at(i)];
+  const double* square = inverse_before_.data();
+  for (const Block& b : before_) solve_block(b, std::exchange(square, square + most_rows * most_rows));
+  square = inverse_behind_.data();
+  for (const Block& b : behind_) solve_block(b, std::exchange(square, square + most_rows * most_rows));
 }
 
 [[gnu::target("avx2")]] void StaticLu::substitute_in_fours() {
@@ -221,6 +176,32 @@ template <int rows>
 
 void StaticLu::substitute_in_pairs() {
   substitute();
+}
+
+// L of a square has ones on its diagonal, U the pivots.
+void StaticLu::invert_square(const Block& block, bool upper, double* inverse) const {
+  const auto entry = [&](int r, int s) { return values_[at(diagonal_[at(block.row + r)] + s - r)]; };
+  const auto of = [inverse](int r, int s) -> double& { return inverse[most_rows * s + r]; };
+  std::fill_n(inverse, most_rows * most_rows, 0.0);
+  for (int r = block.rows; r < most_rows; ++r) of(r, r) = 1.0;
+  for (int s = 0; s < block.rows; ++s) {
+    of(s, s) = upper ? inverse_[at(block.row + s)] : 1.0;
+    for (int r = s + 1; !upper && r < block.rows; ++r) {
+      for (int q = s; q < r; ++q) of(r, s) -= entry(r, q) * of(q, s);
+    }
+    for (int r = s - 1; upper && r >= 0; --r) {
+      for (int q = r + 1; q <= s; ++q) of(r, s) -= entry(r, q) * of(q, s);
+      of(r, s) *= inverse_[at(block.row + r)];
+    }
+  }
+}
+
+void StaticLu::gather() {
+  for (std::size_t k = 0; k < entry_.size(); ++k) columns_[k] = values_[at(entry_[k])];
+  double* square = inverse_before_.data();
+  for (const Block& b : before_) invert_square(b, false, std::exchange(square, square + most_rows * most_rows));
+  square = inverse_behind_.data();
+  for (const Block& b : behind_) invert_square(b, true, std::exchange(square, square + most_rows * most_rows));
 }
 
 void StaticLu::list_blocks() {
@@ -236,36 +217,42 @@ void StaticLu::list_blocks() {
     const auto others = behind(i - 1);
     return !others.empty() && others.front() == i && std::ranges::equal(others.subspan(1), behind(i));
   };
-  const auto list = [&](std::span<const int> columns) {
-    for (std::size_t e = 0; e < columns.size(); ++e) {
-      if (e > 0 && columns[e] == columns[e - 1] + 1)
-        ++stretches_.back().length;
-      else
-        stretches_.push_back({static_cast<int>(e), columns[e], 1});
+  const int none = static_cast<int>(column_.size());  // behind the entries: zero
+  const auto list = [&](int row, int rows, std::span<const int> columns, const auto& first_entry) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      listed_.push_back(columns[c]);
+      for (int r = 0; r < most_rows; ++r)
+        entry_.push_back(r < rows ? first_entry(row + r, r) + static_cast<int>(c) : none);
     }
   };
-  const auto join = [&](std::vector<Block>& blocks, const auto& same, const auto& columns) {
+  const auto join = [&](std::vector<Block>& blocks, const auto& same, const auto& columns, const auto& first_entry) {
     for (int i = 0; i < order_;) {
       int end = i + 1;
       while (end < std::min(order_, i + most_rows) && same(end)) ++end;
       if (!before(i).empty() || !behind(i).empty()) {
-        const auto first = static_cast<int>(stretches_.size());
-        list(columns(i, end));
-        blocks.push_back({i, end - i, first, static_cast<int>(stretches_.size())});
+        const auto first = static_cast<int>(listed_.size());
+        list(i, end - i, columns(i, end), [&](int row, int r) { return first_entry(row, end - i, r); });
+        blocks.push_back({i, end - i, first, static_cast<int>(listed_.size())});
       }
       i = end;
     }
   };
-  join(before_, same_before, [&](int i, int) { return before(i); });
-  join(behind_, same_behind, [&](int, int end) { return behind(end - 1); });
+  join(
+      before_, same_before, [&](int i, int) { return before(i); }, [&](int row, int, int) { return start_[at(row)]; });
+  join(
+      behind_, same_behind, [&](int, int end) { return behind(end - 1); },
+      [&](int row, int rows, int r) { return diagonal_[at(row)] + rows - r; });
   std::ranges::reverse(behind_);
   for (int i = 0; i < order_; ++i) {
     if (before(i).empty() && behind(i).empty()) alone_.push_back(i);
   }
+  columns_.assign(entry_.size(), 0.0);
+  inverse_before_.assign(most_rows * most_rows * before_.size(), 0.0);
+  inverse_behind_.assign(most_rows * most_rows * behind_.size(), 0.0);
 }
 
 StaticLu::StaticLu(const SparseMatrix& matrix)
-    : order_(matrix.order), unknown_(elimination_order(matrix)), work_(order_) {
+    : order_(matrix.order), unknown_(elimination_order(matrix)), work_(at(order_ + most_rows), 0.0) {
   std::vector<int> place(at(order_));
   for (int k = 0; k < order_; ++k) place[at(unknown_[at(k)])] = k;
   // After row k is used, every later row that has k has what k has: columns beyond k of the pattern of A + A^T and of the rows
@@ -302,7 +289,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
   }
   start_.push_back(static_cast<int>(column_.size()));
   list_blocks();
-  values_.assign(column_.size(), 0.0);
+  values_.assign(column_.size() + 1, 0.0);
   inverse_.assign(at(order_), 0.0);
   std::vector<std::vector<int>> slots(at(order_));  // of the matrix, by row
   std::vector<int> column_of(matrix.row.size());
@@ -345,16 +332,18 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
 bool StaticLu::factorize(const SparseMatrix& matrix) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (std::size_t s = 0; s < target_.size(); ++s) values_[at(target_[s])] = matrix.value[s];
-  return has_fours() ? eliminate_in_fours() : eliminate_in_pairs();
+  if (!(has_fours() ? eliminate_in_fours() : eliminate_in_pairs())) return false;
+  gather();
+  return true;
 }
 
 void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
-  for (int i = 0; i < order_; ++i) work_[i] = b[unknown_[at(i)]];
+  for (int i = 0; i < order_; ++i) work_[at(i)] = b[unknown_[at(i)]];
   if (has_fours())
     substitute_in_fours();
   else
     substitute_in_pairs();
-  for (int i = 0; i < order_; ++i) b[unknown_[at(i)]] = work_[i];
+  for (int i = 0; i < order_; ++i) b[unknown_[at(i)]] = work_[at(i)];
 }
 
 }  // namespace snare::numerics

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <vector>
 
 namespace snare::numerics {
@@ -36,15 +35,11 @@ class StaticLu {
     int common = 0;         // how many last entries of these rows have the same columns
     int first_run = 0;      // up to that of the next elimination
   };
-  /// Entries of a row whose columns follow each other.
-  struct Stretch {
-    int offset = 0;  // behind the row's first one
-    int column = 0, length = 0;
-  };
-  /// Rows that follow each other and have the same columns before or behind their square on the diagonal.
+  /// Rows that follow each other and have the same columns before or behind their square on the diagonal. Each column's entries are
+  /// together, four whatever the rows; so are those of the inverse of the square.
   struct Block {
     int row = 0, rows = 0;
-    int first = 0, last = 0;  // stretches
+    int first = 0, last = 0;  // columns, of those listed
   };
   static constexpr int most_rows = 4;  // of a block
 
@@ -55,13 +50,11 @@ class StaticLu {
   [[nodiscard]] bool eliminate();
   [[nodiscard]] bool eliminate_in_fours();
   [[nodiscard]] bool eliminate_in_pairs();
-  /// Sums of products of a block's rows with work_, over its stretches; begin: in values_, of every row.
-  template <int rows>
-  [[nodiscard]] std::array<double, rows> add_up(const std::array<int, rows>& begin, const Block& block) const;
-  template <int rows>
-  void forward(const Block& block);
-  template <int rows>
-  void backward(const Block& block);
+  /// The entries of the blocks, from those of the rows; and the inverses of their squares.
+  void gather();
+  void invert_square(const Block& block, bool upper, double* inverse) const;
+  /// x = S^-1 (x - sum of the columns times what they stand for), S the square of the block.
+  void solve_block(const Block& block, const double* inverse);
   /// Solves in the order of the rows, in work_.
   void substitute();
   void substitute_in_fours();
@@ -76,12 +69,15 @@ class StaticLu {
   std::vector<Elimination> eliminations_;  // row by row
   std::vector<int> first_elimination_;     // of every row
   std::vector<Run> runs_;
-  std::vector<double> inverse_;  // of the pivots
-  std::vector<int> alone_;       // rows with nothing but a diagonal
-  std::vector<Block> before_;    // of the others, by what is before the diagonal
-  std::vector<Block> behind_;    // by what is behind it, from the last row on
-  std::vector<Stretch> stretches_;
-  Eigen::VectorXd work_;
+  std::vector<double> inverse_;                          // of the pivots
+  std::vector<int> alone_;                               // rows with nothing but a diagonal
+  std::vector<Block> before_;                            // of the others, by what is before the diagonal
+  std::vector<Block> behind_;                            // by what is behind it, from the last row on
+  std::vector<int> listed_;                              // columns of the blocks
+  std::vector<int> entry_;                               // of each of their rows, in values_; four a column
+  std::vector<double> columns_;                          // of the blocks, four numbers a column
+  std::vector<double> inverse_before_, inverse_behind_;  // of their squares, four columns a block
+  std::vector<double> work_;                             // with room behind for a last block's four
 };
 
 }  // namespace snare::numerics

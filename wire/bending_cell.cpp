@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 
-#include <cmath>
-
 namespace snare::wire {
 
 using Eigen::Matrix3d;
@@ -85,7 +83,7 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
       return frame.tangent;
     }
     directors = instant.directors[base::at(e)];
-    inverse_length = 1.0 / std::sqrt((vertex(state, e + 1) - vertex(state, e)).squaredNorm());
+    inverse_length = instant.inverse_lengths[base::at(e)];
     rate[angle] = at.rate[model.angle_of(e)];
     return state.frames[base::at(e)].tangent;
   };

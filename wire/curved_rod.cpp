@@ -39,15 +39,16 @@ struct Edge {
   EdgeBeam beam;
 };
 
-Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
+Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e,
+             EdgeDerivatives wanted = EdgeDerivatives::second) {
   const Vector3d d = vertex(instant.state, e + 1) - vertex(instant.state, e);
   const double chord = d.norm();
   const EdgeBeamConstants constants{model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)};
-  return {d / chord, chord, edge_beam(constants, chord, near, far)};
+  return {d / chord, chord, edge_beam(constants, chord, near, far, wanted)};
 }
 
-Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e) {
-  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e);
+Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e, EdgeDerivatives wanted) {
+  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e, wanted);
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ void add_curved_edges(const RodModel& model, const RodInstant& instant, const Da
   const double bent = 0.5 * stiffness_of(model).dot(natural.cwiseAbs2());
   by_curvature.setZero(2, n + 1);
   for (int e = 0; e < n; ++e) {
-    const Edge edge = edge_of(model, instant, at, e);
+    const Edge edge = edge_of(model, instant, at, e, EdgeDerivatives::first);
     const Vector3d force = edge.beam.tension * edge.tangent;
     out.energy += edge.beam.energy + bent * model.rest_length(e);
     out.gradient.segment<3>(RodModel::block * e) -= force;
@@ -92,7 +93,7 @@ void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const
   std::vector<Coupling> coupling(base::at(n + 1), Coupling::Zero());
   std::vector<Eigen::Matrix2d> own(base::at(n + 1), Eigen::Matrix2d::Zero());
   for (int e = 0; e < n; ++e) {
-    const Edge edge = edge_of(model, instant, at, e);
+    const Edge edge = edge_of(model, instant, at, e, EdgeDerivatives::second);
     const auto& h = edge.beam.hessian;
     const double lateral = edge.beam.tension / edge.chord;
     const Matrix3d along = edge.tangent * edge.tangent.transpose();

@@ -88,7 +88,8 @@ Flexibilities flexibilities(double z) {
   return {by_z({y, y1, y2}, rest), by_z({g, g1, g2}, rest)};
 }
 
-EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& near, const Vector2d& far) {
+EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& near, const Vector2d& far,
+                   EdgeDerivatives wanted) {
   const double h = p.rest;
   const Vector2d& ei = p.bending_stiffness;
   const Vector2d sum = near + far;
@@ -125,9 +126,9 @@ EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& nea
     const double change = (chord - h - tension * compliance - bow) / (compliance + by_tension_twice);
     tension += change;
     // The next change would be of the order of the square of this one.
-    constexpr double near = 1e-6;
+    constexpr double small = 1e-6;
     const Vector2d dz = by_stiffness(tension) - z;
-    if (dz.cwiseAbs().maxCoeff() > near && std::abs(change) > 1e-15 * p.axial_stiffness) continue;
+    if (dz.cwiseAbs().maxCoeff() > small && std::abs(change) > 1e-15 * p.axial_stiffness) continue;
     lever = 1.0 + 2.0 * tension / p.axial_stiffness;
     for (std::size_t j = 0; j < 2; ++j) {
       advance(of[j].alike, dz[static_cast<Eigen::Index>(j)]);
@@ -140,6 +141,14 @@ EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& nea
   b.tension = tension;
   b.energy = tension * (chord - h) - 0.5 * tension * tension * compliance;
   b.gradient[EdgeBeam::chord] = tension;
+  for (int j = 0; j < 2; ++j) {
+    const auto& [c, d] = of[static_cast<std::size_t>(j)];
+    b.energy -= 0.25 * h * ei[j] * (c.value * s2[j] + d.value * d2[j]);
+    b.gradient[EdgeBeam::near + j] = -0.5 * h * ei[j] * (c.value * sum[j] + d.value * difference[j]);
+    b.gradient[EdgeBeam::far + j] = -0.5 * h * ei[j] * (c.value * sum[j] - d.value * difference[j]);
+  }
+  if (wanted == EdgeDerivatives::first) return b;
+
   Eigen::Matrix<double, EdgeBeam::count, 1> by_tension;  // d2/dN d(l, k)
   by_tension[EdgeBeam::chord] = 1.0;
   b.hessian.setZero();
@@ -147,9 +156,6 @@ EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& nea
     const auto& [c, d] = of[static_cast<std::size_t>(j)];
     const int a = EdgeBeam::near + j;
     const int z = EdgeBeam::far + j;
-    b.energy -= 0.25 * h * ei[j] * (c.value * s2[j] + d.value * d2[j]);
-    b.gradient[a] = -0.5 * h * ei[j] * (c.value * sum[j] + d.value * difference[j]);
-    b.gradient[z] = -0.5 * h * ei[j] * (c.value * sum[j] - d.value * difference[j]);
     by_tension[a] = -0.5 * cube * lever * (c.first * sum[j] + d.first * difference[j]);
     by_tension[z] = -0.5 * cube * lever * (c.first * sum[j] - d.first * difference[j]);
     b.hessian(a, a) = b.hessian(z, z) = -0.5 * h * ei[j] * (c.value + d.value);

@@ -24,11 +24,13 @@ struct EdgeBeam {
   double energy = 0.0;   ///< [J]
   double tension = 0.0;  ///< N [N]
   Eigen::Matrix<double, count, 1> gradient;
-  Eigen::Matrix<double, count, count> hessian;
+  Eigen::Matrix<double, count, count> hessian;  ///< only where it is asked for
 };
+/// Which derivatives of an edge's energy are wanted.
+enum class EdgeDerivatives { first, second };
 /// chord: l [m], > 0; near, far: k_a, k_b [1/m].
 [[nodiscard]] EdgeBeam edge_beam(const EdgeBeamConstants& constants, double chord, const Eigen::Vector2d& near,
-                                 const Eigen::Vector2d& far);
+                                 const Eigen::Vector2d& far, EdgeDerivatives wanted = EdgeDerivatives::second);
 
 /// A flexibility of a beam under tension and its derivatives by z.
 struct Flexibility {

@@ -86,12 +86,16 @@ void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, con
   }
 }
 
-void RodInstant::take_directors() {
+void RodInstant::take_edges() {
   directors.resize(state.frames.size());
-  for (std::size_t e = 0; e < directors.size(); ++e) {
+  inverse_lengths.resize(state.frames.size());
+  const double* near = state.q.data();
+  for (std::size_t e = 0; e < directors.size(); ++e, near += SpatialState::block) {
+    const double* far = near + SpatialState::block;
+    inverse_lengths[e] =
+        1.0 / std::sqrt(Eigen::Vector3d(far[0] - near[0], far[1] - near[1], far[2] - near[2]).squaredNorm());
     const Frame& frame = state.frames[e];
-    const Eigen::Vector3d first =
-        turned_director(frame, state.q[SpatialState::block * static_cast<Eigen::Index>(e) + SpatialState::angle]);
+    const Eigen::Vector3d first = turned_director(frame, near[SpatialState::angle]);
     directors[e] = {first, frame.tangent.cross(first)};
   }
 }

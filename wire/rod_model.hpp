@@ -114,10 +114,11 @@ class RodModel {
 struct RodInstant {
   SpatialState state;
   std::vector<Directors> directors;                    ///< material ones of the edges
+  std::vector<double> inverse_lengths;                 ///< of the edges [1/m]
   std::array<std::optional<Eigen::Vector3d>, 2> spin;  ///< of mounts that move, in the world [rad/s]
 
-  /// Sets the directors from the state's frames and angles.
-  void take_directors();
+  /// Sets what is of the edges from the state.
+  void take_edges();
 };
 
 }  // namespace snare::wire

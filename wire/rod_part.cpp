@@ -48,7 +48,7 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
     if (velocities.cols() == n) y.segment<3>(velocity_of(i)) = velocities.col(i);
   }
   accepted_.state = rod().make_state(q, model_.controls());
-  accepted_.take_directors();
+  accepted_.take_edges();
   accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);
@@ -95,7 +95,7 @@ void RodPart::evaluate(const DaePoint& at) {
   trial_.state = accepted_.state;
   set_mounts(at.y, trial_);
   wire::accept(trial_.state, band_);
-  trial_.take_directors();
+  trial_.take_edges();
   rod().assemble_forces(trial_.state, assembly_);
   if (model_.is_curved()) add_curved_edges(model_, trial_, at, assembly_, by_curvature_);
   losses_.power = losses_.strand_energy = 0.0;
@@ -261,7 +261,7 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
     for (int k = 0; k < 3; ++k) f.director[k] = numerics::take(memory);
   }
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
-  accepted_.take_directors();
+  accepted_.take_edges();
   accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);

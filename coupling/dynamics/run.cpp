@@ -20,7 +20,7 @@ using numerics::DaePoint;
 namespace {
 
 // Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
-constexpr double share_of_rods = 5e-5;
+constexpr double share_of_rods = 2e-4;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 // Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
 constexpr double matrix_change_without_waves = 0.5;

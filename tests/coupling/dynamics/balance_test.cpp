@@ -242,7 +242,7 @@ TEST(MotionState, RunsAtTheSameTimeGiveTheSameBits) {
 
 TEST(MotionState, AnEndedMotionGoesOn) {
   const Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
-  MotionOptions options;
+  MotionOptions options = test::fine_tolerances();
   options.duration = 0.02;
   const MotionResult half = simulate(motion, options);
   options.duration = 0.04;
