@@ -61,7 +61,7 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   static constexpr Choice<wire::SpatialEnd::Kind> mounts[] = {{"clamped", wire::SpatialEnd::Kind::clamp},
                                                               {"pinned", wire::SpatialEnd::Kind::twisting_pin}};
   const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
-  w.wire.rod.elements = table.integer_or("elements", 60, 8, 20000);
+  w.wire.rod.elements = table.integer_or("elements", 40, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
   const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, beside);
   w.wire.rod.quasi_static = stand_in.quasi_static;

@@ -125,8 +125,8 @@ coupling::WireStrength read_strength(const TomlTable& table, const wire::WireSpe
 wire::Formulation read_formulation(const TomlTable& table) {
   static constexpr Choice<wire::Formulation> formulations[] = {{"vertices", wire::Formulation::vertices},
                                                                {"higher_order", wire::Formulation::higher_order}};
-  if (!table.has("formulation")) return wire::Formulation::vertices;
-  return table.choice("formulation", formulations).value_or(wire::Formulation::vertices);
+  if (!table.has("formulation")) return wire::Formulation::higher_order;
+  return table.choice("formulation", formulations).value_or(wire::Formulation::higher_order);
 }
 
 coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, std::string_view dynamic_key) {

@@ -158,6 +158,14 @@ Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant, con
   return VertexTurning(cell).by_rotation(moment_at(model, at, i));
 }
 
+double curved_tension(const RodModel& model, const RodInstant& instant, const DaePoint& at, int edge) {
+  return edge_of(model, instant, at, edge, EdgeDerivatives::first).beam.tension;
+}
+
+Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {
+  return moment_at(model, at, vertex);
+}
+
 // Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite.
 Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, const DaePoint& at) {
   const int n = model.edges();

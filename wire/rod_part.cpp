@@ -279,6 +279,25 @@ double RodPart::mount_error(const numerics::VectorView& y) const {
   return worst;
 }
 
+RodPart::SectionLoads RodPart::section_loads(const DaePoint& at) {
+  SectionLoads loads{Eigen::VectorXd::Zero(model_.edges()), Eigen::VectorXd::Zero(vertices())};
+  if (model_.is_curved()) {
+    evaluate(at);
+    for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] = curved_tension(model_, trial_, at, e);
+    for (int i = 0; i < vertices(); ++i) loads.bending_moments[i] = curved_moments(model_, at, i).norm();
+    return loads;
+  }
+  const SpatialState& state = state_at(at);
+  loads.tensions = rod().tensions(state);
+  const Matrix3Xd moments = rod().moments(state);
+  const auto tangent = [&](int e) { return Vector3d((vertex(state, e + 1) - vertex(state, e)).normalized()); };
+  for (int i = 0; i < vertices(); ++i) {
+    const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
+    loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
+  }
+  return loads;
+}
+
 RodPart::LeftOut RodPart::left_out(const numerics::VectorView& y) const {
   LeftOut sum;
   for (int i = 0; i < vertices(); ++i) {

@@ -99,6 +99,13 @@ class RodPart final : public numerics::DaePart {
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
 
+  /// What its section bears at a point, without damping and strands.
+  struct SectionLoads {
+    Eigen::VectorXd tensions;         ///< of the edges [N]
+    Eigen::VectorXd bending_moments;  ///< of the vertices, >= 0 [N m]
+  };
+  [[nodiscard]] SectionLoads section_loads(const numerics::DaePoint& at);
+
   /// What a quasi-static wire would have more, were all its mass counted.                      theory.md (M.18)
   struct LeftOut {
     double kinetic = 0.0;                                ///< [J]

@@ -28,15 +28,14 @@ VertexTurning::VertexTurning(const BendingCell& cell) : cell_(cell) {
   const double by_cosine = -2.0 / (turn.chi * turn.chi);
   share_first_ = first * by_cosine;
   share_second_ = second * by_cosine * by_cosine - 2.0 * first * by_cosine / turn.chi;
-  angles_ = share_ * curvatures(turn, cell.before, cell.after);
+  curvatures_ = curvatures(turn, cell.before, cell.after);
 }
 
 // d(f kappa) = f dkappa + kappa f' dc
 PairGradient VertexTurning::gradient(const Vector2d& weights) const {
   PairGradient g;
-  const WeightedCurvature kappa = curvature(weights);
   curvature(share_ * weights).add_gradient(cell_.inverse, g);
-  add_cosine_gradient(cell_.turn, cell_.inverse, kappa.value() * share_first_, g);
+  add_cosine_gradient(cell_.turn, cell_.inverse, weights.dot(curvatures_) * share_first_, g);
   return g;
 }
 

@@ -14,7 +14,7 @@ class VertexTurning {
   explicit VertexTurning(const BendingCell& cell);
 
   /// phi_1, phi_2 [rad].
-  [[nodiscard]] const Eigen::Vector2d& angles() const { return angles_; }
+  [[nodiscard]] Eigen::Vector2d angles() const { return share_ * curvatures_; }
   /// Derivative of w_1 phi_1 + w_2 phi_2 by edges and angles of twist, the weights constant and of any unit.
   [[nodiscard]] PairGradient gradient(const Eigen::Vector2d& weights) const;
   [[nodiscard]] PairHessian hessian(const Eigen::Vector2d& weights) const;
@@ -27,7 +27,7 @@ class VertexTurning {
   }
   const BendingCell& cell_;
   double share_, share_first_, share_second_;  // f and its derivatives by c
-  Eigen::Vector2d angles_;
+  Eigen::Vector2d curvatures_;                 // kappa_1, kappa_2
 };
 
 }  // namespace snare::wire

@@ -1,6 +1,5 @@
 #include "coupling/dynamics/strength.hpp"
 
-#include "base/index.hpp"
 #include "wire/rod_part.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace snare::coupling {
 
@@ -23,26 +21,20 @@ WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_
 
 // Tension of the edges with their damping, moments of the vertices without: at a vertex the larger of the tensions beside it.
 StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const DaePoint& at) {
-  const wire::SpatialState& state = rod.state_at(at);
   const wire::RodModel& model = rod.model();
-  const double stiffness = model.properties().axial_stiffness;
-  Eigen::VectorXd tensions = rod.rod().tensions(state);
-  std::vector<Vector3d> tangents;
+  auto [tensions, moments] = rod.section_loads(at);
+  const wire::SpatialState& state = rod.state_at(at);
+  const double viscosity = model.properties().axial_stiffness * model.damping().axial_time;
   for (int e = 0; e < model.edges(); ++e) {
-    tangents.push_back((vertex(state, e + 1) - vertex(state, e)).normalized());
+    const Vector3d tangent = (vertex(state, e + 1) - vertex(state, e)).normalized();
     const Vector3d rate = at.y.segment<3>(rod.velocity_of(e + 1)) - at.y.segment<3>(rod.velocity_of(e));
-    tensions[e] += stiffness * model.damping().axial_time * tangents.back().dot(rate) / model.rest_length(e);
+    tensions[e] += viscosity * tangent.dot(rate) / model.rest_length(e);
   }
-  const Eigen::Matrix3Xd moments = rod.rod().moments(state);
   StrengthUse largest;
   largest.time = at.time;
   for (int i = 0; i < rod.vertices(); ++i) {
-    const int before = std::max(i - 1, 0);
-    const int after = std::min(i, model.edges() - 1);
-    const Vector3d along = (tangents[base::at(before)] + tangents[base::at(after)]).normalized();
-    const Vector3d bending_moment = moments.col(i) - along * along.dot(moments.col(i));
-    const double tension = std::max(tensions[before], tensions[after]);
-    const double bending = strength.bending_force * bending_moment.norm() / model.properties().bending_stiffness;
+    const double tension = std::max(tensions[std::max(i - 1, 0)], tensions[std::min(i, model.edges() - 1)]);
+    const double bending = strength.bending_force * moments[i] / model.properties().bending_stiffness;
     const double share = (tension + bending) / strength.breaking_tension;
     if (share > largest.share) largest = {share, tension, bending, rod.coordinate(i), at.time};
   }

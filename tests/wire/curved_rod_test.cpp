@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -130,6 +131,23 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
   };
   const test::DerivativeError error = test::compare_symmetric_part(gradient, VectorXd::Zero(size), analytic, 1e-2);
   EXPECT_LT(error.relative, 1e-9) << error.worst;
+}
+
+// The turning of a vertex pushes its edges across themselves alone: along the last one the mount feels its tension.
+TEST(CurvedRod, TensionIsWhatTheMountFeels) {
+  SpatialRodProperties properties = test::general_properties();
+  properties.weight.setZero();
+  properties.right.translational_stiffness = std::numeric_limits<double>::infinity();
+  Disturbed d(disturbed_rod(properties), 1.0);
+  for (int i = 0; i < 7; ++i) d.y.segment<3>(d.part.velocity_of(i)).setZero();
+  const numerics::DaePoint at{0.0, d.y, VectorXd::Zero(d.y.size())};
+  const RodPart::SectionLoads loads = d.part.section_loads(at);
+  const Vector3d edge = d.y.segment<3>(d.part.position_of(6)) - d.y.segment<3>(d.part.position_of(5));
+  const double felt = d.part.energies(at).mount_forces[1].dot(edge.normalized());
+  EXPECT_NEAR(loads.tensions[5], felt, 1e-12 * std::abs(felt));
+  const Vector2d bent = d.y.segment<2>(d.part.model().curvature_of(3)) - properties.natural_curvature;
+  const Vector2d stiffness(properties.bending_stiffness, properties.second_bending_stiffness);
+  EXPECT_DOUBLE_EQ(loads.bending_moments[3], stiffness.cwiseProduct(bent).norm());
 }
 
 // In a plane, with damping and at rates. Out of it the holonomy of the frames, which the Jacobian leaves out, acts through
