@@ -89,7 +89,7 @@ extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vec
 // IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
 // unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
 // quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10. What
-// would not get there with an old matrix within the iterations that are left is given up at once: they would be lost.
+// would not get there with its matrix within the iterations that are left is given up at once: they would be lost.
 int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::Ref<const Eigen::VectorXd>& step,
                             const Eigen::Ref<const Eigen::VectorXd>& weight) {
   constexpr double best_rate = 0.1;
@@ -111,7 +111,7 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
     if (rate > worst_rate) return give_up();
     remainder = rate / (1.0 - rate);
     const int left = at.most - 1 - iteration;
-    if (!at.current && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share) return give_up();
+    if (!at.renewable && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share) return give_up();
   }
   last_correction = size;
   if (iteration + 1 >= at.most) static_cast<void>(give_up());  // should it not be enough

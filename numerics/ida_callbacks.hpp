@@ -22,9 +22,9 @@ namespace snare::numerics {
 
 /// What a Newton iteration has to go by.
 struct NewtonState {
-  double share = 0.0;    ///< of the tolerance that it may leave [-]
-  int most = 0;          ///< iterations
-  bool current = false;  ///< whether the matrix is that of this step
+  double share = 0.0;      ///< of the tolerance that it may leave [-]
+  int most = 0;            ///< iterations
+  bool renewable = false;  ///< whether slow convergence brings a matrix of the present iterate
 };
 
 /// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.

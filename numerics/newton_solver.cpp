@@ -101,7 +101,8 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
                        : self.corrected    ? most_corrected
                                            : most_with_old;
       const double of_share = self.coefficient == coefficient ? 1.0 : with_other_inertia;
-      code = callbacks.converged(k, {of_share * share, last, current != SUNFALSE}, step, map(weight));
+      const bool renewable = current != SUNFALSE && self.most_renewals > 0;
+      code = callbacks.converged(k, {of_share * share, last, renewable}, step, map(weight));
       if (code == SUN_NLS_SUCCESS) {
         self.worn = current == SUNFALSE && k + 1 >= most_with_old;
         self.guess.end(map(correction), map(weight));
