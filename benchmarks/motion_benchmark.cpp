@@ -29,9 +29,10 @@ namespace {
 using base::mm;
 constexpr double span = 175.0 * mm;
 
-coupling::Motion impact(int elements) {
+coupling::Motion impact(int elements, wire::Formulation formulation = wire::Formulation::vertices) {
   const wire::WireSpecification w = validation::declared_specification();
   wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
+  rod.formulation = formulation;
   // A damping ratio of 0.7 % at the first frequency of the straight wire (assumed; steel wires show 0.1 to 1 %).
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
   coupling::Motion motion;
@@ -151,6 +152,11 @@ double quasi_static_peak(double tau) {
   return peak;
 }
 
+/// The second argument of a benchmark.
+wire::Formulation formulation_of(const benchmark::State& state) {
+  return state.range(1) == 1 ? wire::Formulation::higher_order : wire::Formulation::vertices;
+}
+
 // In turn: the static curve of 20 points from the straight wire, and the head-on case from the buckled one to 0.3 s, of either
 // formulation and without inertia. The impulse is that of two codes that agree to 6e-5.
 void case_h(benchmark::State& state) {
@@ -160,7 +166,7 @@ void case_h(benchmark::State& state) {
   static const double undamped = quasi_static_peak(0.0);
   wire::RodInMotion rod =
       wire::rod_in_motion(validation::declared_specification(), span, static_cast<int>(state.range(0)));
-  if (state.range(1) == 1) rod.formulation = wire::Formulation::higher_order;
+  rod.formulation = formulation_of(state);
   rod.quasi_static = state.range(2) == 1;
   rod.damping.bending_time = rod.damping.axial_time = tau;
   coupling::MotionOptions options;
@@ -184,19 +190,24 @@ void case_h(benchmark::State& state) {
 }
 BENCHMARK(case_h)
     ->ArgNames({"elements", "higher_order", "quasi_static"})
-    ->ArgsProduct({{30, 60, 120, 240}, {0, 1}, {0, 1}})
+    ->ArgsProduct({{30, 40, 60, 120, 240}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
 // One second with one impact.
 void one_wire(benchmark::State& state) {
-  const coupling::Motion motion = impact(static_cast<int>(state.range(0)));
+  const coupling::Motion motion = impact(static_cast<int>(state.range(0)), formulation_of(state));
   coupling::MotionOptions options;
   options.duration = 1.0;
   coupling::MotionResult result;
   for ([[maybe_unused]] auto _ : state) result = coupling::simulate(motion, options);
   report(state, result);
 }
-BENCHMARK(one_wire)->Arg(60)->Unit(benchmark::kMillisecond);
+BENCHMARK(one_wire)
+    ->ArgNames({"elements", "higher_order"})
+    ->Args({60, 0})
+    ->Args({40, 1})
+    ->Args({60, 1})
+    ->Unit(benchmark::kMillisecond);
 
 /// Three wires that are closed on a shaft: chords at 120 degrees from each other, 3 mm apart along it, each bulging past the
 /// shaft's middle to 0.1 mm from its surface; a body of 8.9 kg with friction swings between them.
