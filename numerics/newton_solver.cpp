@@ -19,7 +19,7 @@ constexpr double slow = 0.25;       // rate of convergence beyond which a new ma
 constexpr double on_its_way = 0.5;  // rate below which what an old matrix has corrected is kept
 // Of the share, with a matrix of another leading coefficient. Forces within are in balance whatever the matrix; with the inertia of
 // another step momentum is not.
-constexpr double with_other_inertia = 0.2;
+constexpr double with_other_inertia = 0.4;
 
 struct Newton {
   IdaCallbacks& callbacks;

@@ -35,8 +35,8 @@ TEST(Carried, TheWireRidesOnTheTipWhereItIsAsked) {
   EXPECT_NEAR((tip.p - Vector3d(0.0875, 0.05, 0.0)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((tip.R.col(0) + Vector3d::UnitY()).norm(), 0.0, 1e-12);  // the hand's axis points at the wire
   EXPECT_NEAR((motion.wires[0].positions.col(0) - Vector3d::Zero()).norm(), 0.0, 1e-12);
-  EXPECT_NEAR((motion.wires[0].positions.col(60) - Vector3d(0.175, 0.0, 0.0)).norm(), 0.0, 1e-12);
-  EXPECT_GT(motion.wires[0].positions(1, 30), 0.018);
+  EXPECT_NEAR((motion.wires[0].positions.col(40) - Vector3d(0.175, 0.0, 0.0)).norm(), 0.0, 1e-12);
+  EXPECT_GT(motion.wires[0].positions(1, 20), 0.018);
 }
 
 TEST(Carried, AnArmThatCarriesTheBodyStartsWithItsMotion) {
