@@ -190,6 +190,19 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   EXPECT_LT(result.energy.kinetic, 1e-9);
 }
 
+TEST_F(MotionScenarios, WiresHaveFortyElementsOfHigherOrderWhereNothingIsNamed) {
+  std::string text = every_kind;
+  const std::string named = "elements = 20\n";
+  text.erase(text.find(named), named.size());
+  write("unnamed.toml", text);
+  const wire::RodInMotion rod = read_scenario(path("unnamed.toml"), {}).motions.runs.at(0).motion.wires.at(0).rod;
+  EXPECT_EQ(rod.elements, 40);
+  EXPECT_EQ(rod.formulation, wire::Formulation::higher_order);
+  const wire::RodInMotion plain = read({"wires[a].formulation=\"vertices\""}).motion.wires.at(0).rod;
+  EXPECT_EQ(plain.elements, 20);
+  EXPECT_EQ(plain.formulation, wire::Formulation::vertices);
+}
+
 TEST_F(MotionScenarios, SayWhatIsWrong) {
   const test::WrongSetting wrong[] = {
       {"schema=\"snare-scenario/3\"", "must be \"snare-scenario/2\""},
