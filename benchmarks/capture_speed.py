@@ -23,7 +23,8 @@ def summary_of(snare, model, elements, formulation, duration):
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([snare, "simulate", SCENARIO, "--out", folder + "/out", "--threads", "1", "--quiet", "--set", f"duration_s={duration}",
                         "--set", "output_interval_s=0.05", "--set", f"snares[snare].wire.elements={elements}",
-                        "--set", f'snares[snare].wire.model="{model}"', "--set", f'snares[snare].wire.formulation="{formulation}"'], check=True)
+                        "--set", f'snares[snare].wire.model="{model}"',
+                        "--set", f'snares[snare].wire.formulation="{formulation}"'], check=True)
         return json.loads(pathlib.Path(folder, "out", "summary.json").read_text())
 
 
@@ -55,7 +56,8 @@ def main():
         runs = told[case]
         held = statistics.median(seconds(r, MINUTE) for r in runs) - statistics.median(closing[case])
         rows.append({"model": model, "elements": elements, "formulation": formulation,
-                     "real_time_factor": statistics.median(r["real_time_factor"] for r in runs), "slowest": min(r["real_time_factor"] for r in runs), "holding": (MINUTE - CLOSING) / held,
+                     "real_time_factor": statistics.median(r["real_time_factor"] for r in runs), "slowest": min(r["real_time_factor"] for r in runs),
+                     "holding": (MINUTE - CLOSING) / held,
                      "steps": runs[0]["steps"], "jacobians": runs[0]["jacobians"], "caught": runs[0]["outcome"]["caught"]})
         print("{model:13} {elements:4} elements, {formulation:12}: {real_time_factor:7.1f} times real time "
               "(slowest {slowest:.1f}, holding {holding:.1f}), {steps} steps".format(**rows[-1]), flush=True)

@@ -87,6 +87,11 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       ++self.failures;
       return code;
     }
+    const NewtonState limits{self.coefficient == coefficient ? share : with_other_inertia * share,
+                             current != SUNFALSE ? most_with_own + self.most_renewals
+                             : self.corrected    ? most_corrected
+                                                 : most_with_old,
+                             current != SUNFALSE && self.most_renewals > 0};
     int renewals = 0;
     if (self.corrected) self.corrected->restart();
     for (int k = 0; code == SUN_NLS_SUCCESS; ++k) {
@@ -97,19 +102,14 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       if (code != SUN_NLS_SUCCESS) break;
       if (self.corrected) self.corrected->update(step, map(weight));
       map(correction) += step;
-      const int last = current != SUNFALSE ? most_with_own + self.most_renewals
-                       : self.corrected    ? most_corrected
-                                           : most_with_old;
-      const double of_share = self.coefficient == coefficient ? 1.0 : with_other_inertia;
-      const bool renewable = current != SUNFALSE && self.most_renewals > 0;
-      code = callbacks.converged(k, {of_share * share, last, renewable}, step, map(weight));
+      code = callbacks.converged(k, limits, step, map(weight));
       if (code == SUN_NLS_SUCCESS) {
         self.worn = current == SUNFALSE && k + 1 >= most_with_old;
         self.guess.end(map(correction), map(weight));
         return SUN_NLS_SUCCESS;
       }
       if (code != SUN_NLS_CONTINUE) break;
-      if (k + 1 >= last) {
+      if (k + 1 >= limits.most) {
         code = SUN_NLS_CONV_RECVR;
         break;
       }

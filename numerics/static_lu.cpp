@@ -144,9 +144,9 @@ bool StaticLu::eliminate_in_pairs() {
 
 // The four rows of a block are the four numbers at once: what a column takes from them needs one number of the vector. Rows that a
 // block does not have are others' and stay: nothing is taken from them, and their part of the square is 1.
-[[gnu::always_inline]] inline void StaticLu::solve_block(const Block& block, const double* inverse) {
+[[gnu::always_inline]] inline void StaticLu::solve_block(const Block& block) {
   const Four* const entries = reinterpret_cast<const Four*>(columns_.data()) + block.first;
-  const Four* const square = reinterpret_cast<const Four*>(inverse);
+  const Four* const square = reinterpret_cast<const Four*>(squares_.data()) + most_rows * block.square;
   const int* const column = listed_.data() + block.first;
   const int count = block.last - block.first;
   double* const x = work_.data();
@@ -164,10 +164,8 @@ bool StaticLu::eliminate_in_pairs() {
 
 [[gnu::always_inline]] inline void StaticLu::substitute() {
   for (const int i : alone_) work_[at(i)] *= inverse_[at(i)];
-  const double* square = inverse_before_.data();
-  for (const Block& b : before_) solve_block(b, std::exchange(square, square + most_rows * most_rows));
-  square = inverse_behind_.data();
-  for (const Block& b : behind_) solve_block(b, std::exchange(square, square + most_rows * most_rows));
+  for (const Block& b : before_) solve_block(b);
+  for (const Block& b : behind_) solve_block(b);
 }
 
 [[gnu::target("avx2")]] void StaticLu::substitute_in_fours() {
@@ -179,7 +177,8 @@ void StaticLu::substitute_in_pairs() {
 }
 
 // L of a square has ones on its diagonal, U the pivots.
-void StaticLu::invert_square(const Block& block, bool upper, double* inverse) const {
+void StaticLu::invert_square(const Block& block, bool upper) {
+  double* const inverse = squares_.data() + most_rows * most_rows * block.square;
   const auto entry = [&](int r, int s) { return values_[at(diagonal_[at(block.row + r)] + s - r)]; };
   const auto of = [inverse](int r, int s) -> double& { return inverse[most_rows * s + r]; };
   std::fill_n(inverse, most_rows * most_rows, 0.0);
@@ -198,10 +197,8 @@ void StaticLu::invert_square(const Block& block, bool upper, double* inverse) co
 
 void StaticLu::gather() {
   for (std::size_t k = 0; k < entry_.size(); ++k) columns_[k] = values_[at(entry_[k])];
-  double* square = inverse_before_.data();
-  for (const Block& b : before_) invert_square(b, false, std::exchange(square, square + most_rows * most_rows));
-  square = inverse_behind_.data();
-  for (const Block& b : behind_) invert_square(b, true, std::exchange(square, square + most_rows * most_rows));
+  for (const Block& b : before_) invert_square(b, false);
+  for (const Block& b : behind_) invert_square(b, true);
 }
 
 void StaticLu::list_blocks() {
@@ -232,7 +229,8 @@ void StaticLu::list_blocks() {
       if (!before(i).empty() || !behind(i).empty()) {
         const auto first = static_cast<int>(listed_.size());
         list(i, end - i, columns(i, end), [&](int row, int r) { return first_entry(row, end - i, r); });
-        blocks.push_back({i, end - i, first, static_cast<int>(listed_.size())});
+        const auto square = static_cast<int>(before_.size() + behind_.size());
+        blocks.push_back({i, end - i, first, static_cast<int>(listed_.size()), square});
       }
       i = end;
     }
@@ -247,8 +245,7 @@ void StaticLu::list_blocks() {
     if (before(i).empty() && behind(i).empty()) alone_.push_back(i);
   }
   columns_.assign(entry_.size(), 0.0);
-  inverse_before_.assign(most_rows * most_rows * before_.size(), 0.0);
-  inverse_behind_.assign(most_rows * most_rows * behind_.size(), 0.0);
+  squares_.assign(most_rows * most_rows * (before_.size() + behind_.size()), 0.0);
 }
 
 StaticLu::StaticLu(const SparseMatrix& matrix)

@@ -40,6 +40,7 @@ class StaticLu {
   struct Block {
     int row = 0, rows = 0;
     int first = 0, last = 0;  // columns, of those listed
+    int square = 0;           // its number
   };
   static constexpr int most_rows = 4;  // of a block
 
@@ -52,9 +53,9 @@ class StaticLu {
   [[nodiscard]] bool eliminate_in_pairs();
   /// The entries of the blocks, from those of the rows; and the inverses of their squares.
   void gather();
-  void invert_square(const Block& block, bool upper, double* inverse) const;
+  void invert_square(const Block& block, bool upper);
   /// x = S^-1 (x - sum of the columns times what they stand for), S the square of the block.
-  void solve_block(const Block& block, const double* inverse);
+  void solve_block(const Block& block);
   /// Solves in the order of the rows, in work_.
   void substitute();
   void substitute_in_fours();
@@ -69,15 +70,15 @@ class StaticLu {
   std::vector<Elimination> eliminations_;  // row by row
   std::vector<int> first_elimination_;     // of every row
   std::vector<Run> runs_;
-  std::vector<double> inverse_;                          // of the pivots
-  std::vector<int> alone_;                               // rows with nothing but a diagonal
-  std::vector<Block> before_;                            // of the others, by what is before the diagonal
-  std::vector<Block> behind_;                            // by what is behind it, from the last row on
-  std::vector<int> listed_;                              // columns of the blocks
-  std::vector<int> entry_;                               // of each of their rows, in values_; four a column
-  std::vector<double> columns_;                          // of the blocks, four numbers a column
-  std::vector<double> inverse_before_, inverse_behind_;  // of their squares, four columns a block
-  std::vector<double> work_;                             // with room behind for a last block's four
+  std::vector<double> inverse_;  // of the pivots
+  std::vector<int> alone_;       // rows with nothing but a diagonal
+  std::vector<Block> before_;    // of the others, by what is before the diagonal
+  std::vector<Block> behind_;    // by what is behind it, from the last row on
+  std::vector<int> listed_;      // columns of the blocks
+  std::vector<int> entry_;       // of each of their rows, in values_; four a column
+  std::vector<double> columns_;  // of the blocks, four numbers a column
+  std::vector<double> squares_;  // of the blocks, inverted, four columns each
+  std::vector<double> work_;     // with room behind for a last block's four
 };
 
 }  // namespace snare::numerics

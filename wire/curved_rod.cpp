@@ -22,11 +22,6 @@ Vector2d curvature_at(const RodModel& model, const DaePoint& at, int i) {
   return at.y.segment<2>(model.curvature_of(i));
 }
 
-/// w_j = EI_j (k_j - n_j) [N m].
-Vector2d moment_at(const RodModel& model, const DaePoint& at, int i) {
-  return stiffness_of(model).cwiseProduct(curvature_at(model, at, i) - model.properties().natural_curvature);
-}
-
 /// 1/k_mount of the mount at vertex i [rad/(N m)]; 0 elsewhere.
 double flexibility_at(const RodModel& model, int i) {
   const std::optional<End> end = model.end_of(i);
@@ -76,7 +71,7 @@ void add_curved_edges(const RodModel& model, const RodInstant& instant, const Da
 void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at, RodAssembly& out,
                        Matrix2Xd& by_curvature) {
   const VertexTurning turning(cell);
-  const Vector2d moment = moment_at(model, at, i);
+  const Vector2d moment = curved_moments(model, at, i);
   const double flexibility = flexibility_at(model, i);
   out.energy += moment.dot(turning.angles()) - 0.5 * flexibility * moment.squaredNorm();
   by_curvature.col(i) += stiffness_of(model).cwiseProduct(turning.angles() - flexibility * moment);
@@ -119,7 +114,7 @@ void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const
     if (BendingCell::exists(model, i)) {
       const BendingCell cell(model, instant, at, i);
       const VertexTurning turning(cell);
-      slots.add_cell(i, to_cell(turning.hessian(moment_at(model, at, i))), values);
+      slots.add_cell(i, to_cell(turning.hessian(curved_moments(model, at, i))), values);
       for (int j = 0; j < 2; ++j) {
         coupling[base::at(i)].col(j) += to_cell(turning.gradient(stiffness[j] * Vector2d::Unit(j)));
         own[base::at(i)](j, j) -= flexibility_at(model, i) * stiffness[j] * stiffness[j];
@@ -139,7 +134,7 @@ CurvedEnd curved_end(const RodModel& model, const RodInstant& instant, const Dae
   const BendingCell cell(model, instant, at, i);
   const VertexTurning turning(cell);
   const Vector2d stiffness = stiffness_of(model);
-  const Vector2d moment = moment_at(model, at, i);
+  const Vector2d moment = curved_moments(model, at, i);
   const double flexibility = flexibility_at(model, i);
   result.gradient << of_edge(turning.gradient(moment)), stiffness.cwiseProduct(turning.angles() - flexibility * moment);
   result.hessian.topLeftCorner<4, 4>() = of_edge(turning.hessian(moment));
@@ -155,7 +150,7 @@ Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant, con
   const int i = model.vertex_at(end);
   if (!BendingCell::exists(model, i)) return Vector3d::Zero();
   const BendingCell cell(model, instant, at, i);
-  return VertexTurning(cell).by_rotation(moment_at(model, at, i));
+  return VertexTurning(cell).by_rotation(curved_moments(model, at, i));
 }
 
 double curved_tension(const RodModel& model, const RodInstant& instant, const DaePoint& at, int edge) {
@@ -163,7 +158,7 @@ double curved_tension(const RodModel& model, const RodInstant& instant, const Da
 }
 
 Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {
-  return moment_at(model, at, vertex);
+  return stiffness_of(model).cwiseProduct(curvature_at(model, at, vertex) - model.properties().natural_curvature);
 }
 
 // Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite.

@@ -41,6 +41,11 @@ void add_scaled(const PairHessian& h, double factor, PairHessian& sum) {
 
 }  // namespace
 
+double stretch_rate(const RodModel& model, const Vector3d& tangent, const DaePoint& at, int edge) {
+  const Vector3d w = at.y.segment<3>(model.velocity_of(edge + 1)) - at.y.segment<3>(model.velocity_of(edge));
+  return tangent.dot(w) / model.rest_length(edge);
+}
+
 // D = 1/2 tau EA h e'^2 with e' = t.w/h, w = v_{i+1} - v_i: the force f = tau EA e' along t on x_{i+1},
 // against it on x_i.
 void add_axial_damping(const RodModel& model, const RodInstant& instant, const DaePoint& at, Eigen::VectorXd& gradient,
@@ -48,7 +53,7 @@ void add_axial_damping(const RodModel& model, const RodInstant& instant, const D
   for (int e = 0; e < model.edges(); ++e) {
     const Vector3d& t = instant.state.frames[base::at(e)].tangent;
     const double rest = model.rest_length(e);
-    const double rate = t.dot(at.y.segment<3>(model.velocity_of(e + 1)) - at.y.segment<3>(model.velocity_of(e))) / rest;
+    const double rate = stretch_rate(model, t, at, e);
     const double force = model.damping().axial_time * model.properties().axial_stiffness * rate;
     gradient.segment<3>(RodModel::block * e) -= force * t;
     gradient.segment<3>(RodModel::block * (e + 1)) += force * t;

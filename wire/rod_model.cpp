@@ -89,13 +89,11 @@ void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, con
 void RodInstant::take_edges() {
   directors.resize(state.frames.size());
   inverse_lengths.resize(state.frames.size());
-  const double* near = state.q.data();
-  for (std::size_t e = 0; e < directors.size(); ++e, near += SpatialState::block) {
-    const double* far = near + SpatialState::block;
-    inverse_lengths[e] =
-        1.0 / std::sqrt(Eigen::Vector3d(far[0] - near[0], far[1] - near[1], far[2] - near[2]).squaredNorm());
+  for (std::size_t e = 0; e < directors.size(); ++e) {
+    const auto i = static_cast<int>(e);
+    inverse_lengths[e] = 1.0 / std::sqrt((vertex(state, i + 1) - vertex(state, i)).squaredNorm());
     const Frame& frame = state.frames[e];
-    const Eigen::Vector3d first = turned_director(frame, near[SpatialState::angle]);
+    const Eigen::Vector3d first = turned_director(frame, state.q[SpatialState::block * i + SpatialState::angle]);
     directors[e] = {first, frame.tangent.cross(first)};
   }
 }

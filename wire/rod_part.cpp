@@ -49,7 +49,6 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   }
   accepted_.state = rod().make_state(q, model_.controls());
   accepted_.take_edges();
-  accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);
   if (model_.is_curved()) {
@@ -226,14 +225,7 @@ MountCell RodPart::mount_cell(const DaePoint& at, End end) {
   return wire::mount_cell(model_, trial_, at, end);
 }
 
-const SpatialState& RodPart::state_at(const DaePoint& at) {
-  if (accepted_y_.size() == at.y.size() && accepted_y_ == at.y) return accepted_.state;
-  evaluate(at);
-  return trial_.state;
-}
-
 void RodPart::accept(const DaePoint& at) {
-  accepted_y_ = at.y;
   if (is_evaluated(at)) {
     accepted_.state = trial_.state;
     accepted_.spin = trial_.spin;
@@ -262,7 +254,6 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
   }
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
   accepted_.take_edges();
-  accepted_y_.resize(0);
   trial_ = accepted_;
   y_.resize(0);
 }
@@ -280,21 +271,23 @@ double RodPart::mount_error(const numerics::VectorView& y) const {
 }
 
 RodPart::SectionLoads RodPart::section_loads(const DaePoint& at) {
+  evaluate(at);
+  const SpatialState& state = trial_.state;
+  const auto tangent = [&state](int e) { return state.frames[base::at(e)].tangent; };
   SectionLoads loads{Eigen::VectorXd::Zero(model_.edges()), Eigen::VectorXd::Zero(vertices())};
   if (model_.is_curved()) {
-    evaluate(at);
     for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] = curved_tension(model_, trial_, at, e);
     for (int i = 0; i < vertices(); ++i) loads.bending_moments[i] = curved_moments(model_, at, i).norm();
-    return loads;
+  } else {
+    loads.tensions = rod().tensions(state);
+    const Matrix3Xd moments = rod().moments(state);
+    for (int i = 0; i < vertices(); ++i) {
+      const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
+      loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
+    }
   }
-  const SpatialState& state = state_at(at);
-  loads.tensions = rod().tensions(state);
-  const Matrix3Xd moments = rod().moments(state);
-  const auto tangent = [&](int e) { return Vector3d((vertex(state, e + 1) - vertex(state, e)).normalized()); };
-  for (int i = 0; i < vertices(); ++i) {
-    const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
-    loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
-  }
+  const double viscosity = model_.damping().axial_time * model_.properties().axial_stiffness;
+  for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] += viscosity * stretch_rate(model_, tangent(e), at, e);
   return loads;
 }
 

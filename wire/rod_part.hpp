@@ -57,9 +57,6 @@ class RodPart final : public numerics::DaePart {
   /// Its moment alone [N m], as of the last `residual` at that point.
   [[nodiscard]] Eigen::Vector3d mount_moment(const numerics::DaePoint& at, End end);
 
-  /// Shape and frames at a point; stays valid until the next evaluation.
-  [[nodiscard]] const SpatialState& state_at(const numerics::DaePoint& at);
-
   /// The rod's constants, masses and places among the unknowns; what it was made from; its elastic forces.
   [[nodiscard]] const RodModel& model() const { return model_; }
   [[nodiscard]] const RodInMotion& constants() const { return model_.constants(); }
@@ -99,10 +96,10 @@ class RodPart final : public numerics::DaePart {
   };
   [[nodiscard]] Energies energies(const numerics::DaePoint& at);
 
-  /// What its section bears at a point, without damping and strands.
+  /// What its section bears at a point.
   struct SectionLoads {
-    Eigen::VectorXd tensions;         ///< of the edges [N]
-    Eigen::VectorXd bending_moments;  ///< of the vertices, >= 0 [N m]
+    Eigen::VectorXd tensions;         ///< of the edges, with their damping [N]
+    Eigen::VectorXd bending_moments;  ///< of the vertices, without damping and strands, >= 0 [N m]
   };
   [[nodiscard]] SectionLoads section_loads(const numerics::DaePoint& at);
 
@@ -136,8 +133,7 @@ class RodPart final : public numerics::DaePart {
   std::array<std::function<MountMotion(const numerics::VectorView& y)>, 2> carried_;
   RodSlots slots_;
 
-  RodInstant accepted_;         // the state: frames of the last accepted step
-  Eigen::VectorXd accepted_y_;  // the unknowns there, empty: none told yet
+  RodInstant accepted_;  // the state: frames of the last accepted step
 
   // Workspace: the point of the last evaluation.
   RodInstant trial_;

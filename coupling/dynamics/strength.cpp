@@ -10,7 +10,6 @@
 
 namespace snare::coupling {
 
-using Eigen::Vector3d;
 using numerics::DaePoint;
 
 WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_tension, bool ends_run) {
@@ -19,17 +18,10 @@ WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_
   return {breaking_tension, solid ? wire.youngs_modulus * std::numbers::pi * d * d * d / 8.0 : 0.0, ends_run};
 }
 
-// Tension of the edges with their damping, moments of the vertices without: at a vertex the larger of the tensions beside it.
+// At a vertex the larger of the tensions beside it.
 StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const DaePoint& at) {
   const wire::RodModel& model = rod.model();
-  auto [tensions, moments] = rod.section_loads(at);
-  const wire::SpatialState& state = rod.state_at(at);
-  const double viscosity = model.properties().axial_stiffness * model.damping().axial_time;
-  for (int e = 0; e < model.edges(); ++e) {
-    const Vector3d tangent = (vertex(state, e + 1) - vertex(state, e)).normalized();
-    const Vector3d rate = at.y.segment<3>(rod.velocity_of(e + 1)) - at.y.segment<3>(rod.velocity_of(e));
-    tensions[e] += viscosity * tangent.dot(rate) / model.rest_length(e);
-  }
+  const auto [tensions, moments] = rod.section_loads(at);
   StrengthUse largest;
   largest.time = at.time;
   for (int i = 0; i < rod.vertices(); ++i) {
