@@ -123,24 +123,12 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
   length = 0.5 * (rest_before + rest_after);
 }
 
-// (W.24) with t' = (I - t t^T) a'/|a| and likewise u', c' = t'.u + t.u', and directors that turn by theta' about t, u:
-//   kb' = [2 (t' x u + t x u') - c' kb]/chi,
-//   kappa_1' = 1/2 [kb'.(m2_- + m2_+) - theta_-' kb.m1_- - theta_+' kb.m1_+],
-//   kappa_2' = -1/2 [kb'.(m1_- + m1_+) + theta_-' kb.m2_- + theta_+' kb.m2_+].
 Eigen::Vector2d BendingCell::curvature_rates() const {
-  const Vector3d& t = turn.before;
-  const Vector3d& u = turn.after;
-  const Vector3d& kb = turn.binormal;
   const Vector3d a = inverse.a * (rate.segment<3>(Rows::middle) - rate.segment<3>(Rows::before));
   const Vector3d b = inverse.b * (rate.segment<3>(Rows::after) - rate.segment<3>(Rows::middle));
-  const Vector3d t_rate = a - t.dot(a) * t;
-  const Vector3d u_rate = b - u.dot(b) * u;
-  const Vector3d kb_rate =
-      (2.0 * (t_rate.cross(u) + t.cross(u_rate)) - (t_rate.dot(u) + t.dot(u_rate)) * kb) / turn.chi;
-  const double turn_a = rate[Rows::angle_before];
-  const double turn_b = rate[Rows::angle_after];
-  return {0.5 * (kb_rate.dot(before.second + after.second) - kb.dot(turn_a * before.first + turn_b * after.first)),
-          -0.5 * (kb_rate.dot(before.first + after.first) + kb.dot(turn_a * before.second + turn_b * after.second))};
+  const Pair<double> rates =
+      wire::curvature_rates(turn, before, after, a, b, rate[Rows::angle_before], rate[Rows::angle_after]);
+  return {rates[0], rates[1]};
 }
 
 // d(w x e)/de = [w]_x,   d(w.t)/de = (w - (w.t) t)^T/|e|;   e = x_1 - x_0 at the left end, x_n - x_{n-1} at

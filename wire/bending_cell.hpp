@@ -46,7 +46,7 @@ struct BendingCell {
   [[nodiscard]] WeightedCurvature curvature(int j) const { return curvature(Eigen::Vector2d::Unit(j)); }
   /// sum_j weights_j kappa_j, weights of any unit.
   [[nodiscard]] WeightedCurvature curvature(const Eigen::Vector2d& weights) const {
-    return {turn, before, after, weights};
+    return {turn, before, after, weights[0], weights[1]};
   }
   /// kappa_1', kappa_2' [1/s].
   [[nodiscard]] Eigen::Vector2d curvature_rates() const;

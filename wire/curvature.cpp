@@ -73,7 +73,8 @@ void add_cosine_hessian(const Turn& turn, const InverseLengths& inverse, double 
 //     v/chi,
 //   d2kappa/dtheta^2 = -1/2 kb.w,   d2kappa/dtheta_- dtheta_+ = 0.
 // In the code A = turned_a - kappa mean and B = -turned_b - kappa mean are put in.
-void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& out) const {
+template <>
+void WeightedCurvatureOf<double>::add_hessian(const InverseLengths& inverse, PairHessian& out) const {
   const Vector3d& t = turn_.before;
   const Vector3d& u = turn_.after;
   const Vector3d& kb = turn_.binormal;
@@ -105,7 +106,8 @@ void WeightedCurvature::add_hessian(const InverseLengths& inverse, PairHessian& 
   out.theta_bb -= 0.5 * kb.dot(w_b_);
 }
 
-Vector3d WeightedCurvature::by_rotation() const {
+template <>
+Vector3d WeightedCurvatureOf<double>::by_rotation() const {
   // u and w_+ turn by omega: dkb = 2 t x (omega x u)/chi - kb t.(omega x u)/chi, dw_+ = omega x w_+.
   const Vector3d half_sum = 0.5 * (w_a_ + w_b_);
   return 0.5 * w_b_.cross(turn_.binormal) + (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) +

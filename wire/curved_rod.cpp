@@ -48,26 +48,6 @@ Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& a
 
 }  // namespace
 
-void add_curved_edges(const RodModel& model, const RodInstant& instant, const DaePoint& at, RodAssembly& out,
-                      Matrix2Xd& by_curvature) {
-  const int n = model.edges();
-  const Vector2d& natural = model.properties().natural_curvature;
-  const double bent = 0.5 * stiffness_of(model).dot(natural.cwiseAbs2());
-  by_curvature.setZero(2, n + 1);
-  for (int e = 0; e < n; ++e) {
-    const Edge edge = edge_of(model, instant, at, e, EdgeDerivatives::first);
-    const Vector3d force = edge.beam.tension * edge.tangent;
-    out.energy += edge.beam.energy + bent * model.rest_length(e);
-    out.gradient.segment<3>(RodModel::block * e) -= force;
-    out.gradient.segment<3>(RodModel::block * (e + 1)) += force;
-    by_curvature.col(e) += edge.beam.gradient.segment<2>(EdgeBeam::near);
-    by_curvature.col(e + 1) += edge.beam.gradient.segment<2>(EdgeBeam::far);
-  }
-  for (const int i : {0, n}) {
-    if (!BendingCell::exists(model, i)) by_curvature.col(i) = curvature_at(model, at, i) - natural;
-  }
-}
-
 void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at, RodAssembly& out,
                        Matrix2Xd& by_curvature) {
   const VertexTurning turning(cell);

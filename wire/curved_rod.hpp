@@ -20,11 +20,7 @@
 /// bend keeps k = n.
 namespace snare::wire {
 
-/// Energy and gradient of the edges, added to `out` by bands; `by_curvature` (2, vertices) becomes their dE/dk [N m^2],
-/// k - n of a vertex that does not bend.
-void add_curved_edges(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at, RodAssembly& out,
-                      Eigen::Matrix2Xd& by_curvature);
-/// The same of vertex i, which bends. by_curvature: [N m^2].
+/// Adds energy and gradient by bands of vertex i, which bends, and dE/dk [N m^2].
 void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at,
                        RodAssembly& out, Eigen::Matrix2Xd& by_curvature);
 /// Adds all second derivatives.

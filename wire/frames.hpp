@@ -1,5 +1,7 @@
 #pragma once
 
+#include "numerics/lanes.hpp"
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -21,49 +23,86 @@ struct Frame {
 /// vector `to`:                                              theory.md (W.20); Bergou et al. 2008, sec. 4.2.2
 ///   P v = v - (v.to)/(1 + from.to) (from + to).
 /// Not a number when the two are opposite.
-[[nodiscard]] Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
-                                                 const Eigen::Vector3d& to);
+template <class S>
+[[nodiscard]] numerics::Vector3<S> parallel_transport(const numerics::Vector3<S>& v, const numerics::Vector3<S>& from,
+                                                      const numerics::Vector3<S>& to);
+[[nodiscard]] inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
+                                                        const Eigen::Vector3d& to);
 
-/// The frame carried to a new unit tangent without turning about it; the director is made perpendicular and
-/// of unit length anew, so that round-off does not add up over many steps.
-[[nodiscard]] Frame transport(const Frame& frame, const Eigen::Vector3d& tangent);
+/// The director of a frame that is carried from one unit tangent to another without turning about it; it is made perpendicular
+/// and of unit length anew, so that round-off does not add up over many steps.
+template <class S>
+[[nodiscard]] numerics::Vector3<S> transported(const numerics::Vector3<S>& director, const numerics::Vector3<S>& from,
+                                               const numerics::Vector3<S>& to);
+[[nodiscard]] inline Frame transport(const Frame& frame, const Eigen::Vector3d& tangent) {
+  return {tangent, transported<double>(frame.director, frame.tangent, tangent)};
+}
 
 /// The director d1 after a turn by `angle` [rad] about the tangent.
-[[nodiscard]] Eigen::Vector3d turned_director(const Frame& frame, double angle);
+template <class S>
+[[nodiscard]] numerics::Vector3<S> turned(const numerics::Vector3<S>& director, const numerics::Vector3<S>& tangent,
+                                          const S& angle);
+[[nodiscard]] inline Eigen::Vector3d turned_director(const Frame& frame, double angle) {
+  return turned<double>(frame.director, frame.tangent, angle);
+}
 
-/// Angle in (-pi, pi] by which the director of `before`, carried to the tangent of `after`, must still turn
-/// about that tangent to become the director of `after` [rad], plus the multiple of 2 pi that brings it
+/// Angle in (-pi, pi] by which the director of the frame before, carried to the tangent of the one after, must still turn
+/// about that tangent to become the director of the frame after [rad], plus the multiple of 2 pi that brings it
 /// nearest to `near`.                                        theory.md (W.21); Bergou et al. 2010, sec. 5.1
 ///
 /// Given the value of the last state as `near`, it follows any number of turns as long as one step changes it
 /// by less than pi.
-[[nodiscard]] double reference_twist(const Frame& before, const Frame& after, double near);
+template <class S>
+[[nodiscard]] S twist_between(const numerics::Vector3<S>& tangent_before, const numerics::Vector3<S>& director_before,
+                              const numerics::Vector3<S>& tangent_after, const numerics::Vector3<S>& director_after,
+                              const S& near);
+[[nodiscard]] inline double reference_twist(const Frame& before, const Frame& after, double near) {
+  return twist_between<double>(before.tangent, before.director, after.tangent, after.director, near);
+}
 
 // Here, for the compiler to put in where wires in motion spend their time.
 
-inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
-                                          const Eigen::Vector3d& to) {
+template <class S>
+[[gnu::always_inline]] inline numerics::Vector3<S> parallel_transport(const numerics::Vector3<S>& v,
+                                                                      const numerics::Vector3<S>& from,
+                                                                      const numerics::Vector3<S>& to) {
   return v - (v.dot(to) / (1.0 + from.dot(to))) * (from + to);
 }
 
-inline Frame transport(const Frame& frame, const Eigen::Vector3d& tangent) {
-  Eigen::Vector3d director = parallel_transport(frame.director, frame.tangent, tangent);
-  director -= tangent.dot(director) * tangent;
-  director *= 1.0 / std::sqrt(director.squaredNorm());
-  return {tangent, director};
+inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
+                                          const Eigen::Vector3d& to) {
+  return parallel_transport<double>(v, from, to);
 }
 
-inline Eigen::Vector3d turned_director(const Frame& frame, double angle) {
-  return std::cos(angle) * frame.director + std::sin(angle) * frame.tangent.cross(frame.director);
+template <class S>
+[[gnu::always_inline]] inline numerics::Vector3<S> transported(const numerics::Vector3<S>& director,
+                                                               const numerics::Vector3<S>& from,
+                                                               const numerics::Vector3<S>& to) {
+  numerics::Vector3<S> carried = parallel_transport<S>(director, from, to);
+  carried -= to.dot(carried) * to;
+  carried *= 1.0 / numerics::sqrt(carried.squaredNorm());
+  return carried;
 }
 
-inline double reference_twist(const Frame& before, const Frame& after, double near) {
+template <class S>
+[[gnu::always_inline]] inline numerics::Vector3<S> turned(const numerics::Vector3<S>& director,
+                                                          const numerics::Vector3<S>& tangent, const S& angle) {
+  const numerics::SineCosine<S> of = numerics::sine_cosine(angle);
+  return of.cosine * director + of.sine * tangent.cross(director);
+}
+
+template <class S>
+[[gnu::always_inline]] inline S twist_between(const numerics::Vector3<S>& tangent_before,
+                                              const numerics::Vector3<S>& director_before,
+                                              const numerics::Vector3<S>& tangent_after,
+                                              const numerics::Vector3<S>& director_after, const S& near) {
   using std::numbers::pi;
-  const Eigen::Vector3d carried = parallel_transport(before.director, before.tangent, after.tangent);
-  const double sine = after.tangent.dot(carried.cross(after.director));
-  const double angle = std::atan2(sine, carried.dot(after.director));
-  const double gap = near - angle;
-  return std::abs(gap) <= pi ? angle : angle + 2.0 * pi * std::round(gap / (2.0 * pi));
+  const numerics::Vector3<S> carried = parallel_transport<S>(director_before, tangent_before, tangent_after);
+  const S sine = tangent_after.dot(carried.cross(director_after));
+  const S angle = numerics::polar_angle(sine, carried.dot(director_after));
+  const S gap = near - angle;
+  if (numerics::none_below(S(pi), numerics::abs(gap))) return angle;
+  return angle + numerics::each(gap, [](double g) { return 2.0 * pi * std::round(g / (2.0 * pi)); });
 }
 
 }  // namespace snare::wire

@@ -46,21 +46,7 @@ double stretch_rate(const RodModel& model, const Vector3d& tangent, const DaePoi
   return tangent.dot(w) / model.rest_length(edge);
 }
 
-// D = 1/2 tau EA h e'^2 with e' = t.w/h, w = v_{i+1} - v_i: the force f = tau EA e' along t on x_{i+1},
-// against it on x_i.
-void add_axial_damping(const RodModel& model, const RodInstant& instant, const DaePoint& at, Eigen::VectorXd& gradient,
-                       double& power) {
-  for (int e = 0; e < model.edges(); ++e) {
-    const Vector3d& t = instant.state.frames[base::at(e)].tangent;
-    const double rest = model.rest_length(e);
-    const double rate = stretch_rate(model, t, at, e);
-    const double force = model.damping().axial_time * model.properties().axial_stiffness * rate;
-    gradient.segment<3>(RodModel::block * e) -= force * t;
-    gradient.segment<3>(RodModel::block * (e + 1)) += force * t;
-    power += force * rate * rest;
-  }
-}
-
+// D = 1/2 tau EA h e'^2 with e' = t.w/h, w = v_{i+1} - v_i: the force f = tau EA e' along t on x_{i+1}, against it on x_i;
 // f t by the edge d and by w, with P = (I - t t^T)/|d| = dt/dd:
 //   d(f t)/dd = tau EA/h [t (P w)^T + (t.w) P],   d(f t)/dw = tau EA/h t t^T
 void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant, const DaePoint& at,

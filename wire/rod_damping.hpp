@@ -21,9 +21,7 @@ namespace snare::wire {
 /// e' of an edge whose unit tangent is given [1/s].
 [[nodiscard]] double stretch_rate(const RodModel& model, const Eigen::Vector3d& tangent, const numerics::DaePoint& at,
                                   int edge);
-/// Adds the forces of stretching, by bands, and the power that they take [W].
-void add_axial_damping(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                       Eigen::VectorXd& gradient, double& power);
+/// The Jacobian of the forces of stretching.
 void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
                                 const RodSlots& slots, std::vector<double>& values);
 

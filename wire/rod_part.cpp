@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using numerics::DaePoint;
 
 RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances)
-    : name_(std::move(name)), tolerances_(tolerances), model_(rod) {
+    : name_(std::move(name)), tolerances_(tolerances), model_(rod), forces_(model_) {
   band_.resize(model_.bands());
 }
 
@@ -49,8 +49,7 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   }
   accepted_.state = rod().make_state(q, model_.controls());
   accepted_.take_edges();
-  trial_ = accepted_;
-  y_.resize(0);
+  begin_from_accepted();
   if (model_.is_curved()) {
     y.segment(model_.curvature_of(0), 2 * n) =
         balanced_curvatures(model_, accepted_, {0.0, y, Eigen::VectorXd::Zero(y.size())}).reshaped();
@@ -84,57 +83,15 @@ bool RodPart::is_evaluated(const DaePoint& at) const {
   return y_.size() == at.y.size() && y_ == at.y && rate_ == at.rate;
 }
 
-// Frames go from the last accepted state to the point's; then dE and what damping and strands add to it. Residual and Jacobian,
-// and what is asked after a step, are of the same point.
+// Residual and Jacobian, and what is asked after a step, are of the same point.
 void RodPart::evaluate(const DaePoint& at) {
   if (is_evaluated(at)) return;
   y_ = at.y;
   rate_ = at.rate;
   take_unknowns(at.y);
-  trial_.state = accepted_.state;
+  trial_.state.q = band_;
   set_mounts(at.y, trial_);
-  wire::accept(trial_.state, band_);
-  trial_.take_edges();
-  rod().assemble_forces(trial_.state, assembly_);
-  if (model_.is_curved()) add_curved_edges(model_, trial_, at, assembly_, by_curvature_);
-  losses_.power = losses_.strand_energy = 0.0;
-  losses_.couples = {Vector3d::Zero(), Vector3d::Zero()};
-  losses_.strand_rates.assign(base::at(vertices()), Vector2d::Zero());
-  if (model_.damping().axial_time > 0.0) add_axial_damping(model_, trial_, at, assembly_.gradient, losses_.power);
-  if (!model_.bends_with_loss() && !model_.is_curved()) return;
-  for (int i = 0; i < vertices(); ++i) {
-    if (!BendingCell::exists(model_, i)) continue;
-    const BendingCell cell(model_, trial_, at, i);
-    if (model_.is_curved()) add_curved_vertex(model_, cell, i, at, assembly_, by_curvature_);
-    if (model_.bends_with_loss()) add_bending_losses(at, cell, i);
-  }
-}
-
-// The moment M_j = tau EI_j/l kappa_j' + k_x m_j acts on what kappa_j depends on: sum_j M_j dkappa_j.
-void RodPart::add_bending_losses(const DaePoint& at, const BendingCell& cell, int i) {
-  const Vector2d rates = cell.curvature_rates();
-  const std::array<double, 2> viscosity = viscous_stiffness(model_, cell);
-  Vector2d moments(viscosity[0] * rates[0], viscosity[1] * rates[1]);
-  losses_.power += moments.dot(rates);
-  if (model_.strands().act()) {
-    const Vector2d held = at.y.segment<2>(strand_of(i));
-    const StrandResponse s(model_.strands(), held, rates / cell.length);
-    moments += s.moment;
-    losses_.strand_rates[base::at(i)] = s.rate;
-    const double stiffness = model_.strands().extra_stiffness * cell.length;
-    losses_.strand_energy += 0.5 * stiffness * held.squaredNorm();
-    // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
-    losses_.power +=
-        stiffness * model_.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - cell.length * s.rate);
-  }
-  const WeightedCurvature curvature = cell.curvature(moments);
-  const int n = model_.edges();
-  // Of the mounts on the wire: what a turn of all that follows does, less at the left, which precedes (W.29).
-  if (i == 0) losses_.couples[index_of(End::left)] -= curvature.by_rotation();
-  if (i == n) losses_.couples[index_of(End::right)] += curvature.by_rotation();
-  PairGradient g;
-  curvature.add_gradient(cell.inverse, g);
-  add_to_bands(model_, i, g, 1.0, assembly_.gradient);
+  forces_.evaluate(model_, at, trial_, {assembly_, by_curvature_, losses_});
 }
 
 // F: x' - v, or x - X where held;   m (v' + a v) + dE/dx + dD/dv, or v;   dE/dtheta + dD/dtheta', or theta;
@@ -229,11 +186,19 @@ void RodPart::accept(const DaePoint& at) {
   if (is_evaluated(at)) {
     accepted_.state = trial_.state;
     accepted_.spin = trial_.spin;
+    forces_.take_frames(accepted_);
     return;
   }
   take_unknowns(at.y);
   set_mounts(at.y, accepted_);
   wire::accept(accepted_.state, band_);
+  forces_.take_frames(accepted_);
+}
+
+void RodPart::begin_from_accepted() {
+  trial_ = accepted_;
+  y_.resize(0);
+  forces_.take_frames(accepted_);
 }
 
 void RodPart::save_state(std::vector<double>& memory) const {
@@ -254,8 +219,7 @@ void RodPart::restore_state(const numerics::VectorView& y, std::span<const doubl
   }
   for (double& m : accepted_.state.reference_twist) m = numerics::take(memory);
   accepted_.take_edges();
-  trial_ = accepted_;
-  y_.resize(0);
+  begin_from_accepted();
 }
 
 double RodPart::mount_error(const numerics::VectorView& y) const {

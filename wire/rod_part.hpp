@@ -4,6 +4,7 @@
 #include "wire/bending_cell.hpp"
 #include "wire/end.hpp"
 #include "wire/mount_cell.hpp"
+#include "wire/rod_forces.hpp"
 #include "wire/rod_in_motion.hpp"
 #include "wire/rod_model.hpp"
 #include "wire/rod_slots.hpp"
@@ -112,15 +113,8 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] LeftOut left_out(const numerics::VectorView& y) const;
 
  private:
-  /// What damping and strands do at the last point of evaluation.
-  struct Losses {
-    double power = 0.0;                                                                        // that they take [W]
-    double strand_energy = 0.0;                                                                // stored [J]
-    std::array<Eigen::Vector3d, 2> couples{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of the mounts
-    std::vector<Eigen::Vector2d> strand_rates;  // z' of every vertex [1/(m s)]
-  };
   void evaluate(const numerics::DaePoint& at);
-  void add_bending_losses(const numerics::DaePoint& at, const BendingCell& cell, int i);
+  void begin_from_accepted();
   void add_losses_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);
   void set_mounts(const numerics::VectorView& y, RodInstant& instant) const;
   void take_unknowns(const numerics::VectorView& y);
@@ -141,7 +135,8 @@ class RodPart final : public numerics::DaePart {
   RodAssembly assembly_;           // energy and forces
   RodAssembly stiffness_;          // second derivatives
   Eigen::Matrix2Xd by_curvature_;  // dE/dk of higher order
-  Losses losses_;
+  RodLosses losses_;
+  RodForces forces_;
   Eigen::VectorXd band_;
 };
 

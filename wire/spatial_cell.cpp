@@ -8,98 +8,9 @@
 
 namespace snare::wire {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-/// Stiffness of a cell of length l with a mount's flexibility f in series:                    theory.md (W.6)
-///   1/k = l/B + f,   dk/dl = -k^2/B,   d2k/dl2 = -2 k (dk/dl)/B
-struct SeriesStiffness {
-  double k = 0.0;
-  double first = 0.0;   // dk/dl
-  double second = 0.0;  // d2k/dl2
-};
-
-SeriesStiffness in_series(double cell_length, double stiffness, double flexibility) {
-  SeriesStiffness s;
-  s.k = 1.0 / (cell_length / stiffness + flexibility);
-  s.first = -s.k * s.k / stiffness;
-  s.second = -2.0 * s.k * s.first / stiffness;
-  return s;
-}
-
-/// Bending of a cell.                                                                        theory.md (W.27)
-///   E = 1/4 (k_1 + k_2)|kb|^2 + 1/4 (k_1 - k_2)(kappa_1^2 - kappa_2^2) + sum_j k_j n_j l (n_j l/2 - kappa_j)
-/// n_j: natural curvatures. ' below is d/dl.
-void bend(const SpatialEdge& before, const SpatialEdge& after, double l, double flexibility, const CellTerms& terms,
-          SpatialCell& cell) {
-  const SpatialRodProperties& p = terms.properties;
-  cell.bends = true;
-  const SeriesStiffness k1 = in_series(l, p.bending_stiffness, flexibility);
-  const SeriesStiffness k2 = terms.directed ? in_series(l, p.second_bending_stiffness, flexibility) : k1;
-
-  // Round part, 1/4 (k_1 + k_2)|kb|^2 with |kb|^2 = 4 (1 - c)/(1 + c), taken from kb to keep its digits:
-  //   d|kb|^2/dc = -8/chi^2,   d2|kb|^2/dc2 = 16/chi^3 = -2 (d|kb|^2/dc)/chi.
-  const double square = cell.turn.binormal.squaredNorm();
-  const double inverse_chi = 1.0 / cell.turn.chi;
-  const double slope = -8.0 * inverse_chi * inverse_chi;
-  const double mean = 0.25 * (k1.k + k2.k);
-  const double mean_first = 0.25 * (k1.first + k2.first);
-  cell.energy += mean * square;
-  cell.by_cosine = mean * slope;
-  cell.by_cosine_twice = -2.0 * mean * slope * inverse_chi;
-  cell.by_length += mean_first * square;
-  cell.by_length_twice += 0.25 * (k1.second + k2.second) * square;
-  cell.cosine_by_length = mean_first * slope;
-  if (!terms.directed) return;
-
-  // Part of the directors, 1/2 a (kappa_1^2 - kappa_2^2) with a = (k_1 - k_2)/2:
-  //   dE/dkappa = a (kappa_1, -kappa_2),   d2E/dkappa dl = a' (kappa_1, -kappa_2).
-  cell.directed = true;
-  const Vector2d kappa = curvatures(cell.turn, before.directors, after.directors);
-  const Vector2d& natural = p.natural_curvature;
-  const double difference = kappa[0] * kappa[0] - kappa[1] * kappa[1];
-  cell.anisotropy = 0.5 * (k1.k - k2.k);
-  const double anisotropy_first = 0.5 * (k1.first - k2.first);
-  cell.energy += 0.5 * cell.anisotropy * difference;
-  cell.by_kappa = cell.anisotropy * Vector2d(kappa[0], -kappa[1]);
-  cell.by_length += 0.5 * anisotropy_first * difference;
-  cell.by_length_twice += 0.25 * (k1.second - k2.second) * difference;
-  cell.kappa_by_length = anisotropy_first * Vector2d(kappa[0], -kappa[1]);
-
-  // Natural curvature, N = k n l (n l/2 - kappa):
-  //   dN/dkappa = -k n l,   d2N/dkappa dl = -n (k' l + k),
-  //   dN/dl = 1/2 n^2 l (k' l + 2 k) - n kappa (k' l + k),
-  //   d2N/dl2 = 1/2 n^2 (k'' l^2 + 4 k' l + 2 k) - n kappa (k'' l + 2 k').
-  const auto add_natural = [&](int j, const SeriesStiffness& k) {
-    const double n = natural[j];
-    cell.energy += k.k * n * l * (0.5 * n * l - kappa[j]);
-    cell.by_kappa[j] -= k.k * n * l;
-    cell.kappa_by_length[j] -= n * (k.first * l + k.k);
-    cell.by_length += 0.5 * n * n * l * (k.first * l + 2.0 * k.k) - n * kappa[j] * (k.first * l + k.k);
-    cell.by_length_twice += 0.5 * n * n * (k.second * l * l + 4.0 * k.first * l + 2.0 * k.k) -
-                            n * kappa[j] * (k.second * l + 2.0 * k.first);
-  };
-  add_natural(0, k1);
-  add_natural(1, k2);
-}
-
-/// Twisting of a cell, E = 1/2 k s^2 with s = tau - n l, n the natural twist.                theory.md (W.27)
-///   dE/dtau = k s,   d2E/dtau2 = k,   d2E/dtau dl = k' s - k n,
-///   dE/dl = 1/2 k' s^2 - k n s,   d2E/dl2 = 1/2 k'' s^2 - 2 k' n s + k n^2
-void twist(double tau, double l, double flexibility, const SpatialRodProperties& p, SpatialCell& cell) {
-  cell.twists = true;
-  const SeriesStiffness k = in_series(l, p.torsional_stiffness, flexibility);
-  const double natural = p.natural_twist;
-  const double strain = tau - natural * l;
-  cell.energy += 0.5 * k.k * strain * strain;
-  cell.torque = k.k * strain;
-  cell.twist_stiffness = k.k;
-  cell.torque_by_length = k.first * strain - k.k * natural;
-  cell.by_length += 0.5 * k.first * strain * strain - k.k * natural * strain;
-  cell.by_length_twice += 0.5 * k.second * strain * strain - 2.0 * k.first * natural * strain + k.k * natural * natural;
-}
 
 Directors directors_of(const Frame& frame, const Vector3d& tangent, double theta) {
   const Vector3d first = turned_director({tangent, frame.director}, theta);
@@ -145,12 +56,12 @@ SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& 
   cell.turn = make_turn(before.tangent, after.tangent);
   cell.inverse = {before.inverse_length, after.inverse_length};
   const double tau = after.theta - before.theta + state.reference_twist[base::at(i)];  // (W.26)
-  twist(tau, length, end == nullptr ? 0.0 : 1.0 / end->twisting_stiffness, p, cell);
+  add_twisting(tau, length, end == nullptr ? 0.0 : 1.0 / end->twisting_stiffness, terms, cell);
   if (!terms.bends) return cell;
   if (end == nullptr) {
-    bend(before, after, length, 0.0, terms, cell);
+    add_bending(before.directors, after.directors, length, 0.0, terms, cell);
   } else if (end->kind == SpatialEnd::Kind::clamp) {
-    bend(before, after, length, 1.0 / end->rotational_stiffness, terms, cell);
+    add_bending(before.directors, after.directors, length, 1.0 / end->rotational_stiffness, terms, cell);
   }
   return cell;
 }
@@ -159,11 +70,12 @@ namespace {
 
 /// by_c dc + sum_j by_kappa_j dkappa_j + by_tau dtau.
 PairGradient weighted_gradient(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after,
-                               double by_c, const Vector2d& by_kappa, double by_tau) {
+                               double by_c, const Pair<double>& by_kappa, double by_tau) {
   PairGradient g;
   if (cell.bends) add_cosine_gradient(cell.turn, cell.inverse, by_c, g);
   if (cell.directed)
-    WeightedCurvature(cell.turn, before.directors, after.directors, by_kappa).add_gradient(cell.inverse, g);
+    WeightedCurvature(cell.turn, before.directors, after.directors, by_kappa[0], by_kappa[1])
+        .add_gradient(cell.inverse, g);
   if (cell.twists) add_twist_gradient(cell.turn, cell.inverse, by_tau, g);
   return g;
 }
@@ -187,11 +99,12 @@ PairHessian hessian_of(const SpatialCell& cell, const SpatialEdge& before, const
   if (cell.bends) add_cosine_hessian(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
   if (cell.twists) add_twist_hessian(cell.turn, cell.inverse, cell.torque, cell.twist_stiffness, h);
   if (cell.directed) {
-    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).add_hessian(cell.inverse, h);
+    WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa[0], cell.by_kappa[1])
+        .add_hessian(cell.inverse, h);
     PairGradient g1;
     PairGradient g2;
-    WeightedCurvature(cell.turn, before.directors, after.directors, {1.0, 0.0}).add_gradient(cell.inverse, g1);
-    WeightedCurvature(cell.turn, before.directors, after.directors, {0.0, 1.0}).add_gradient(cell.inverse, g2);
+    WeightedCurvature(cell.turn, before.directors, after.directors, 1.0, 0.0).add_gradient(cell.inverse, g1);
+    WeightedCurvature(cell.turn, before.directors, after.directors, 0.0, 1.0).add_gradient(cell.inverse, g2);
     add_square(g1, cell.anisotropy, h);
     add_square(g2, -cell.anisotropy, h);
   }
@@ -204,7 +117,8 @@ Vector3d moment_of(const SpatialCell& cell, const SpatialEdge& before, const Spa
   Vector3d moment = Vector3d::Zero();
   if (cell.bends) moment -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
   if (cell.directed) {
-    moment += WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa).by_rotation();
+    moment += WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa[0], cell.by_kappa[1])
+                  .by_rotation();
   }
   if (cell.twists) moment += cell.torque * cell.turn.mean;
   return moment;

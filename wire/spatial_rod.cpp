@@ -138,22 +138,52 @@ void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) co
   }
 }
 
-SpatialRod::EndCell SpatialRod::end_cell(const SpatialState& state, End end) const {
-  const int n = mesh_.edges();
-  const CellTerms terms(properties_, strains_);
+namespace {
+
+/// The cell at one end with its edges, one of them the mount.
+struct MountedCell {
+  SpatialEdge before, after;
+  SpatialCell cell;
+};
+
+MountedCell mounted_cell(const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms, End end) {
+  const int n = mesh.edges();
   const bool left = end == End::left;
-  const SpatialEdge before =
-      left ? mount_edge(properties_.left, state.left_mount, terms) : edge_at(n - 1, mesh_, state, terms);
-  const SpatialEdge after =
-      left ? edge_at(0, mesh_, state, terms) : mount_edge(properties_.right, state.right_mount, terms);
-  const SpatialCell cell = cell_at(left ? 0 : n, n, before, after, state, terms);
+  MountedCell m;
+  m.before = left ? mount_edge(terms.properties.left, state.left_mount, terms) : edge_at(n - 1, mesh, state, terms);
+  m.after = left ? edge_at(0, mesh, state, terms) : mount_edge(terms.properties.right, state.right_mount, terms);
+  m.cell = cell_at(left ? 0 : n, n, m.before, m.after, state, terms);
+  return m;
+}
+
+}  // namespace
+
+SpatialRod::EndCell SpatialRod::end_cell(const SpatialState& state, End end) const {
+  const MountedCell m = mounted_cell(mesh_, state, CellTerms(properties_, strains_), end);
   EndCell result;
-  if (!cell.bends && !cell.twists) return result;
-  const PairGradient g = gradient_of(cell, before, after);
-  const PairHessian h = hessian_of(cell, before, after);
-  result.gradient = left ? g.of_after() : g.of_before();
-  result.hessian = left ? h.of_after() : h.of_before();
+  if (!m.cell.bends && !m.cell.twists) return result;
+  const PairGradient g = gradient_of(m.cell, m.before, m.after);
+  const PairHessian h = hessian_of(m.cell, m.before, m.after);
+  result.gradient = end == End::left ? g.of_after() : g.of_before();
+  result.hessian = end == End::left ? h.of_after() : h.of_before();
   return result;
+}
+
+void SpatialRod::add_end_forces(const SpatialState& state, End end, RodAssembly& out) const {
+  const SpatialEnd& mount = properties_.end(end);
+  const int row = row_of(end);
+  out.energy += mount.spring_energy(state.q[row]);
+  if (mount.gives()) out.gradient[row] += mount.translational_stiffness * (state.q[row] - mount.position.x());
+  const MountedCell m = mounted_cell(mesh_, state, CellTerms(properties_, strains_), end);
+  if (!m.cell.bends && !m.cell.twists) return;
+  out.energy += m.cell.energy;
+  const PairGradient g = gradient_of(m.cell, m.before, m.after);
+  const bool left = end == End::left;
+  const int edge = left ? 0 : mesh_.edges() - 1;
+  const Vector3d& force = left ? g.b : g.a;
+  out.gradient.segment<3>(block * edge) -= force;
+  out.gradient.segment<3>(block * (edge + 1)) += force;
+  out.gradient[block * edge + angle] += left ? g.theta_b : g.theta_a;
 }
 
 Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {

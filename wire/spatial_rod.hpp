@@ -83,6 +83,8 @@ class SpatialRod {
     Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
   };
   [[nodiscard]] EndCell end_cell(const SpatialState& state, End end) const;
+  /// Adds energy and gradient of that cell and of a mount that gives.
+  void add_end_forces(const SpatialState& state, End end, RodAssembly& out) const;
 
   /// Moment vector of every vertex, (3, vertices) [N m]: dE by a rigid rotation of all that follows the
   /// vertex, which is the moment that the part after it exerts on the part before; positive about z for

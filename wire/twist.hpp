@@ -8,7 +8,9 @@ namespace snare::wire {
 ///   tau = theta_b - theta_a + m,  m: reference twist
 ///   dm/da = kb/(2 |a|),  dm/db = kb/(2 |b|),  dtau/dtheta = (-1, 1)
 /// Adds moment * gradient of tau.
-void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out);
+template <class S>
+void add_twist_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse, const S& moment,
+                        PairGradientOf<S>& out);
 
 /// Adds moment [N m] * hessian of tau + stiffness [N m] * (gradient of tau)(gradient of tau)^T:
 ///   |a|^2 d2m/da2 = -1/4 (kb (t + mean)^T + (t + mean) kb^T),
@@ -20,7 +22,9 @@ void add_twist_hessian(const Turn& turn, const InverseLengths& inverse, double m
 
 // (W.26)  tau = theta_+ - theta_- + m:   dm/da = kb/(2 |a|),   dm/db = kb/(2 |b|).
 // An energy of tau with torque M = dE/dtau (`moment`) has the gradient M dtau.
-inline void add_twist_gradient(const Turn& turn, const InverseLengths& inverse, double moment, PairGradient& out) {
+template <class S>
+[[gnu::always_inline]] inline void add_twist_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse,
+                                                      const S& moment, PairGradientOf<S>& out) {
   out.a += (0.5 * moment * inverse.a) * turn.binormal;
   out.b += (0.5 * moment * inverse.b) * turn.binormal;
   out.theta_a -= moment;

@@ -1,0 +1,337 @@
+#include "wire/rod_forces.hpp"
+
+#include "numerics/lanes.hpp"
+#include "wire/bending_cell.hpp"
+#include "wire/curved_rod.hpp"
+#include "wire/edge_beam.hpp"
+#include "wire/rod_damping.hpp"
+#include "wire/spatial_cell.hpp"
+#include "wire/strand_friction.hpp"
+#include "wire/twist.hpp"
+#include "wire/vertex_turning.hpp"
+
+#include <algorithm>
+
+namespace snare::wire {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using numerics::DaePoint;
+using numerics::Lanes;
+using numerics::Lanes3;
+
+namespace {
+
+/// What the strands of a vertex answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they hold and lose is
+/// added.
+Vector2d strand_moment(const RodModel& model, int i, double length, const Vector2d& rates, const DaePoint& at,
+                       RodLosses& losses) {
+  const Vector2d held = at.y.segment<2>(model.strand_of(i));
+  const StrandResponse s(model.strands(), held, rates / length);
+  losses.strand_rates[base::at(i)] = s.rate;
+  const double stiffness = model.strands().extra_stiffness * length;
+  losses.strand_energy += 0.5 * stiffness * held.squaredNorm();
+  // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
+  losses.power += stiffness * model.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - length * s.rate);
+  return s.moment;
+}
+
+/// Damping and strands of a vertex at an end.
+void add_bending_losses(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at,
+                        Eigen::VectorXd& gradient, RodLosses& losses) {
+  const Vector2d rates = cell.curvature_rates();
+  const std::array<double, 2> viscosity = viscous_stiffness(model, cell);
+  Vector2d moments(viscosity[0] * rates[0], viscosity[1] * rates[1]);
+  losses.power += moments.dot(rates);
+  if (model.strands().act()) moments += strand_moment(model, i, cell.length, rates, at, losses);
+  const WeightedCurvature curvature = cell.curvature(moments);
+  // Of the mounts on the wire: what a turn of all that follows does, less at the left, which precedes (W.29).
+  if (i == 0) losses.couples[index_of(End::left)] -= curvature.by_rotation();
+  if (i == model.edges()) losses.couples[index_of(End::right)] += curvature.by_rotation();
+  PairGradient g;
+  curvature.add_gradient(cell.inverse, g);
+  add_to_bands(model, i, g, 1.0, gradient);
+}
+
+}  // namespace
+
+RodForces::RodForces(const RodModel& model)
+    : length_((model.vertices() + Lanes::count - 1) / Lanes::count * Lanes::count + Lanes::count),
+      data_(base::at(rows * length_), 0.0) {
+  const int n = model.edges();
+  for (int i = 0; i < length_; ++i) {
+    row(rest_length)[i] = model.rest_length(std::min(i, n - 1));
+    row(is_edge)[i] = i < n ? 1.0 : 0.0;
+    row(is_inner)[i] = i > 0 && i < n ? 1.0 : 0.0;
+    // Of no edge: along x and y.
+    for (const int r : {static_cast<int>(old_tangent), static_cast<int>(tangent), old_director + 1, director + 1,
+                        first + 1, second + 2})
+      row(r)[i] = 1.0;
+  }
+}
+
+void RodForces::take_frames(const RodInstant& accepted) {
+  for (std::size_t e = 0; e < accepted.state.frames.size(); ++e) {
+    const Frame& frame = accepted.state.frames[e];
+    for (int k = 0; k < 3; ++k) {
+      row(old_tangent + k)[e] = frame.tangent[k];
+      row(old_director + k)[e] = frame.director[k];
+    }
+  }
+  std::ranges::copy(accepted.state.reference_twist, row(old_twist));
+}
+
+void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
+  const int n = model.edges();
+  const double* const x = at.y.data() + model.position_of(0);
+  const double* const v = at.y.data() + model.velocity_of(0);
+  for (int k = 0; k < 3; ++k) {
+    double* const places = row(place + k);
+    double* const velocities = row(velocity + k);
+    for (int i = 0; i <= n; ++i) {
+      places[i] = x[3 * i + k];
+      velocities[i] = v[3 * i + k];
+    }
+    // What stands for no vertex goes on along x.
+    for (int i = n + 1; i < length_; ++i) places[i] = places[i - 1] + (k == 0 ? row(rest_length)[i] : 0.0);
+  }
+  std::copy_n(at.y.data() + model.angle_of(0), n, row(theta));
+  std::copy_n(at.rate.data() + model.angle_of(0), n, row(theta_rate));
+  if (!model.is_curved()) return;
+  const double* const k = at.y.data() + model.curvature_of(0);
+  for (int i = 0; i <= n; ++i) {
+    row(curvature)[i] = k[2 * i];
+    row(curvature + 1)[i] = k[2 * i + 1];
+  }
+}
+
+// Frames go from the last accepted state to the point's; then what an edge does by its stretch and the bow of its beam.
+[[gnu::always_inline]] inline void RodForces::work_on_edges(const RodModel& model, RodInstant& trial,
+                                                            const Results& out) {
+  const int n = model.edges();
+  const double stiffness = model.properties().axial_stiffness;
+  const double viscosity = model.damping().axial_time * stiffness;
+  const Vector2d bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+  Lanes energy = 0.0, power = 0.0;
+  for (int e = 0; e < n; e += Lanes::count) {
+    const auto of_vertex = [&](int r, int i) __attribute__((always_inline)) {
+      return Lanes3::at(row(r) + i, length_);
+    };
+    const Lanes rest = Lanes::at(row(rest_length) + e);
+    const Lanes there = Lanes::at(row(is_edge) + e);
+    const Lanes3 d = of_vertex(place, e + 1) - of_vertex(place, e);
+    const Lanes chord = numerics::sqrt(d.squaredNorm());
+    const Lanes inverse = 1.0 / chord;
+    const Lanes3 t = inverse * d;
+    const Lanes3 carried = transported<Lanes>(of_vertex(old_director, e), of_vertex(old_tangent, e), t);
+    const Lanes3 m1 = turned<Lanes>(carried, t, Lanes::at(row(theta) + e));
+    const Lanes3 m2 = t.cross(m1);
+    // Stretching (W.3) or the beam (W.32), and its damping tau EA e' with e' = t.(v_{i+1} - v_i)/h (M.4).
+    Lanes tension;
+    if (model.is_curved()) {
+      const auto curvatures_of = [&](int i) __attribute__((always_inline)) {
+        return Pair<Lanes>{Lanes::at(row(curvature) + i), Lanes::at(row(curvature + 1) + i)};
+      };
+      const BalancedBeam<Lanes> beam =
+          balanced_beam<Lanes>(rest, chord, curvatures_of(e), curvatures_of(e + 1), stiffness, bending);
+      tension = beam.tension;
+      energy += there * beam.energy;
+      for (const int j : {0, 1}) {
+        (there * beam.near[base::at(j)]).add_to(row(by_curvature + j) + e);
+        (there * beam.far[base::at(j)]).add_to(row(by_curvature + j) + e + 1);
+      }
+    } else {
+      const Lanes strain = chord / rest - 1.0;
+      tension = stiffness * strain;
+      energy += there * (0.5 * stiffness * strain * strain * rest);
+    }
+    if (viscosity > 0.0) {
+      const Lanes rate = t.dot(of_vertex(velocity, e + 1) - of_vertex(velocity, e)) / rest;
+      const Lanes viscous = viscosity * rate;
+      power += there * (viscous * rate * rest);
+      tension += viscous;
+    }
+    (tension * t).store(row(force) + e, length_);
+    t.store(row(tangent) + e, length_);
+    carried.store(row(director) + e, length_);
+    m1.store(row(first) + e, length_);
+    m2.store(row(second) + e, length_);
+    inverse.store(row(inverse_length) + e);
+  }
+  out.assembly.energy += energy.sum();
+  out.losses.power += power.sum();
+  for (int e = 0; e < n; ++e) {
+    const auto of_edge = [&](int r) { return Vector3d(row(r)[e], row(r + 1)[e], row(r + 2)[e]); };
+    trial.state.frames[base::at(e)] = {of_edge(tangent), of_edge(director)};
+    trial.directors[base::at(e)] = {of_edge(first), of_edge(second)};
+    trial.inverse_lengths[base::at(e)] = row(inverse_length)[e];
+  }
+}
+
+// Twisting and bending of the vertices between the ends, all as one gradient by their two edges: of the cosine, of curvatures
+// with the sum of their weights, of the twist. The moment M_j = tau EI_j/l kappa_j' + k_x m_j of damping and strands is one of
+// these weights.
+[[gnu::always_inline]] inline void RodForces::work_on_vertices(const RodModel& model, const DaePoint& at,
+                                                               RodInstant& trial, const Results& out) {
+  const int n = model.edges();
+  const SpatialRodProperties& p = model.properties();
+  const CellTerms terms(p, model.is_curved() ? Strains::twist : Strains::all);
+  const Pair<double> stiffness{p.bending_stiffness, p.second_bending_stiffness};
+  const double time = model.damping().bending_time;
+  Lanes energy = 0.0, power = 0.0;
+  for (int i = 1; i < n; i += Lanes::count) {
+    const auto of_edge = [&](int r, int e) __attribute__((always_inline)) {
+      return Lanes3::at(row(r) + e, length_);
+    };
+    const Lanes there = Lanes::at(row(is_inner) + i);
+    const Lanes l = 0.5 * (Lanes::at(row(rest_length) + i - 1) + Lanes::at(row(rest_length) + i));
+    const DirectorsOf<Lanes> before{of_edge(first, i - 1), of_edge(second, i - 1)};
+    const DirectorsOf<Lanes> after{of_edge(first, i), of_edge(second, i)};
+    SpatialCellOf<Lanes> cell;
+    cell.turn = turn_between<Lanes>(of_edge(tangent, i - 1), of_edge(tangent, i));
+    cell.inverse = {Lanes::at(row(inverse_length) + i - 1), Lanes::at(row(inverse_length) + i)};
+    const Lanes reference = twist_between<Lanes>(of_edge(tangent, i - 1), of_edge(director, i - 1), of_edge(tangent, i),
+                                                 of_edge(director, i), Lanes::at(row(old_twist) + i));
+    add_twisting<Lanes>(Lanes::at(row(theta) + i) - Lanes::at(row(theta) + i - 1) + reference, l, 0.0, terms, cell);
+    Pair<Lanes> weights{0.0, 0.0};
+    if (model.is_curved()) {
+      // (W.31), (W.33): w_j phi_j with w_j = EI_j (k_j - n_j) and phi_j = f kappa_j.
+      const TurningShare<Lanes> share = turning_share(cell.turn);
+      const Pair<Lanes> kappa = curvature_pair(cell.turn, before, after);
+      for (const int j : {0, 1}) {
+        const std::size_t c = base::at(j);
+        const Lanes moment = stiffness[c] * (Lanes::at(row(curvature + j) + i) - p.natural_curvature[j]);
+        const Lanes angle = share.value * kappa[c];
+        cell.energy += moment * angle;
+        cell.by_cosine += moment * kappa[c] * share.first;
+        weights[c] = moment * share.value;
+        (there * (stiffness[c] * angle)).add_to(row(by_curvature + j) + i);
+      }
+    } else {
+      add_bending<Lanes>(before, after, l, 0.0, terms, cell);
+      weights = cell.by_kappa;
+    }
+    energy += there * cell.energy;
+    if (model.bends_with_loss()) {
+      const auto rate = [&](int k) __attribute__((always_inline)) {
+        return of_edge(velocity, k + 1) - of_edge(velocity, k);
+      };
+      const Pair<Lanes> rates =
+          curvature_rates<Lanes>(cell.turn, before, after, cell.inverse.a * rate(i - 1), cell.inverse.b * rate(i),
+                                 Lanes::at(row(theta_rate) + i - 1), Lanes::at(row(theta_rate) + i));
+      const Lanes by_length = time / l;
+      for (std::size_t j = 0; j < 2; ++j) {
+        const Lanes moment = by_length * stiffness[j] * rates[j];
+        weights[j] += moment;
+        power += there * (moment * rates[j]);
+      }
+      if (model.strands().act()) {
+        for (int k = 0; k < Lanes::count && i + k < n; ++k) {
+          const Vector2d moment = strand_moment(model, i + k, l[k], {rates[0][k], rates[1][k]}, at, out.losses);
+          weights[0].v[k] += moment[0];
+          weights[1].v[k] += moment[1];
+        }
+      }
+    }
+    PairGradientOf<Lanes> g;
+    add_cosine_gradient<Lanes>(cell.turn, cell.inverse, there * cell.by_cosine, g);
+    add_twist_gradient<Lanes>(cell.turn, cell.inverse, there * cell.torque, g);
+    WeightedCurvatureOf<Lanes>(cell.turn, before, after, there * weights[0], there * weights[1])
+        .add_gradient(cell.inverse, g);
+    g.a.add_to(row(force) + i - 1, length_);
+    g.b.add_to(row(force) + i, length_);
+    g.theta_a.add_to(row(torque) + i - 1);
+    g.theta_b.add_to(row(torque) + i);
+    for (int k = 0; k < Lanes::count && i + k < n; ++k) trial.state.reference_twist[base::at(i + k)] = reference[k];
+  }
+  out.assembly.energy += energy.sum();
+  out.losses.power += power.sum();
+}
+
+[[gnu::always_inline]] inline void RodForces::work(const RodModel& model, const DaePoint& at, RodInstant& trial,
+                                                   const Results& out) {
+  work_on_edges(model, trial, out);
+  work_on_vertices(model, at, trial, out);
+}
+
+// No product is joined with its sum in one rounding, so that all processors give the same bits.
+[[gnu::target("avx2")]] void RodForces::work_by_four(const RodModel& model, const DaePoint& at, RodInstant& trial,
+                                                     const Results& out) {
+  work(model, at, trial, out);
+}
+
+void RodForces::work_by_two(const RodModel& model, const DaePoint& at, RodInstant& trial, const Results& out) {
+  work(model, at, trial, out);
+}
+
+// From edges to vertices: what pulls at the edge behind and at the one before, and half the weight of both (W.8).
+void RodForces::gather(const RodModel& model, const Results& out) {
+  constexpr int block = RodModel::block;
+  const int n = model.edges();
+  const Vector3d& weight = model.properties().weight;
+  double* const g = out.assembly.gradient.data();
+  for (int k = 0; k < 3; ++k) {
+    const double* const f = row(force + k);
+    g[k] = -f[0];
+    for (int i = 1; i < n; ++i) g[block * i + k] = f[i - 1] - f[i];
+    g[block * n + k] = f[n - 1];
+  }
+  for (int i = 0; i < n; ++i) g[block * i + RodModel::angle] = row(torque)[i];
+  g[block * n + RodModel::angle] = 0.0;
+  if (!weight.isZero(0.0)) {
+    for (int i = 0; i <= n; ++i) {
+      const double length = model.mass_of(i) / model.constants().mass_per_length;
+      for (int k = 0; k < 3; ++k) {
+        g[block * i + k] -= length * weight[k];
+        out.assembly.energy -= length * weight[k] * row(place + k)[i];
+      }
+    }
+  }
+  for (int i = 0; model.is_curved() && i <= n; ++i)
+    out.by_curvature.col(i) = Vector2d(row(by_curvature)[i], row(by_curvature + 1)[i]);
+}
+
+void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end, const Results& out) {
+  const int i = model.vertex_at(end);
+  SpatialState& state = trial.state;
+  const std::optional<Frame>& mount = end == End::left ? state.left_mount : state.right_mount;
+  double& twist = state.reference_twist[base::at(i)];
+  if (mount && end == End::left) twist = reference_twist(*mount, state.frames.front(), row(old_twist)[i]);
+  if (mount && end == End::right) twist = reference_twist(state.frames.back(), *mount, row(old_twist)[i]);
+  model.rod().add_end_forces(state, end, out.assembly);
+  if (!BendingCell::exists(model, i)) {
+    if (model.is_curved())
+      out.by_curvature.col(i) = at.y.segment<2>(model.curvature_of(i)) - model.properties().natural_curvature;
+    return;
+  }
+  if (!model.bends_with_loss() && !model.is_curved()) return;
+  const BendingCell cell(model, trial, at, i);
+  if (model.is_curved()) add_curved_vertex(model, cell, i, at, out.assembly, out.by_curvature);
+  if (model.bends_with_loss()) add_bending_losses(model, cell, i, at, out.assembly.gradient, out.losses);
+}
+
+void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& trial, const Results& out) {
+  const int n = model.edges();
+  take_unknowns(model, at);
+  for (const int r : {static_cast<int>(torque), static_cast<int>(by_curvature), by_curvature + 1})
+    std::fill_n(row(r), length_, 0.0);
+  out.assembly.energy = 0.0;
+  out.assembly.gradient.resize(model.bands());
+  if (model.is_curved()) out.by_curvature.resize(2, n + 1);
+  out.losses.power = out.losses.strand_energy = 0.0;
+  out.losses.couples = {Vector3d::Zero(), Vector3d::Zero()};
+  out.losses.strand_rates.assign(base::at(n + 1), Vector2d::Zero());
+  if (model.is_curved()) {  // what the edges' own curvature has of energy (W.33)
+    const Vector2d bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+    for (int e = 0; e < n; ++e)
+      out.assembly.energy += 0.5 * bending.dot(model.properties().natural_curvature.cwiseAbs2()) * model.rest_length(e);
+  }
+  if (numerics::has_four_lanes())
+    work_by_four(model, at, trial, out);
+  else
+    work_by_two(model, at, trial, out);
+  gather(model, out);
+  for (const End end : ends) add_end(model, at, trial, end, out);
+}
+
+}  // namespace snare::wire
