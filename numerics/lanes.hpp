@@ -141,57 +141,89 @@ struct SineCosine {
 
 /// Three of them.
 struct Lanes3 {
-  Lanes x, y, z;
+  std::array<Lanes, 3> of{};
 
   [[gnu::always_inline]] Lanes3() = default;
-  [[gnu::always_inline]] Lanes3(const Lanes& a, const Lanes& b, const Lanes& c) : x(a), y(b), z(c) {}
+  [[gnu::always_inline]] Lanes3(const Lanes& a, const Lanes& b, const Lanes& c) : of{a, b, c} {}
   [[gnu::always_inline]] static Lanes3 Zero() { return {}; }
   /// From three rows of numbers, four of each.
   [[gnu::always_inline]] static Lanes3 at(const double* row, int length) {
     return {Lanes::at(row), Lanes::at(row + length), Lanes::at(row + 2 * length)};
   }
   [[gnu::always_inline]] void store(double* row, int length) const {
-    x.store(row);
-    y.store(row + length);
-    z.store(row + 2 * length);
+    for (const int k : {0, 1, 2}) (*this)[k].store(row + k * length);
   }
   [[gnu::always_inline]] void add_to(double* row, int length) const {
-    x.add_to(row);
-    y.add_to(row + length);
-    z.add_to(row + 2 * length);
+    for (const int k : {0, 1, 2}) (*this)[k].add_to(row + k * length);
   }
-  [[nodiscard, gnu::always_inline]] Lanes dot(const Lanes3& o) const { return x * o.x + y * o.y + z * o.z; }
+  [[nodiscard, gnu::always_inline]] const Lanes& operator[](int k) const { return of[static_cast<std::size_t>(k)]; }
+  [[nodiscard, gnu::always_inline]] Lanes& operator[](int k) { return of[static_cast<std::size_t>(k)]; }
+  [[nodiscard, gnu::always_inline]] Lanes dot(const Lanes3& o) const {
+    return of[0] * o.of[0] + of[1] * o.of[1] + of[2] * o.of[2];
+  }
   [[nodiscard, gnu::always_inline]] Lanes squaredNorm() const { return dot(*this); }
   [[nodiscard, gnu::always_inline]] Lanes3 cross(const Lanes3& o) const {
-    return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
+    return {of[1] * o.of[2] - of[2] * o.of[1], of[2] * o.of[0] - of[0] * o.of[2], of[0] * o.of[1] - of[1] * o.of[0]};
   }
   [[gnu::always_inline]] friend Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
+    return {a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2]};
   }
   [[gnu::always_inline]] friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
+    return {a.of[0] - b.of[0], a.of[1] - b.of[1], a.of[2] - b.of[2]};
   }
   [[gnu::always_inline]] friend Lanes3 operator*(const Lanes& s, const Lanes3& a) {
-    return {s * a.x, s * a.y, s * a.z};
+    return {s * a.of[0], s * a.of[1], s * a.of[2]};
   }
   [[gnu::always_inline]] Lanes3& operator+=(const Lanes3& o) { return *this = *this + o; }
   [[gnu::always_inline]] Lanes3& operator-=(const Lanes3& o) { return *this = *this - o; }
   [[gnu::always_inline]] Lanes3& operator*=(const Lanes& s) { return *this = s * *this; }
 };
 
-/// Vectors of three of a number type.
+/// Four matrices of three rows and columns.
+struct Lanes33 {
+  std::array<Lanes, 9> of{};
+  [[gnu::always_inline]] static Lanes33 Zero() { return {}; }
+  [[nodiscard, gnu::always_inline]] const Lanes& operator()(int row, int column) const {
+    return of[static_cast<std::size_t>(3 * column + row)];
+  }
+  [[nodiscard, gnu::always_inline]] Lanes& operator()(int row, int column) {
+    return of[static_cast<std::size_t>(3 * column + row)];
+  }
+};
+
+/// M v, M^T v.
+[[nodiscard, gnu::always_inline]] inline Lanes3 times(const Lanes33& m, const Lanes3& v) {
+  return {m(0, 0) * v[0] + m(0, 1) * v[1] + m(0, 2) * v[2], m(1, 0) * v[0] + m(1, 1) * v[1] + m(1, 2) * v[2],
+          m(2, 0) * v[0] + m(2, 1) * v[1] + m(2, 2) * v[2]};
+}
+[[nodiscard, gnu::always_inline]] inline Lanes3 transposed_times(const Lanes33& m, const Lanes3& v) {
+  return {m(0, 0) * v[0] + m(1, 0) * v[1] + m(2, 0) * v[2], m(0, 1) * v[0] + m(1, 1) * v[1] + m(2, 1) * v[2],
+          m(0, 2) * v[0] + m(1, 2) * v[1] + m(2, 2) * v[2]};
+}
+[[nodiscard]] inline Eigen::Vector3d times(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) {
+  return m * v;
+}
+[[nodiscard]] inline Eigen::Vector3d transposed_times(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) {
+  return m.transpose() * v;
+}
+
+/// Vectors of three, and matrices of three rows and columns, of a number type.
 template <class S>
-struct Vector3Of;
+struct Space;
 template <>
-struct Vector3Of<double> {
-  using type = Eigen::Vector3d;
+struct Space<double> {
+  using Vector = Eigen::Vector3d;
+  using Matrix = Eigen::Matrix3d;
 };
 template <>
-struct Vector3Of<Lanes> {
-  using type = Lanes3;
+struct Space<Lanes> {
+  using Vector = Lanes3;
+  using Matrix = Lanes33;
 };
 template <class S>
-using Vector3 = typename Vector3Of<S>::type;
+using Vector3 = typename Space<S>::Vector;
+template <class S>
+using Matrix3 = typename Space<S>::Matrix;
 
 /// Whether this processor works on four numbers at once.
 [[nodiscard]] inline bool has_four_lanes() {

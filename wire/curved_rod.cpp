@@ -34,16 +34,15 @@ struct Edge {
   EdgeBeam beam;
 };
 
-Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e,
-             EdgeDerivatives wanted = EdgeDerivatives::second) {
+Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
   const Vector3d d = vertex(instant.state, e + 1) - vertex(instant.state, e);
   const double chord = d.norm();
   const EdgeBeamConstants constants{model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)};
-  return {d / chord, chord, edge_beam(constants, chord, near, far, wanted)};
+  return {d / chord, chord, edge_beam(constants, chord, near, far)};
 }
 
-Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e, EdgeDerivatives wanted) {
-  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e, wanted);
+Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e) {
+  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e);
 }
 
 }  // namespace
@@ -56,54 +55,6 @@ void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, co
   out.energy += moment.dot(turning.angles()) - 0.5 * flexibility * moment.squaredNorm();
   by_curvature.col(i) += stiffness_of(model).cwiseProduct(turning.angles() - flexibility * moment);
   add_to_bands(model, i, turning.gradient(moment), 1.0, out.gradient);
-}
-
-// Second derivatives: of an edge H_ll t t^T + N (I - t t^T)/l by its vector and H_lk t by its curvatures, of a vertex
-// d2(w.phi) by its cell and EI_j dphi_j by its curvatures.
-void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const DaePoint& at, const RodSlots& slots,
-                         std::vector<double>& values) {
-  const int n = model.edges();
-  const Vector2d stiffness = stiffness_of(model);
-  using Coupling = RodSlots::CurvatureColumns;  // of a vertex's cell by its curvatures
-  std::vector<Coupling> coupling(base::at(n + 1), Coupling::Zero());
-  std::vector<Eigen::Matrix2d> own(base::at(n + 1), Eigen::Matrix2d::Zero());
-  for (int e = 0; e < n; ++e) {
-    const Edge edge = edge_of(model, instant, at, e, EdgeDerivatives::second);
-    const auto& h = edge.beam.hessian;
-    const double lateral = edge.beam.tension / edge.chord;
-    const Matrix3d along = edge.tangent * edge.tangent.transpose();
-    const Matrix3d by_edge = (h(EdgeBeam::chord, EdgeBeam::chord) - lateral) * along + lateral * Matrix3d::Identity();
-    for (const int row : {0, 1}) {
-      for (const int column : {0, 1}) {
-        slots.add_places(RodModel::block * (e + row), RodModel::block * (e + column),
-                         row == column ? by_edge : Matrix3d(-by_edge), values);
-      }
-    }
-    const Eigen::Matrix<double, 3, 4> by_ends = edge.tangent * h.row(EdgeBeam::chord).tail<4>();
-    Coupling& near = coupling[base::at(e)];
-    near.middleRows<3>(CellRows::middle) -= by_ends.leftCols<2>();
-    near.middleRows<3>(CellRows::after) += by_ends.leftCols<2>();
-    Coupling& far = coupling[base::at(e + 1)];
-    far.middleRows<3>(CellRows::before) -= by_ends.rightCols<2>();
-    far.middleRows<3>(CellRows::middle) += by_ends.rightCols<2>();
-    own[base::at(e)] += h.block<2, 2>(EdgeBeam::near, EdgeBeam::near);
-    own[base::at(e + 1)] += h.block<2, 2>(EdgeBeam::far, EdgeBeam::far);
-    slots.add_curvature_pair(e, h.block<2, 2>(EdgeBeam::near, EdgeBeam::far), values);
-  }
-  for (int i = 0; i <= n; ++i) {
-    if (BendingCell::exists(model, i)) {
-      const BendingCell cell(model, instant, at, i);
-      const VertexTurning turning(cell);
-      slots.add_cell(i, to_cell(turning.hessian(curved_moments(model, at, i))), values);
-      for (int j = 0; j < 2; ++j) {
-        coupling[base::at(i)].col(j) += to_cell(turning.gradient(stiffness[j] * Vector2d::Unit(j)));
-        own[base::at(i)](j, j) -= flexibility_at(model, i) * stiffness[j] * stiffness[j];
-      }
-    } else {
-      own[base::at(i)].setIdentity();
-    }
-    slots.add_curvature(i, coupling[base::at(i)], own[base::at(i)], values);
-  }
 }
 
 CurvedEnd curved_end(const RodModel& model, const RodInstant& instant, const DaePoint& at, End end) {
@@ -134,7 +85,7 @@ Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant, con
 }
 
 double curved_tension(const RodModel& model, const RodInstant& instant, const DaePoint& at, int edge) {
-  return edge_of(model, instant, at, edge, EdgeDerivatives::first).beam.tension;
+  return edge_of(model, instant, at, edge).beam.tension;
 }
 
 Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {

@@ -23,10 +23,6 @@ namespace snare::wire {
 /// Adds energy and gradient by bands of vertex i, which bends, and dE/dk [N m^2].
 void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at,
                        RodAssembly& out, Eigen::Matrix2Xd& by_curvature);
-/// Adds all second derivatives.
-void add_curved_jacobian(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                         const RodSlots& slots, std::vector<double>& values);
-
 /// Derivatives of an end's vertex terms by the edge beside it (e, theta) and by its curvatures: rows and columns
 /// 0 to 2 of e, 3 of theta, 4 and 5 of k.
 struct CurvedEnd {

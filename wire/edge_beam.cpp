@@ -10,35 +10,28 @@ Flexibilities flexibilities(double z) {
   return flexibilities_at(z);
 }
 
-EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& near, const Vector2d& far,
-                   EdgeDerivatives wanted) {
-  const double h = p.rest;
-  const Vector2d& ei = p.bending_stiffness;
-  const BalancedBeam<double> balanced =
-      balanced_beam<double>(h, chord, {near[0], near[1]}, {far[0], far[1]}, p.axial_stiffness, ei);
-  EdgeBeam b;
-  b.tension = balanced.tension;
-  b.energy = balanced.energy;
-  b.gradient << balanced.tension, balanced.near[0], balanced.near[1], balanced.far[0], balanced.far[1];
-  if (wanted == EdgeDerivatives::first) return b;
-
-  const Vector2d sum = near + far;
-  const Vector2d difference = near - far;
-  Eigen::Matrix<double, EdgeBeam::count, 1> by_tension;  // d2/dN d(l, k)
-  by_tension[EdgeBeam::chord] = 1.0;
-  b.hessian.setZero();
+EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& near, const Vector2d& far) {
+  const Pair<double> ei{p.bending_stiffness[0], p.bending_stiffness[1]};
+  const Pair<double> a{near[0], near[1]}, b{far[0], far[1]};
+  const BalancedBeam<double> balanced = balanced_beam<double>(p.rest, chord, a, b, p.axial_stiffness, ei);
+  const BeamStiffness<double> h = beam_stiffness<double>(balanced, p.rest, a, b, ei);
+  EdgeBeam beam;
+  beam.tension = balanced.tension;
+  beam.energy = balanced.energy;
+  beam.gradient << balanced.tension, balanced.near[0], balanced.near[1], balanced.far[0], balanced.far[1];
+  beam.hessian(EdgeBeam::chord, EdgeBeam::chord) = h.chord;
   for (int j = 0; j < 2; ++j) {
-    const auto& [c, d] = balanced.of[base::at(j)];
-    const int a = EdgeBeam::near + j;
-    const int z = EdgeBeam::far + j;
-    by_tension[a] = -0.5 * h * h * h * balanced.lever * (c.first * sum[j] + d.first * difference[j]);
-    by_tension[z] = -0.5 * h * h * h * balanced.lever * (c.first * sum[j] - d.first * difference[j]);
-    b.hessian(a, a) = b.hessian(z, z) = -0.5 * h * ei[j] * (c.value + d.value);
-    b.hessian(a, z) = b.hessian(z, a) = -0.5 * h * ei[j] * (c.value - d.value);
+    const std::size_t m = base::at(j);
+    const int of_near = EdgeBeam::near + j, of_far = EdgeBeam::far + j;
+    beam.hessian(EdgeBeam::chord, of_near) = beam.hessian(of_near, EdgeBeam::chord) = h.chord_near[m];
+    beam.hessian(EdgeBeam::chord, of_far) = beam.hessian(of_far, EdgeBeam::chord) = h.chord_far[m];
+    for (int k = 0; k < 2; ++k) {
+      beam.hessian(of_near, EdgeBeam::near + k) = h.near[m][base::at(k)];
+      beam.hessian(of_far, EdgeBeam::far + k) = h.far[m][base::at(k)];
+      beam.hessian(of_near, EdgeBeam::far + k) = beam.hessian(EdgeBeam::far + k, of_near) = h.next[m][base::at(k)];
+    }
   }
-  // N eliminated: H - H_N H_N^T/H_NN.
-  b.hessian += by_tension * by_tension.transpose() / balanced.softness;
-  return b;
+  return beam;
 }
 
 }  // namespace snare::wire

@@ -31,13 +31,11 @@ struct EdgeBeam {
   double energy = 0.0;   ///< [J]
   double tension = 0.0;  ///< N [N]
   Eigen::Matrix<double, count, 1> gradient;
-  Eigen::Matrix<double, count, count> hessian;  ///< only where it is asked for
+  Eigen::Matrix<double, count, count> hessian;
 };
-/// Which derivatives of an edge's energy are wanted.
-enum class EdgeDerivatives { first, second };
 /// chord: l [m], > 0; near, far: k_a, k_b [1/m].
 [[nodiscard]] EdgeBeam edge_beam(const EdgeBeamConstants& constants, double chord, const Eigen::Vector2d& near,
-                                 const Eigen::Vector2d& far, EdgeDerivatives wanted = EdgeDerivatives::second);
+                                 const Eigen::Vector2d& far);
 
 /// A flexibility of a beam under tension and its derivatives by z.
 template <class S>
@@ -70,7 +68,19 @@ struct BalancedBeam {
 /// rest, chord: h, l [m]; near, far: k_a, k_b [1/m].
 template <class S>
 [[nodiscard]] BalancedBeam<S> balanced_beam(const S& rest, const S& chord, const Pair<S>& near, const Pair<S>& far,
-                                            double axial_stiffness, const Eigen::Vector2d& bending_stiffness);
+                                            double axial_stiffness, const Pair<double>& bending_stiffness);
+
+/// Second derivatives of its energy by the chord and the curvatures at its ends; blocks of the latter by rows.
+template <class S>
+struct BeamStiffness {
+  S chord;                           ///< [N/m]
+  Pair<S> chord_near, chord_far;     ///< [N m]
+  std::array<Pair<S>, 2> near;       ///< of k_a [N m^3]
+  std::array<Pair<S>, 2> next, far;  ///< of k_a by k_b, of k_b
+};
+template <class S>
+[[nodiscard]] BeamStiffness<S> beam_stiffness(const BalancedBeam<S>& beam, const S& rest, const Pair<S>& near,
+                                              const Pair<S>& far, const Pair<double>& bending_stiffness);
 
 // Here, for the compiler to put in where wires in motion spend their time.
 
@@ -180,9 +190,7 @@ template <class S>
 template <class S>
 [[nodiscard, gnu::always_inline]] inline BalancedBeam<S> balanced_beam(const S& rest, const S& chord,
                                                                        const Pair<S>& near, const Pair<S>& far,
-                                                                       double axial_stiffness,
-                                                                       const Eigen::Vector2d& bending_stiffness) {
-  const Pair<double> ei{bending_stiffness[0], bending_stiffness[1]};
+                                                                       double axial_stiffness, const Pair<double>& ei) {
   const bool round = ei[0] == ei[1];
   const double flexibility = 1.0 / axial_stiffness;
   const Pair<S> sum{near[0] + far[0], near[1] + far[1]};
@@ -236,6 +244,40 @@ template <class S>
     b.far[j] = half * (C.value * sum[j] - D.value * difference[j]);
   }
   return b;
+}
+
+// N eliminated: H - H_N H_N^T/H_NN with H_NN = -softness, of which H has no part by the chord.
+template <class S>
+[[nodiscard, gnu::always_inline]] inline BeamStiffness<S> beam_stiffness(const BalancedBeam<S>& beam, const S& rest,
+                                                                         const Pair<S>& near, const Pair<S>& far,
+                                                                         const Pair<double>& ei) {
+  const S inverse = 1.0 / beam.softness;
+  const S factor = -0.5 * rest * rest * rest * beam.lever;
+  BeamStiffness<S> h;
+  h.chord = inverse;
+  Pair<S> by_near, by_far;  // d2E/dN dk
+  for (std::size_t j = 0; j < 2; ++j) {
+    const auto& [C, D] = beam.of[j];
+    const S sum = C.first * (near[j] + far[j]);
+    const S difference = D.first * (near[j] - far[j]);
+    by_near[j] = factor * (sum + difference);
+    by_far[j] = factor * (sum - difference);
+    h.chord_near[j] = by_near[j] * inverse;
+    h.chord_far[j] = by_far[j] * inverse;
+  }
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      h.near[j][k] = by_near[j] * h.chord_near[k];
+      h.next[j][k] = by_near[j] * h.chord_far[k];
+      h.far[j][k] = by_far[j] * h.chord_far[k];
+    }
+    const auto& [C, D] = beam.of[j];
+    const S half = (-0.5 * ei[j]) * rest;
+    h.near[j][j] += half * (C.value + D.value);
+    h.far[j][j] += half * (C.value + D.value);
+    h.next[j][j] += half * (C.value - D.value);
+  }
+  return h;
 }
 
 }  // namespace snare::wire

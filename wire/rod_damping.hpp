@@ -21,10 +21,6 @@ namespace snare::wire {
 /// e' of an edge whose unit tangent is given [1/s].
 [[nodiscard]] double stretch_rate(const RodModel& model, const Eigen::Vector3d& tangent, const numerics::DaePoint& at,
                                   int edge);
-/// The Jacobian of the forces of stretching.
-void add_axial_damping_jacobian(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                                const RodSlots& slots, std::vector<double>& values);
-
 /// tau_b EI_j/l of a cell, j = 1, 2 [N m s].
 [[nodiscard]] std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell);
 

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 using numerics::DaePoint;
 using numerics::Lanes;
 using numerics::Lanes3;
+using Row = RodRow;
 
 namespace {
 
@@ -55,18 +56,16 @@ void add_bending_losses(const RodModel& model, const BendingCell& cell, int i, c
 
 }  // namespace
 
-RodForces::RodForces(const RodModel& model)
-    : length_((model.vertices() + Lanes::count - 1) / Lanes::count * Lanes::count + Lanes::count),
-      data_(base::at(rows * length_), 0.0) {
+RodForces::RodForces(const RodModel& model) : rows_(RodRow::count, model.vertices()) {
   const int n = model.edges();
-  for (int i = 0; i < length_; ++i) {
-    row(rest_length)[i] = model.rest_length(std::min(i, n - 1));
-    row(is_edge)[i] = i < n ? 1.0 : 0.0;
-    row(is_inner)[i] = i > 0 && i < n ? 1.0 : 0.0;
+  for (int i = 0; i < rows_.length(); ++i) {
+    rows_.row(Row::rest_length)[i] = model.rest_length(std::min(i, n - 1));
+    rows_.row(Row::is_edge)[i] = i < n ? 1.0 : 0.0;
+    rows_.row(Row::is_inner)[i] = i > 0 && i < n ? 1.0 : 0.0;
     // Of no edge: along x and y.
-    for (const int r : {static_cast<int>(old_tangent), static_cast<int>(tangent), old_director + 1, director + 1,
-                        first + 1, second + 2})
-      row(r)[i] = 1.0;
+    for (const int r :
+         {+Row::old_tangent, +Row::tangent, Row::old_director + 1, Row::director + 1, Row::first + 1, Row::second + 2})
+      rows_.row(r)[i] = 1.0;
   }
 }
 
@@ -74,11 +73,11 @@ void RodForces::take_frames(const RodInstant& accepted) {
   for (std::size_t e = 0; e < accepted.state.frames.size(); ++e) {
     const Frame& frame = accepted.state.frames[e];
     for (int k = 0; k < 3; ++k) {
-      row(old_tangent + k)[e] = frame.tangent[k];
-      row(old_director + k)[e] = frame.director[k];
+      rows_.row(Row::old_tangent + k)[e] = frame.tangent[k];
+      rows_.row(Row::old_director + k)[e] = frame.director[k];
     }
   }
-  std::ranges::copy(accepted.state.reference_twist, row(old_twist));
+  std::ranges::copy(accepted.state.reference_twist, rows_.row(Row::old_twist));
 }
 
 void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
@@ -86,22 +85,23 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   const double* const x = at.y.data() + model.position_of(0);
   const double* const v = at.y.data() + model.velocity_of(0);
   for (int k = 0; k < 3; ++k) {
-    double* const places = row(place + k);
-    double* const velocities = row(velocity + k);
+    double* const places = rows_.row(Row::place + k);
+    double* const velocities = rows_.row(Row::velocity + k);
     for (int i = 0; i <= n; ++i) {
       places[i] = x[3 * i + k];
       velocities[i] = v[3 * i + k];
     }
     // What stands for no vertex goes on along x.
-    for (int i = n + 1; i < length_; ++i) places[i] = places[i - 1] + (k == 0 ? row(rest_length)[i] : 0.0);
+    for (int i = n + 1; i < rows_.length(); ++i)
+      places[i] = places[i - 1] + (k == 0 ? rows_.row(Row::rest_length)[i] : 0.0);
   }
-  std::copy_n(at.y.data() + model.angle_of(0), n, row(theta));
-  std::copy_n(at.rate.data() + model.angle_of(0), n, row(theta_rate));
+  std::copy_n(at.y.data() + model.angle_of(0), n, rows_.row(Row::theta));
+  std::copy_n(at.rate.data() + model.angle_of(0), n, rows_.row(Row::theta_rate));
   if (!model.is_curved()) return;
   const double* const k = at.y.data() + model.curvature_of(0);
   for (int i = 0; i <= n; ++i) {
-    row(curvature)[i] = k[2 * i];
-    row(curvature + 1)[i] = k[2 * i + 1];
+    rows_.row(Row::curvature)[i] = k[2 * i];
+    rows_.row(Row::curvature + 1)[i] = k[2 * i + 1];
   }
 }
 
@@ -111,34 +111,31 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   const int n = model.edges();
   const double stiffness = model.properties().axial_stiffness;
   const double viscosity = model.damping().axial_time * stiffness;
-  const Vector2d bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+  const Pair<double> bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
   Lanes energy = 0.0, power = 0.0;
   for (int e = 0; e < n; e += Lanes::count) {
-    const auto of_vertex = [&](int r, int i) __attribute__((always_inline)) {
-      return Lanes3::at(row(r) + i, length_);
-    };
-    const Lanes rest = Lanes::at(row(rest_length) + e);
-    const Lanes there = Lanes::at(row(is_edge) + e);
-    const Lanes3 d = of_vertex(place, e + 1) - of_vertex(place, e);
+    const Lanes rest = rows_.at(Row::rest_length, e);
+    const Lanes there = rows_.at(Row::is_edge, e);
+    const Lanes3 d = rows_.at3(Row::place, e + 1) - rows_.at3(Row::place, e);
     const Lanes chord = numerics::sqrt(d.squaredNorm());
     const Lanes inverse = 1.0 / chord;
     const Lanes3 t = inverse * d;
-    const Lanes3 carried = transported<Lanes>(of_vertex(old_director, e), of_vertex(old_tangent, e), t);
-    const Lanes3 m1 = turned<Lanes>(carried, t, Lanes::at(row(theta) + e));
+    const Lanes3 carried = transported<Lanes>(rows_.at3(Row::old_director, e), rows_.at3(Row::old_tangent, e), t);
+    const Lanes3 m1 = turned<Lanes>(carried, t, rows_.at(Row::theta, e));
     const Lanes3 m2 = t.cross(m1);
     // Stretching (W.3) or the beam (W.32), and its damping tau EA e' with e' = t.(v_{i+1} - v_i)/h (M.4).
     Lanes tension;
     if (model.is_curved()) {
       const auto curvatures_of = [&](int i) __attribute__((always_inline)) {
-        return Pair<Lanes>{Lanes::at(row(curvature) + i), Lanes::at(row(curvature + 1) + i)};
+        return Pair<Lanes>{rows_.at(Row::curvature, i), rows_.at(Row::curvature + 1, i)};
       };
       const BalancedBeam<Lanes> beam =
           balanced_beam<Lanes>(rest, chord, curvatures_of(e), curvatures_of(e + 1), stiffness, bending);
       tension = beam.tension;
       energy += there * beam.energy;
       for (const int j : {0, 1}) {
-        (there * beam.near[base::at(j)]).add_to(row(by_curvature + j) + e);
-        (there * beam.far[base::at(j)]).add_to(row(by_curvature + j) + e + 1);
+        rows_.add(Row::by_curvature + j, e, there * beam.near[base::at(j)]);
+        rows_.add(Row::by_curvature + j, e + 1, there * beam.far[base::at(j)]);
       }
     } else {
       const Lanes strain = chord / rest - 1.0;
@@ -146,25 +143,25 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       energy += there * (0.5 * stiffness * strain * strain * rest);
     }
     if (viscosity > 0.0) {
-      const Lanes rate = t.dot(of_vertex(velocity, e + 1) - of_vertex(velocity, e)) / rest;
+      const Lanes rate = t.dot(rows_.at3(Row::velocity, e + 1) - rows_.at3(Row::velocity, e)) / rest;
       const Lanes viscous = viscosity * rate;
       power += there * (viscous * rate * rest);
       tension += viscous;
     }
-    (tension * t).store(row(force) + e, length_);
-    t.store(row(tangent) + e, length_);
-    carried.store(row(director) + e, length_);
-    m1.store(row(first) + e, length_);
-    m2.store(row(second) + e, length_);
-    inverse.store(row(inverse_length) + e);
+    rows_.set(Row::force, e, tension * t);
+    rows_.set(Row::tangent, e, t);
+    rows_.set(Row::director, e, carried);
+    rows_.set(Row::first, e, m1);
+    rows_.set(Row::second, e, m2);
+    rows_.set(Row::inverse_length, e, inverse);
   }
   out.assembly.energy += energy.sum();
   out.losses.power += power.sum();
   for (int e = 0; e < n; ++e) {
-    const auto of_edge = [&](int r) { return Vector3d(row(r)[e], row(r + 1)[e], row(r + 2)[e]); };
-    trial.state.frames[base::at(e)] = {of_edge(tangent), of_edge(director)};
-    trial.directors[base::at(e)] = {of_edge(first), of_edge(second)};
-    trial.inverse_lengths[base::at(e)] = row(inverse_length)[e];
+    const auto of_edge = [&](int r) { return Vector3d(rows_.row(r)[e], rows_.row(r + 1)[e], rows_.row(r + 2)[e]); };
+    trial.state.frames[base::at(e)] = {of_edge(Row::tangent), of_edge(Row::director)};
+    trial.directors[base::at(e)] = {of_edge(Row::first), of_edge(Row::second)};
+    trial.inverse_lengths[base::at(e)] = rows_.row(Row::inverse_length)[e];
   }
 }
 
@@ -180,19 +177,17 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   const double time = model.damping().bending_time;
   Lanes energy = 0.0, power = 0.0;
   for (int i = 1; i < n; i += Lanes::count) {
-    const auto of_edge = [&](int r, int e) __attribute__((always_inline)) {
-      return Lanes3::at(row(r) + e, length_);
-    };
-    const Lanes there = Lanes::at(row(is_inner) + i);
-    const Lanes l = 0.5 * (Lanes::at(row(rest_length) + i - 1) + Lanes::at(row(rest_length) + i));
-    const DirectorsOf<Lanes> before{of_edge(first, i - 1), of_edge(second, i - 1)};
-    const DirectorsOf<Lanes> after{of_edge(first, i), of_edge(second, i)};
+    const Lanes there = rows_.at(Row::is_inner, i);
+    const Lanes l = 0.5 * (rows_.at(Row::rest_length, i - 1) + rows_.at(Row::rest_length, i));
+    const DirectorsOf<Lanes> before{rows_.at3(Row::first, i - 1), rows_.at3(Row::second, i - 1)};
+    const DirectorsOf<Lanes> after{rows_.at3(Row::first, i), rows_.at3(Row::second, i)};
     SpatialCellOf<Lanes> cell;
-    cell.turn = turn_between<Lanes>(of_edge(tangent, i - 1), of_edge(tangent, i));
-    cell.inverse = {Lanes::at(row(inverse_length) + i - 1), Lanes::at(row(inverse_length) + i)};
-    const Lanes reference = twist_between<Lanes>(of_edge(tangent, i - 1), of_edge(director, i - 1), of_edge(tangent, i),
-                                                 of_edge(director, i), Lanes::at(row(old_twist) + i));
-    add_twisting<Lanes>(Lanes::at(row(theta) + i) - Lanes::at(row(theta) + i - 1) + reference, l, 0.0, terms, cell);
+    cell.turn = turn_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::tangent, i));
+    cell.inverse = {rows_.at(Row::inverse_length, i - 1), rows_.at(Row::inverse_length, i)};
+    const Lanes reference =
+        twist_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::director, i - 1),
+                             rows_.at3(Row::tangent, i), rows_.at3(Row::director, i), rows_.at(Row::old_twist, i));
+    add_twisting<Lanes>(rows_.at(Row::theta, i) - rows_.at(Row::theta, i - 1) + reference, l, 0.0, terms, cell);
     Pair<Lanes> weights{0.0, 0.0};
     if (model.is_curved()) {
       // (W.31), (W.33): w_j phi_j with w_j = EI_j (k_j - n_j) and phi_j = f kappa_j.
@@ -200,12 +195,12 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       const Pair<Lanes> kappa = curvature_pair(cell.turn, before, after);
       for (const int j : {0, 1}) {
         const std::size_t c = base::at(j);
-        const Lanes moment = stiffness[c] * (Lanes::at(row(curvature + j) + i) - p.natural_curvature[j]);
+        const Lanes moment = stiffness[c] * (rows_.at(Row::curvature + j, i) - p.natural_curvature[j]);
         const Lanes angle = share.value * kappa[c];
         cell.energy += moment * angle;
         cell.by_cosine += moment * kappa[c] * share.first;
         weights[c] = moment * share.value;
-        (there * (stiffness[c] * angle)).add_to(row(by_curvature + j) + i);
+        rows_.add(Row::by_curvature + j, i, there * (stiffness[c] * angle));
       }
     } else {
       add_bending<Lanes>(before, after, l, 0.0, terms, cell);
@@ -214,11 +209,11 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     energy += there * cell.energy;
     if (model.bends_with_loss()) {
       const auto rate = [&](int k) __attribute__((always_inline)) {
-        return of_edge(velocity, k + 1) - of_edge(velocity, k);
+        return rows_.at3(Row::velocity, k + 1) - rows_.at3(Row::velocity, k);
       };
       const Pair<Lanes> rates =
           curvature_rates<Lanes>(cell.turn, before, after, cell.inverse.a * rate(i - 1), cell.inverse.b * rate(i),
-                                 Lanes::at(row(theta_rate) + i - 1), Lanes::at(row(theta_rate) + i));
+                                 rows_.at(Row::theta_rate, i - 1), rows_.at(Row::theta_rate, i));
       const Lanes by_length = time / l;
       for (std::size_t j = 0; j < 2; ++j) {
         const Lanes moment = by_length * stiffness[j] * rates[j];
@@ -238,14 +233,15 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     add_twist_gradient<Lanes>(cell.turn, cell.inverse, there * cell.torque, g);
     WeightedCurvatureOf<Lanes>(cell.turn, before, after, there * weights[0], there * weights[1])
         .add_gradient(cell.inverse, g);
-    g.a.add_to(row(force) + i - 1, length_);
-    g.b.add_to(row(force) + i, length_);
-    g.theta_a.add_to(row(torque) + i - 1);
-    g.theta_b.add_to(row(torque) + i);
-    for (int k = 0; k < Lanes::count && i + k < n; ++k) trial.state.reference_twist[base::at(i + k)] = reference[k];
+    rows_.add(Row::force, i - 1, g.a);
+    rows_.add(Row::force, i, g.b);
+    rows_.add(Row::torque, i - 1, g.theta_a);
+    rows_.add(Row::torque, i, g.theta_b);
+    rows_.set(Row::twist, i, reference);
   }
   out.assembly.energy += energy.sum();
   out.losses.power += power.sum();
+  std::copy_n(rows_.row(Row::twist) + 1, n - 1, trial.state.reference_twist.begin() + 1);
 }
 
 [[gnu::always_inline]] inline void RodForces::work(const RodModel& model, const DaePoint& at, RodInstant& trial,
@@ -271,24 +267,24 @@ void RodForces::gather(const RodModel& model, const Results& out) {
   const Vector3d& weight = model.properties().weight;
   double* const g = out.assembly.gradient.data();
   for (int k = 0; k < 3; ++k) {
-    const double* const f = row(force + k);
+    const double* const f = rows_.row(Row::force + k);
     g[k] = -f[0];
     for (int i = 1; i < n; ++i) g[block * i + k] = f[i - 1] - f[i];
     g[block * n + k] = f[n - 1];
   }
-  for (int i = 0; i < n; ++i) g[block * i + RodModel::angle] = row(torque)[i];
+  for (int i = 0; i < n; ++i) g[block * i + RodModel::angle] = rows_.row(Row::torque)[i];
   g[block * n + RodModel::angle] = 0.0;
   if (!weight.isZero(0.0)) {
     for (int i = 0; i <= n; ++i) {
       const double length = model.mass_of(i) / model.constants().mass_per_length;
       for (int k = 0; k < 3; ++k) {
         g[block * i + k] -= length * weight[k];
-        out.assembly.energy -= length * weight[k] * row(place + k)[i];
+        out.assembly.energy -= length * weight[k] * rows_.row(Row::place + k)[i];
       }
     }
   }
   for (int i = 0; model.is_curved() && i <= n; ++i)
-    out.by_curvature.col(i) = Vector2d(row(by_curvature)[i], row(by_curvature + 1)[i]);
+    out.by_curvature.col(i) = Vector2d(rows_.row(Row::by_curvature)[i], rows_.row(Row::by_curvature + 1)[i]);
 }
 
 void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end, const Results& out) {
@@ -296,8 +292,8 @@ void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& t
   SpatialState& state = trial.state;
   const std::optional<Frame>& mount = end == End::left ? state.left_mount : state.right_mount;
   double& twist = state.reference_twist[base::at(i)];
-  if (mount && end == End::left) twist = reference_twist(*mount, state.frames.front(), row(old_twist)[i]);
-  if (mount && end == End::right) twist = reference_twist(state.frames.back(), *mount, row(old_twist)[i]);
+  if (mount && end == End::left) twist = reference_twist(*mount, state.frames.front(), rows_.row(Row::old_twist)[i]);
+  if (mount && end == End::right) twist = reference_twist(state.frames.back(), *mount, rows_.row(Row::old_twist)[i]);
   model.rod().add_end_forces(state, end, out.assembly);
   if (!BendingCell::exists(model, i)) {
     if (model.is_curved())
@@ -313,8 +309,8 @@ void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& t
 void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& trial, const Results& out) {
   const int n = model.edges();
   take_unknowns(model, at);
-  for (const int r : {static_cast<int>(torque), static_cast<int>(by_curvature), by_curvature + 1})
-    std::fill_n(row(r), length_, 0.0);
+  rows_.clear(Row::torque, 1);
+  rows_.clear(Row::by_curvature, 2);
   out.assembly.energy = 0.0;
   out.assembly.gradient.resize(model.bands());
   if (model.is_curved()) out.by_curvature.resize(2, n + 1);

@@ -2,6 +2,7 @@
 
 #include "numerics/dae.hpp"
 #include "wire/rod_model.hpp"
+#include "wire/rod_rows.hpp"
 
 #include <Eigen/Core>
 
@@ -35,31 +36,10 @@ class RodForces {
   /// At a point: frames, directors and twists of `trial`, whose mounts and unknowns are set, and what the rod does.
   void evaluate(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const Results& out);
 
+  /// All numbers as they are at the last point.
+  [[nodiscard]] const RodRows& rows() const { return rows_; }
+
  private:
-  // Rows of numbers, one for each vertex or edge and some that stand for none, so that four can be taken everywhere.
-  enum Row : int {
-    place = 0,
-    velocity = place + 3,
-    theta = velocity + 3,
-    theta_rate,
-    curvature,
-    old_tangent = curvature + 2,
-    old_director = old_tangent + 3,
-    old_twist = old_director + 3,
-    tangent,
-    director = tangent + 3,
-    first = director + 3,
-    second = first + 3,
-    inverse_length = second + 3,
-    force,
-    torque = force + 3,
-    by_curvature,
-    rest_length = by_curvature + 2,
-    is_edge,
-    is_inner,
-    rows
-  };
-  [[nodiscard]] double* row(int r) { return data_.data() + r * length_; }
   void take_unknowns(const RodModel& model, const numerics::DaePoint& at);
   void work(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const Results& out);
   void work_by_four(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const Results& out);
@@ -69,8 +49,7 @@ class RodForces {
   void gather(const RodModel& model, const Results& out);
   void add_end(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, End end, const Results& out);
 
-  int length_;
-  std::vector<double> data_;
+  RodRows rows_;
 };
 
 }  // namespace snare::wire

@@ -20,12 +20,17 @@ using Eigen::Vector3d;
 using numerics::DaePoint;
 
 RodPart::RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances)
-    : name_(std::move(name)), tolerances_(tolerances), model_(rod), forces_(model_) {
+    : name_(std::move(name)), tolerances_(tolerances), model_(rod), forces_(model_), stiffness_(model_) {
   band_.resize(model_.bands());
 }
 
 void RodPart::declare(numerics::DaeLayout& layout) {
   model_.declare(layout, name_, tolerances_);
+}
+
+void RodPart::attach_pattern(const numerics::SparseMatrix& pattern) {
+  slots_.attach(model_, pattern);
+  stiffness_.attach(model_, slots_);
 }
 
 void RodPart::rates(std::vector<std::pair<int, int>>& pairs) const {
@@ -125,7 +130,6 @@ void RodPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
 
 void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   evaluate(at);
-  rod().assemble(trial_.state, {false, false, false}, stiffness_);
   const int bands = model_.bands();
   // What is held: 1 for x and v, or theta. Else x' - v: (c, -1), and m v' + a m v: m (c + a).
   for (int i = 0; i < bands; ++i) {
@@ -143,32 +147,28 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
           c * model_.inertia_of(i / RodModel::block) + model_.damping().mass_rate * mass_of(i / RodModel::block));
     }
   }
-  // d2E, both triangles of the band.
-  for (int j = 0; j < bands; ++j) {
-    const double* column = stiffness_.hessian.column(j);
-    for (int i = j; i <= std::min(bands - 1, j + SpatialRod::half_bandwidth); ++i) {
-      const double value = column[i - j];
-      slots_.add_place(i, j, value, values);
-      if (i != j) slots_.add_place(j, i, value, values);
-    }
+  stiffness_.add(model_, {forces_.rows(), trial_, at, c}, values);
+  for (const End which : ends) {
+    const SpatialEnd& end = model_.properties().end(which);
+    const int row = RodModel::block * model_.vertex_at(which);
+    if (end.gives()) slots_.add_place(row, row, end.translational_stiffness, values);
   }
   if (model_.spin_drag() > 0.0)
     RodSlots::add_to(values, slots_.diagonal(RodModel::angle).place, c * model_.spin_drag());  // theta_0
-  if (model_.is_curved()) add_curved_jacobian(model_, trial_, at, slots_, values);
   add_losses_jacobian(at, c, values);
 }
 
+// Of the strands, and of what the ends damp.
 void RodPart::add_losses_jacobian(const DaePoint& at, double c, std::vector<double>& values) {
-  if (model_.damping().axial_time > 0.0) add_axial_damping_jacobian(model_, trial_, at, slots_, values);
-  if (!model_.bends_with_loss()) return;
   for (int i = 0; i < vertices(); ++i) {
+    const bool damps = model_.damping().bending_time > 0.0 && model_.end_of(i);
     if (!BendingCell::exists(model_, i)) {
       if (model_.strands().act()) add_resting_strands_jacobian(model_, i, c, slots_, values);
-      continue;
+    } else if (damps || model_.strands().act()) {
+      const BendingCell cell(model_, trial_, at, i);
+      if (model_.strands().act()) add_strands_jacobian(model_, cell, i, at, c, slots_, values);
+      if (damps) add_bending_damping_jacobian(model_, cell, i, c, slots_, values);
     }
-    const BendingCell cell(model_, trial_, at, i);
-    if (model_.strands().act()) add_strands_jacobian(model_, cell, i, at, c, slots_, values);
-    if (model_.damping().bending_time > 0.0) add_bending_damping_jacobian(model_, cell, i, c, slots_, values);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "wire/rod_in_motion.hpp"
 #include "wire/rod_model.hpp"
 #include "wire/rod_slots.hpp"
+#include "wire/rod_stiffness.hpp"
 #include "wire/spatial_rod.hpp"
 
 #include <Eigen/Core>
@@ -38,7 +39,7 @@ class RodPart final : public numerics::DaePart {
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override { append_sparsity(model_, entries); }
   void rates(std::vector<std::pair<int, int>>& pairs) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(model_, pattern); }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Carries the reference frames along.
@@ -133,10 +134,10 @@ class RodPart final : public numerics::DaePart {
   RodInstant trial_;
   Eigen::VectorXd y_, rate_;       // that point, empty: none
   RodAssembly assembly_;           // energy and forces
-  RodAssembly stiffness_;          // second derivatives
   Eigen::Matrix2Xd by_curvature_;  // dE/dk of higher order
   RodLosses losses_;
   RodForces forces_;
+  RodStiffness stiffness_;
   Eigen::VectorXd band_;
 };
 

@@ -103,25 +103,6 @@ void RodSlots::attach(const RodModel& model, const numerics::SparseMatrix& patte
       }
     }
   }
-  curvature_.assign(model.is_curved() ? base::at(model.vertices()) : 0, {});
-  for (int i = 0; model.is_curved() && i < model.vertices(); ++i) {
-    CurvatureSlots& slots = curvature_[base::at(i)];
-    const int first = CellRows::first_band(i);
-    const int k = model.curvature_of(i);
-    for (int j = 0; j < 2; ++j) {
-      for (int a = 0; a < CellRows::count; ++a) {
-        const bool there = first + a >= 0 && first + a < bands_ - 1;
-        slots.column[base::at(a)][base::at(j)] = there ? pattern.slot(model.balance_of(first + a), k + j) : -1;
-        slots.row[base::at(a)][base::at(j)] = there ? pattern.slot(k + j, model.unknown_of(first + a)) : -1;
-      }
-      for (int m = 0; m < 2; ++m) {
-        const bool last = i == model.edges();
-        slots.own[base::at(j)][base::at(m)] = pattern.slot(k + j, k + m);
-        slots.next[base::at(j)][base::at(m)] = last ? -1 : pattern.slot(k + j, k + 2 + m);
-        slots.next_transposed[base::at(j)][base::at(m)] = last ? -1 : pattern.slot(k + 2 + j, k + m);
-      }
-    }
-  }
 }
 
 namespace {
@@ -142,11 +123,6 @@ void add_column(const Slots& slots, std::size_t column, const CellColumn& by_pla
 }
 
 }  // namespace
-
-void RodSlots::add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const {
-  const double* entry = by_place.data();
-  for (const int slot : cells_[base::at(i)].place) add_to(values, slot, *entry++);
-}
 
 void RodSlots::add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
                         std::vector<double>& values) const {
@@ -171,30 +147,6 @@ void RodSlots::add_cell(int i, const CellProducts& products, double c, std::vect
       by_rate[a] = force[0][row] * rate[0][column] + force[1][row] * rate[1][column];
     }
     add_column(cells_[base::at(i)], b, by_place, by_rate, c, values);
-  }
-}
-
-void RodSlots::add_curvature(int i, const CurvatureColumns& by_cell, const Eigen::Matrix2d& own,
-                             std::vector<double>& values) const {
-  const CurvatureSlots& slots = curvature_[base::at(i)];
-  for (std::size_t j = 0; j < 2; ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    for (int a = 0; a < CellRows::count; ++a) {
-      add_to(values, slots.column[base::at(a)][j], by_cell(a, column));
-      add_to(values, slots.row[base::at(a)][j], by_cell(a, column));
-    }
-    for (std::size_t m = 0; m < 2; ++m) add_to(values, slots.own[j][m], own(column, static_cast<Eigen::Index>(m)));
-  }
-}
-
-void RodSlots::add_curvature_pair(int i, const Eigen::Matrix2d& block, std::vector<double>& values) const {
-  const CurvatureSlots& slots = curvature_[base::at(i)];
-  for (std::size_t j = 0; j < 2; ++j) {
-    for (std::size_t m = 0; m < 2; ++m) {
-      const double value = block(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(m));
-      add_to(values, slots.next[j][m], value);
-      add_to(values, slots.next_transposed[m][j], value);
-    }
   }
 }
 

@@ -25,10 +25,6 @@ class RodSlots {
   void add_place(int row, int column, double value, std::vector<double>& values) const {
     add_to(values, place_[slot_of(row, column)], value);
   }
-  /// The same by the velocity of the column's coordinate.
-  void add_rate(int row, int column, double value, std::vector<double>& values) const {
-    add_to(values, rate_[slot_of(row, column)], value);
-  }
   /// Adds what vertex i's cell does to the balances: by the places, and by their rates, which are unknowns v
   /// of coordinates and c times the unknown of angles. None by a mount's angle.
   void add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
@@ -40,23 +36,11 @@ class RodSlots {
   };
   /// The same of a cell whose matrices these are.
   void add_cell(int i, const CellProducts& products, double c, std::vector<double>& values) const;
-  /// Adds second derivatives by the places of vertex i's cell.
-  void add_cell(int i, const CellMatrix& by_place, std::vector<double>& values) const;
-  /// Adds a 3 x 3 block by places from a band on.
-  void add_places(int row, int column, const Eigen::Matrix3d& block, std::vector<double>& values) const {
-    for (int r = 0; r < 3; ++r) {
-      for (int s = 0; s < 3; ++s) add_place(row + r, column + s, block(r, s), values);
-    }
-  }
-
-  /// Of the balances of a vertex's cell by its curvatures.
-  using CurvatureColumns = Eigen::Matrix<double, CellRows::count, 2>;
-  /// Adds what couples vertex i's curvatures with its cell, on both sides of the diagonal, and with themselves. Rows of
-  /// a vertex that does not bend have nothing by the cell.
-  void add_curvature(int i, const CurvatureColumns& by_cell, const Eigen::Matrix2d& own,
-                     std::vector<double>& values) const;
-  /// Adds what couples the curvatures of vertices i (rows) and i + 1, on both sides.
-  void add_curvature_pair(int i, const Eigen::Matrix2d& block, std::vector<double>& values) const;
+  /// Where that is, and where the same by a velocity is; -1: nowhere.
+  [[nodiscard]] int place_slot(int row, int column) const { return place_[slot_of(row, column)]; }
+  [[nodiscard]] int rate_slot(int row, int column) const { return rate_[slot_of(row, column)]; }
+  /// Any entry, by row and column of the DAE.
+  [[nodiscard]] int slot(int row, int column) const { return pattern_->slot(row, column); }
   [[nodiscard]] bool has_balance(int band) const { return place_[slot_of(band, band)] >= 0; }
 
   /// Slots of x' - v = 0 and of m v' in the balance (x = X, v = 0 where held).
@@ -92,11 +76,6 @@ class RodSlots {
     std::array<int, CellRows::count * CellRows::count> place{}, rate{};
   };
   std::vector<CellSlots> cells_;
-  struct CurvatureSlots {
-    std::array<std::array<int, 2>, CellRows::count> column{}, row{};  // balances by k, rows of k by places
-    std::array<std::array<int, 2>, 2> own{}, next{}, next_transposed{};
-  };
-  std::vector<CurvatureSlots> curvature_;  // of every vertex of a rod of higher order
 };
 
 }  // namespace snare::wire

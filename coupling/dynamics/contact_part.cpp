@@ -26,34 +26,6 @@ constexpr double least_curvature = 1.0;
 // Beside what may be touched next, so that the pattern seldom changes.
 constexpr int coupled_beside = 2;
 
-/// What changes along one unknown, or along one direction of a node.
-struct Change {
-  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
-  Vector2d sliding = Vector2d::Zero();
-  double load = 0.0, zeta = 0.0;
-
-  Change() = default;
-  Change(const ContactChange& c, double shift)
-      : force(c.force), torque(c.torque), sliding(c.sliding), load(c.load), zeta(shift) {}
-  [[nodiscard]] Change times(double factor) const {
-    Change c = *this;
-    c.force *= factor;
-    c.torque *= factor;
-    c.sliding *= factor;
-    c.load *= factor;
-    c.zeta *= factor;
-    return c;
-  }
-  Change& operator+=(const Change& o) {
-    force += o.force;
-    torque += o.torque;
-    sliding += o.sliding;
-    load += o.load;
-    zeta += o.zeta;
-    return *this;
-  }
-};
-
 }  // namespace
 
 ContactPart::ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece,
@@ -89,14 +61,13 @@ void ContactPart::declare(numerics::DaeLayout& layout) {
 }
 
 bool ContactPart::outgrows_pattern(const DaePoint& at) {
-  if (search_.candidates().empty()) return false;
-  find(at.y, found_);
+  const Found& found = found_at(at.y);
   const auto known = [this](const Node& n) { return coupled_[base::at(n.element)]; };
-  if (std::ranges::all_of(found_.nodes, known)) return false;
+  if (std::ranges::all_of(found.nodes, known)) return false;
   std::vector<bool> wanted(coupled_.size(), false);
   for (const int e : search_.candidates()) wanted[base::at(e)] = coupled_[base::at(e)];
   const int last = search_.curve().elements() - 1;
-  for (const Node& n : found_.nodes) {
+  for (const Node& n : found.nodes) {
     for (int k = std::max(0, n.element - coupled_beside); k <= std::min(last, n.element + coupled_beside); ++k)
       wanted[base::at(k)] = true;
   }
@@ -106,7 +77,7 @@ bool ContactPart::outgrows_pattern(const DaePoint& at) {
 
 void ContactPart::restore_state(const VectorView& y, std::span<const double>& /*memory*/) {
   std::fill(coupled_.begin(), coupled_.end(), false);
-  search_.update(y);
+  look_around(y);
 }
 
 void ContactPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
@@ -196,9 +167,6 @@ void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, 
 }
 
 void ContactPart::find(const VectorView& y, Found& found) const {
-  found.nodes.clear();
-  found.stretches.clear();
-  found.elements.clear();
   const Pose where = search_.X_WS(y);
   const BezierWire& curve = search_.curve();
   for (const int e : search_.candidates()) {
@@ -250,11 +218,18 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
   return contact_geometry(contact, search_.shape(), curve, body_, y, bristle, n.place);
 }
 
-void ContactPart::find_geometries(const VectorView& y, Found& found) const {
-  found.nodes.clear();
-  if (!search_.candidates().empty()) find(y, found);
-  found.geometries.clear();
-  for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
+// Residual and Jacobian, sums and samples are of the same places again and again.
+const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
+  if (found_.y.size() == y.size() && found_.y == y) return found_;
+  found_.y = y;
+  found_.nodes.clear();
+  found_.stretches.clear();
+  found_.elements.clear();
+  found_.geometries.clear();
+  if (!search_.candidates().empty()) find(y, found_);
+  for (const Node& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
+  if (has_bristle()) add_up_bristles(y, found_);
+  return found_;
 }
 
 void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
@@ -272,10 +247,10 @@ void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
 }
 
 void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  find_geometries(at.y, found_);
-  for (std::size_t q = 0; q < found_.nodes.size(); ++q) {
-    const Node& n = found_.nodes[q];
-    const ContactGeometry& g = found_.geometries[q];
+  const Found& found = found_at(at.y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const ContactGeometry& g = found.geometries[q];
     const Vector3d force = n.weight * g.force;
     // The wire: m v_k' + ... - N_k f = 0, but for components that a mount holds.
     for (int k = 0; k < 4; ++k) {
@@ -291,109 +266,128 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
   }
   if (!has_bristle()) return;
   const int count = 2 * rod_.vertices();
-  add_up_bristles(at.y, found_);
-  rows.segment(bristle_, count) += at.rate.segment(bristle_, count) - found_.bristles.rates.reshaped();
+  rows.segment(bristle_, count) += at.rate.segment(bristle_, count) - found.bristles.rates.reshaped();
 }
 
 void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(slots_, values);
-  find_geometries(at.y, found_);
+  const Found& found = found_at(at.y);
   if (has_bristle()) {
-    add_up_bristles(at.y, found_);
     for (int i = 0; i < rod_.vertices(); ++i) {
-      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + found_.bristles.forgetting(i));
+      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + found.bristles.forgetting(i));
     }
   }
-  for (std::size_t q = 0; q < found_.nodes.size(); ++q)
-    add_node_jacobian(found_.nodes[q], found_.geometries[q], at.y, into);
+  // The nodes of an element are behind each other.
+  for (std::size_t q = 0; q < found.nodes.size();) {
+    const int element = found.nodes[q].element;
+    derivatives_.setZero();
+    for (; q < found.nodes.size() && found.nodes[q].element == element; ++q)
+      add_node_derivatives(found.nodes[q], found.geometries[q], found.bristles, at.y);
+    put_derivatives(element, into);
+  }
 }
 
-// One column after another: the unknown's direction, and what changes along it in all rows.
-void ContactPart::add_node_jacobian(const Node& n, const ContactGeometry& g, const VectorView& y,
-                                    const numerics::PatternValues& into) const {
+// One direction after another: what changes along it in all rows, and from there to the unknowns that it belongs to.
+void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, const BristleMeans& means,
+                                       const VectorView& y) {
   const MotionFriction& friction = n.place == ContactPlace::mount ? at_mount_.friction : contact_.friction;
   // A law's minimum follows the tangency n.X' = 0.
   ContactDirection along;
   along.zeta = 1.0;
   const double curvature = n.follows ? contact_change(friction, g, along).tangency : 0.0;
-  const auto change = [&](ContactDirection d) {
-    if (curvature < least_curvature) return Change(contact_change(friction, g, d), 0.0);
-    d.zeta = -contact_change(friction, g, d).tangency / curvature;
-    return Change(contact_change(friction, g, d), d.zeta);
-  };
   std::array<BristleRate, 2> bristles;
   for (int h = 0; has_bristle() && h < 2; ++h) {
     bristles[base::at(h)] =
         bristle_rate(contact_.friction, {y.segment<2>(bristle_of(n.element + h)), g.state.sliding, 0.0});
   }
-  const auto column = [&](int unknown, const Change& d) {
-    // Wire and body: -d(N_k f) with dN_k = N_k' dzeta, + df, and -dm for the torque m on the body.
-    for (int k = 0; k < 4; ++k) {
-      const Vector3d row = -n.weight * (n.value[k] * d.force + n.slope[k] * d.zeta * g.force);
-      for (int a = 0; a < 3; ++a) {
-        if (!rod_.is_held(n.first + k, a)) into.add(rod_.velocity_of(n.first + k) + a, unknown, row[a]);
-      }
-    }
-    for (int a = 0; body_.moves_freely() && a < 3; ++a) {
-      into.add(body_.velocity() + a, unknown, n.weight * d.force[a]);
-      into.add(body_.spin() + a, unknown, -n.weight * d.torque[a]);
-    }
-    for (int h = 0; has_bristle() && h < 2; ++h) {
-      const int i = n.element + h, z = bristle_of(i);
+  // Wire and body: -d(N_k f) with dN_k = N_k' dzeta, + df, and -dm for the torque m on the body.
+  const auto change = [&](ContactDirection d) {
+    if (curvature >= least_curvature) d.zeta = -contact_change(friction, g, d).tangency / curvature;
+    const ContactChange by = contact_change(friction, g, d);
+    DerivativeRows rows;
+    for (int k = 0; k < 4; ++k)
+      rows.segment<3>(3 * k) = -n.weight * (n.value[k] * by.force + n.slope[k] * d.zeta * g.force);
+    rows.segment<3>(body_rows) = n.weight * by.force;
+    rows.segment<3>(body_rows + 3) = -n.weight * by.torque;
+    for (int h = 0; h < 2; ++h) {
+      auto of_bristle = rows.segment<2>(bristle_rows + 2 * h);
+      of_bristle.setZero();
+      if (!has_bristle()) continue;
       const BristleRate& r = bristles[base::at(h)];
-      const Vector2d row = found_.bristles.change(i, n.weight * n.hats[base::at(h)], d.load, r.rate,
-                                                  g.state.normal * r.by_sliding * d.sliding);
-      for (int a = 0; a < 2; ++a) into.add(z + a, unknown, row[a]);
+      of_bristle = means.change(n.element + h, n.weight * n.hats[base::at(h)], by.load, r.rate,
+                                g.state.normal * r.by_sliding * by.sliding);
     }
+    return rows;
   };
   // Vertices: by N_k and N_k' of their places, by N_k of their velocities.
   for (int a = 0; a < 3; ++a) {
     ContactDirection place, slope, velocity;
     place.x = slope.slope = velocity.v = Vector3d::Unit(a);
-    const Change by_place = change(place), by_slope = change(slope), by_velocity = change(velocity);
+    const DerivativeRows by_place = change(place), by_slope = change(slope), by_velocity = change(velocity);
     for (int k = 0; k < 4; ++k) {
-      Change whole = by_place.times(n.value[k]);
-      whole += by_slope.times(n.slope[k]);
-      column(rod_.position_of(n.first + k) + a, whole);
-      column(rod_.velocity_of(n.first + k) + a, by_velocity.times(n.value[k]));
+      derivatives_.col(3 * k + a) += n.value[k] * by_place + n.slope[k] * by_slope;
+      derivatives_.col(velocity_columns + 3 * k + a) += n.value[k] * by_velocity;
     }
     ContactDirection body_place, body_velocity, body_spin;
     body_place.p = body_velocity.body_velocity = body_spin.spin = Vector3d::Unit(a);
-    column(body_.position() + a, change(body_place));
-    column(body_.velocity() + a, change(body_velocity));
-    column(body_.spin() + a, change(body_spin));
+    derivatives_.col(body_columns + a) += change(body_place);
+    derivatives_.col(body_rate_columns + a) += change(body_velocity);
+    derivatives_.col(body_rate_columns + 3 + a) += change(body_spin);
   }
   // dq turns the body by 4 R Q^T dq in the world.
   const Eigen::Matrix<double, 3, 4> turn =
       4.0 * g.R_WB * multibody::quaternion_rates(y.segment<4>(body_.quaternion())).transpose();
-  for (int a = 0; a < 4; ++a) {
+  for (int a = 0; a < 3; ++a) {
     ContactDirection d;
-    d.turn = turn.col(a);
-    column(body_.quaternion() + a, change(d));
+    d.turn = Vector3d::Unit(a);
+    const DerivativeRows by_turn = change(d);
+    for (int k = 0; k < 4; ++k) derivatives_.col(body_columns + 3 + k) += turn(a, k) * by_turn;
   }
-  for (int a = 0; has_bristle() && a < 2; ++a) {
+  if (!has_bristle()) return;
+  for (int a = 0; a < 2; ++a) {
     ContactDirection d;
     d.bristle = Vector2d::Unit(a);
-    const Change by_bristle = change(d);
-    for (int h = 0; h < 2; ++h) column(bristle_of(n.element + h) + a, by_bristle.times(n.hats[base::at(h)]));
+    const DerivativeRows by_bristle = change(d);
+    for (int h = 0; h < 2; ++h) derivatives_.col(bristle_columns + 2 * h + a) += n.hats[base::at(h)] * by_bristle;
   }
   // The bristles themselves.
-  for (int h = 0; has_bristle() && h < 2; ++h) {
-    const int z = bristle_of(n.element + h);
-    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / found_.bristles.loads[n.element + h];
-    for (int a = 0; a < 2; ++a) {
-      for (int b = 0; b < 2; ++b) into.add(z + a, z + b, -share * bristles[base::at(h)].by_bristle(a, b));
-    }
+  for (int h = 0; h < 2; ++h) {
+    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / means.loads[n.element + h];
+    derivatives_.block<2, 2>(bristle_rows + 2 * h, bristle_columns + 2 * h) -= share * bristles[base::at(h)].by_bristle;
   }
+}
+
+void ContactPart::put_derivatives(int element, const numerics::PatternValues& into) const {
+  const int first = search_.curve().first_vertex(element);
+  bool held = false;
+  for (int k = 0; k < 12; ++k) held = held || rod_.is_held(first + k / 3, k % 3);
+  const auto put = [&](int unknown, int column) {
+    const auto rows = derivatives_.col(column);
+    if (!held) into.add(rod_.velocity_of(first), unknown, rows.head<12>());
+    for (int k = 0; held && k < 12; ++k) {
+      if (!rod_.is_held(first + k / 3, k % 3)) into.add(rod_.velocity_of(first) + k, unknown, rows[k]);
+    }
+    if (body_.moves_freely()) {
+      into.add(body_.velocity(), unknown, rows.segment<3>(body_rows));
+      into.add(body_.spin(), unknown, rows.segment<3>(body_rows + 3));
+    }
+    if (has_bristle()) into.add(bristle_of(element), unknown, rows.tail<4>());
+  };
+  for (int k = 0; k < 12; ++k) {
+    put(rod_.position_of(first) + k, k);
+    put(rod_.velocity_of(first) + k, velocity_columns + k);
+  }
+  for (int k = 0; k < BodyPart::coordinates; ++k) put(body_.position() + k, body_columns + k);
+  for (int k = 0; k < BodyPart::velocities; ++k) put(body_.velocity() + k, body_rate_columns + k);
+  for (int k = 0; has_bristle() && k < 4; ++k) put(bristle_of(element) + k, bristle_columns + k);
 }
 
 ContactPart::Sums ContactPart::sums(const VectorView& y) const {
   Sums s;
-  if (search_.candidates().empty()) return s;
-  Found found;
-  find(y, found);
-  for (const Node& n : found.nodes) {
-    const ContactGeometry g = geometry(n, y);
+  const Found& found = found_at(y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const ContactGeometry& g = found.geometries[q];
     const Vector3d force = n.weight * g.force;
     s.force += force;
     s.normal += n.weight * g.state.normal;
@@ -424,17 +418,12 @@ std::pair<double, double> ContactPart::gap_at(const VectorView& y, double coordi
 
 void ContactPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
   if (!has_bristle()) return;
-  Found found;
-  find_geometries(y, found);
-  add_up_bristles(y, found);
-  rate.segment(bristle_, 2 * rod_.vertices()) = found.bristles.rates.reshaped();
+  rate.segment(bristle_, 2 * rod_.vertices()) = found_at(y).bristles.rates.reshaped();
 }
 
 std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
   std::vector<ContactSample> list;
-  if (search_.candidates().empty()) return list;
-  Found found;
-  find(y, found);
+  const Found& found = found_at(y);
   const BezierWire& curve = search_.curve();
   // One after another along the wire; a stretch that goes on in the next element is one with it.
   double reached = -1.0;
@@ -451,13 +440,14 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
     of_stretch.push_back(list.size() - 1);
     list.back().gap = std::min(list.back().gap, s.deepest.gap);
   }
-  for (const Node& n : found.nodes) {
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const ContactGeometry& g = found.geometries[q];
     const auto owner = has_law()
                            ? std::find(found.elements.begin(), found.elements.end(), n.element) - found.elements.begin()
                            : static_cast<std::ptrdiff_t>(n.stretch);
     if (of_stretch.empty()) break;
     ContactSample& s = list[of_stretch[std::min(static_cast<std::size_t>(owner), of_stretch.size() - 1)]];
-    const ContactGeometry g = geometry(n, y);
     const double normal = n.weight * g.state.normal;
     s.force += n.weight * g.force;
     s.normal_force += normal;

@@ -41,7 +41,10 @@ class ContactPart final : public numerics::DaePart {
   void accept(const numerics::DaePoint& at) override { search_.update(at.y); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
-  void look_around(const numerics::VectorView& y) { search_.update(y); }
+  void look_around(const numerics::VectorView& y) {
+    search_.update(y);
+    found_.y.resize(0);
+  }
 
   /// Which elements are near, and where the wire's curve is.
   [[nodiscard]] const ContactSearch& search() const { return search_; }
@@ -86,6 +89,7 @@ class ContactPart final : public numerics::DaePart {
     std::size_t stretch = 0;
   };
   struct Found {
+    Eigen::VectorXd y;  // where; empty: nowhere yet
     std::vector<Node> nodes;
     std::vector<ClosedStretch> stretches;  // of single elements
     std::vector<int> elements;             // of each stretch
@@ -93,16 +97,24 @@ class ContactPart final : public numerics::DaePart {
     std::vector<ContactGeometry> geometries;  // of the nodes
     BristleMeans bristles;
   };
+  const Found& found_at(const numerics::VectorView& y) const;
   void find(const numerics::VectorView& y, Found& found) const;
-  void find_geometries(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
   [[nodiscard]] bool stops(wire::End end) const;
   [[nodiscard]] double foundation_share(double coordinate) const;
   [[nodiscard]] Node node(int element, double u, double weight) const;
   [[nodiscard]] ContactGeometry geometry(const Node& node, const numerics::VectorView& y) const;
-  void add_node_jacobian(const Node& node, const ContactGeometry& geometry, const numerics::VectorView& y,
-                         const numerics::PatternValues& into) const;
+  // Rows and columns of what an element's nodes are in the Jacobian: balances of its four vertices, of the body, rows of its two
+  // bristles; by places and velocities of the vertices, by those of the body, by the bristles.
+  static constexpr int body_rows = 12, bristle_rows = 18;
+  static constexpr int velocity_columns = 12, body_columns = 24,
+                       body_rate_columns = body_columns + BodyPart::coordinates,
+                       bristle_columns = body_rate_columns + BodyPart::velocities;
+  using DerivativeRows = Eigen::Matrix<double, bristle_rows + 4, 1>;
+  void add_node_derivatives(const Node& node, const ContactGeometry& geometry, const BristleMeans& means,
+                            const numerics::VectorView& y);
+  void put_derivatives(int element, const numerics::PatternValues& into) const;
 
   MotionContact contact_;
   double mount_length_ = 0.0;  // of the piece of the wire that gives way at a mount [m]
@@ -114,7 +126,8 @@ class ContactPart final : public numerics::DaePart {
   std::vector<bool> coupled_;  // elements in the pattern
   int bristle_ = 0;
   numerics::PatternSlots slots_;
-  Found found_;  // workspace
+  mutable Found found_;                                                       // of the last place that was asked for
+  Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };
 
 }  // namespace snare::coupling

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "numerics/dae.hpp"
+#include "wire/rod_model.hpp"
+#include "wire/rod_rows.hpp"
+#include "wire/rod_slots.hpp"
+
+#include <vector>
+
+namespace snare::wire {
+
+/// Derivatives of a rod's forces with those of damping, four edges and then four vertices at a time.
+///                                                                                  theory.md (M.3), (M.4), (W.33)
+/// They are added up by edges, of which each has its vector e = x_{i+1} - x_i and its angle: by 4 x 4 blocks D of what an edge
+/// does to itself and to its neighbours. From there they go to the vertices,
+///   K_ij = D_{i-1,j-1} - D_{i-1,j} - D_{i,j-1} + D_ij,
+/// all at once into the values of the Jacobian. The ends, where mounts act, are one by one.
+class RodStiffness {
+ public:
+  explicit RodStiffness(const RodModel& model);
+
+  /// Where the values are, in a pattern to which the slots are attached.
+  void attach(const RodModel& model, const RodSlots& slots);
+
+  struct Point {
+    const RodRows& rows;  ///< as the forces at this point have left them
+    const RodInstant& instant;
+    const numerics::DaePoint& at;
+    double c;  ///< of DaePart::jacobian [1/s]
+  };
+  /// Adds all but inertia, mounts that give, strands and what the ends damp.
+  void add(const RodModel& model, const Point& point, std::vector<double>& values);
+
+ private:
+  void work(const RodModel& model, const Point& point);
+  void work_by_four(const RodModel& model, const Point& point);
+  void work_by_two(const RodModel& model, const Point& point);
+  void work_on_edges(const RodModel& model, const Point& point);
+  void work_on_vertices(const RodModel& model, const Point& point);
+  void add_end(const RodModel& model, const Point& point, End end);
+  void put_all(const RodModel& model, std::vector<double>& values) const;
+  void put_by_four(const RodModel& model, std::vector<double>& values) const;
+  void put_by_two(const RodModel& model, std::vector<double>& values) const;
+
+  RodRows blocks_;
+  std::vector<int> slots_;  // of the entries, -1: none
+};
+
+}  // namespace snare::wire
