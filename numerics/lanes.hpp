@@ -191,7 +191,7 @@ struct Lanes33 {
   }
 };
 
-/// M v, M^T v.
+/// M v and M^T v, of any unit.
 [[nodiscard, gnu::always_inline]] inline Lanes3 times(const Lanes33& m, const Lanes3& v) {
   return {m(0, 0) * v[0] + m(0, 1) * v[1] + m(0, 2) * v[2], m(1, 0) * v[0] + m(1, 1) * v[1] + m(1, 2) * v[2],
           m(2, 0) * v[0] + m(2, 1) * v[1] + m(2, 2) * v[2]};

@@ -56,7 +56,7 @@ void add_bending_losses(const RodModel& model, const BendingCell& cell, int i, c
 
 }  // namespace
 
-RodForces::RodForces(const RodModel& model) : rows_(RodRow::count, model.vertices()) {
+RodForces::RodForces(const RodModel& model, bool four) : four_(four), rows_(RodRow::count, model.vertices()) {
   const int n = model.edges();
   for (int i = 0; i < rows_.length(); ++i) {
     rows_.row(Row::rest_length)[i] = model.rest_length(std::min(i, n - 1));
@@ -322,10 +322,7 @@ void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& 
     for (int e = 0; e < n; ++e)
       out.assembly.energy += 0.5 * bending.dot(model.properties().natural_curvature.cwiseAbs2()) * model.rest_length(e);
   }
-  if (numerics::has_four_lanes())
-    work_by_four(model, at, trial, out);
-  else
-    work_by_two(model, at, trial, out);
+  four_ ? work_by_four(model, at, trial, out) : work_by_two(model, at, trial, out);
   gather(model, out);
   for (const End end : ends) add_end(model, at, trial, end, out);
 }

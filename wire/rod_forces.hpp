@@ -24,7 +24,9 @@ struct RodLosses {
 /// The vertices at the ends, where mounts act, are one by one.
 class RodForces {
  public:
-  explicit RodForces(const RodModel& model);
+  /// four: whether four numbers are worked on at once, which the processor has to be able to, or two by two; the bits are the
+  /// same.
+  explicit RodForces(const RodModel& model, bool four = numerics::has_four_lanes());
 
   /// Told the state from whose frames the next ones go.
   void take_frames(const RodInstant& accepted);
@@ -49,6 +51,7 @@ class RodForces {
   void gather(const RodModel& model, const Results& out);
   void add_end(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, End end, const Results& out);
 
+  bool four_;
   RodRows rows_;
 };
 

@@ -45,7 +45,7 @@ class RodRows {
 
   /// How many vertices or edges have numbers, those that are none included.
   [[nodiscard]] int length() const { return length_ - before; }
-  /// Of the first vertex or edge.
+  /// Of the first vertex or edge, in their units.
   [[nodiscard]] double* row(int r) { return data_.data() + r * length_ + before; }
   [[nodiscard]] const double* row(int r) const { return data_.data() + r * length_ + before; }
 

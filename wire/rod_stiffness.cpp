@@ -89,7 +89,7 @@ template <int count, class Work>
 
 }  // namespace
 
-RodStiffness::RodStiffness(const RodModel& model) : blocks_(Block::blocks, model.vertices()) {}
+RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), blocks_(Block::blocks, model.vertices()) {}
 
 // An edge by itself: (W.3) or the beam (W.32) with H = H_ll t t^T + N/l (I - t t^T), and its damping. f t with
 // f = tau EA e' by the edge d and by w = v_{i+1} - v_i:
@@ -456,10 +456,9 @@ void RodStiffness::put_by_two(const RodModel& model, std::vector<double>& values
 
 void RodStiffness::add(const RodModel& model, const Point& point, std::vector<double>& values) {
   blocks_.clear();
-  const bool four = numerics::has_four_lanes();
-  four ? work_by_four(model, point) : work_by_two(model, point);
+  four_ ? work_by_four(model, point) : work_by_two(model, point);
   for (const End end : ends) add_end(model, point, end);
-  four ? put_by_four(model, values) : put_by_two(model, values);
+  four_ ? put_by_four(model, values) : put_by_two(model, values);
 }
 
 }  // namespace snare::wire

@@ -17,7 +17,8 @@ namespace snare::wire {
 /// all at once into the values of the Jacobian. The ends, where mounts act, are one by one.
 class RodStiffness {
  public:
-  explicit RodStiffness(const RodModel& model);
+  /// four: see RodForces.
+  explicit RodStiffness(const RodModel& model, bool four = numerics::has_four_lanes());
 
   /// Where the values are, in a pattern to which the slots are attached.
   void attach(const RodModel& model, const RodSlots& slots);
@@ -28,7 +29,7 @@ class RodStiffness {
     const numerics::DaePoint& at;
     double c;  ///< of DaePart::jacobian [1/s]
   };
-  /// Adds all but inertia, mounts that give, strands and what the ends damp.
+  /// Adds all but inertia, mounts that give, strands and what the ends damp, in SI units.
   void add(const RodModel& model, const Point& point, std::vector<double>& values);
 
  private:
@@ -42,6 +43,7 @@ class RodStiffness {
   void put_by_four(const RodModel& model, std::vector<double>& values) const;
   void put_by_two(const RodModel& model, std::vector<double>& values) const;
 
+  bool four_;
   RodRows blocks_;
   std::vector<int> slots_;  // of the entries, -1: none
 };

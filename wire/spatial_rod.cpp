@@ -91,53 +91,6 @@ double SpatialRod::energy(const SpatialState& state) const {
   return sum;
 }
 
-void SpatialRod::assemble_forces(const SpatialState& state, RodAssembly& out) const {
-  const int n = mesh_.edges();
-  const CellTerms terms(properties_, strains_);
-  const double ea = terms.axial_stiffness;
-  out.energy = properties_.left.spring_energy(state.q[row_of(End::left)]) +
-               properties_.right.spring_energy(state.q[row_of(End::right)]);
-  out.gradient.setZero(unknowns());
-  double* g = out.gradient.data();
-  // e = x_{e+1} - x_e: dE/dx_e = -dE/de, dE/dx_{e+1} = dE/de.
-  const auto add_edge = [g](int e, const Vector3d& force) {
-    for (int r = 0; r < 3; ++r) {
-      g[block * e + r] -= force[r];
-      g[block * (e + 1) + r] += force[r];
-    }
-  };
-  visit_cells(mesh_, state, CellTerms(properties_, strains_),
-              [&](int i, const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
-                out.energy += cell.energy;
-                if (cell.bends || cell.twists) {
-                  const PairGradient pair = gradient_of(cell, before, after);
-                  if (i > 0) {
-                    add_edge(i - 1, pair.a);
-                    g[block * (i - 1) + angle] += pair.theta_a;
-                  }
-                  if (i < n) {
-                    add_edge(i, pair.b);
-                    g[block * i + angle] += pair.theta_b;
-                  }
-                }
-                if (i == n) return;
-                // Stretching, dE/de = EA (l/h - 1) t (W.3), and weight, w h/2 on both vertices (W.8).
-                const double strain = after.length / after.rest - 1.0;
-                add_edge(i, ea * strain * after.tangent);
-                out.energy += 0.5 * ea * strain * strain * after.rest -
-                              0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
-                for (int r = 0; r < 3; ++r) {
-                  g[block * i + r] -= 0.5 * after.rest * properties_.weight[r];
-                  g[block * (i + 1) + r] -= 0.5 * after.rest * properties_.weight[r];
-                }
-              });
-  for (const End which : ends) {
-    const SpatialEnd& end = properties_.end(which);
-    const int row = row_of(which);
-    if (end.gives()) g[row] += end.translational_stiffness * (state.q[row] - end.position.x());
-  }
-}
-
 namespace {
 
 /// The cell at one end with its edges, one of them the mount.

@@ -68,9 +68,6 @@ class SpatialRod {
   /// the reaction: see `hold_mounts`. The Hessian is that of the energy with frames carried from this state.
   void assemble(const SpatialState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const;
 
-  /// Energy and gradient alone, the rest of `out` as it was.
-  void assemble_forces(const SpatialState& state, RodAssembly& out) const;
-
   /// Holds the rigid positions and the unused last angle: gradient entries of held unknowns become zero,
   /// their rows and columns those of the identity. When neither mount holds the twist, a spin of the whole
   /// rod about itself stays free: the caller must hold it.

@@ -54,6 +54,7 @@ template <class S>
           -1.0 / 3 + u * (2.0 / 5 - u * (3.0 / 7 - u * (4.0 / 9 - u * (5.0 / 11 - u * (6.0 / 13))))),
           2.0 / 5 - u * (6.0 / 7 - u * (12.0 / 9 - u * (20.0 / 11 - u * (30.0 / 13 - u * (42.0 / 15)))))};
 }
+/// u: [-].
 [[nodiscard]] TurningShare<double> of_any(double u);
 
 }  // namespace turning
