@@ -88,10 +88,9 @@ bool has_fours() {
 
 }  // namespace
 
-// What all rows of a block take is added up, four columns at once, and taken from the row column by column. Behind their last
-// entries stand those of the next row, or room, of which nothing is taken.
+// A value is taken and put back once for all rows of a block.
 template <int rows>
-[[gnu::always_inline]] inline void StaticLu::eliminate_by(const Elimination& e) {
+[[gnu::always_inline]] inline void StaticLu::eliminate_by(const Elimination& e, int last_run) {
   double* const values = values_.data();
   std::array<double, rows> factors;
   std::array<const double*, rows> by;
@@ -102,14 +101,22 @@ template <int rows>
     values[e.entry + r] = factors[at(r)] = factor;
     by[at(r)] = values + start_[at(e.row + r + 1)] - e.common;
   }
-  double* const taken = taken_.data();
-  for (int c = 0; c < e.common; c += 4) {
-    Four sum = factors[0] * *reinterpret_cast<const Four*>(by[0] + c);
-    for (std::size_t r = 1; r < rows; ++r) sum += factors[r] * *reinterpret_cast<const Four*>(by[r] + c);
-    *reinterpret_cast<Four*>(taken + c) = sum;
+  for (int k = e.first_run; k < last_run; ++k) {
+    const Run& run = runs_[at(k)];
+    double* const to = values + run.to;
+    int j = 0;
+    for (; j + 4 <= run.length; j += 4) {
+      Four left = *reinterpret_cast<const Four*>(to + j);
+      for (std::size_t r = 0; r < rows; ++r)
+        left -= factors[r] * *reinterpret_cast<const Four*>(by[r] + run.offset + j);
+      *reinterpret_cast<Four*>(to + j) = left;
+    }
+    for (; j < run.length; ++j) {
+      double left = to[j];
+      for (std::size_t r = 0; r < rows; ++r) left -= factors[r] * by[r][run.offset + j];
+      to[j] = left;
+    }
   }
-  const int* const left = left_.data() + e.first_left;
-  for (int c = 0; c < e.common; ++c) values[left[c]] -= taken[c];
 }
 
 [[gnu::always_inline]] inline bool StaticLu::eliminate() {
@@ -117,7 +124,8 @@ template <int rows>
     for (int k = first_elimination_[at(i)]; k < first_elimination_[at(i) + 1]; ++k) {
       const Elimination& e = eliminations_[at(k)];
       by_rows(
-          e.rows, [&](auto rows) __attribute__((always_inline)) { eliminate_by<rows>(e); });
+          e.rows, [&](auto rows)
+                      __attribute__((always_inline)) { eliminate_by<rows>(e, eliminations_[at(k) + 1].first_run); });
     }
     inverse_[at(i)] = 1.0 / values_[at(diagonal_[at(i)])];
     if (!std::isfinite(inverse_[at(i)]) || inverse_[at(i)] == 0.0) return false;
@@ -278,8 +286,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
   }
   start_.push_back(static_cast<int>(column_.size()));
   list_blocks();
-  values_.assign(column_.size() + most_rows, 0.0);
-  taken_.assign(at(order_ + most_rows), 0.0);
+  values_.assign(column_.size() + 1, 0.0);
   inverse_.assign(at(order_), 0.0);
   std::vector<std::vector<int>> slots(at(order_));  // of the matrix, by row
   std::vector<int> column_of(matrix.row.size());
@@ -303,12 +310,20 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
       const int k = column_[at(e)];
       const int rows = std::min(end_of_block[at(k)], i) - k;
       const int common = start_[at(k + rows)] - diagonal_[at(k + rows) - 1] - 1;
-      eliminations_.push_back({e, k, rows, common, static_cast<int>(left_.size())});
-      for (int c = 0; c < common; ++c) left_.push_back(entry[at(column_[at(start_[at(k + rows)] - common + c)])]);
+      eliminations_.push_back({e, k, rows, common, static_cast<int>(runs_.size())});
+      const std::size_t first_run = runs_.size();
+      for (int c = 0; c < common; ++c) {
+        const int to = entry[at(column_[at(start_[at(k + rows)] - common + c)])];
+        if (runs_.size() > first_run && runs_.back().to + runs_.back().length == to)
+          ++runs_.back().length;
+        else
+          runs_.push_back({c, to, 1});
+      }
       e += rows;
     }
   }
   first_elimination_.push_back(static_cast<int>(eliminations_.size()));
+  eliminations_.push_back({0, 0, 0, 0, static_cast<int>(runs_.size())});
 }
 
 bool StaticLu::factorize(const SparseMatrix& matrix) {

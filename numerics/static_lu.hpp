@@ -11,7 +11,7 @@ namespace snare::numerics {
 /// A = L U on a fixed pattern in a fixed order, without a search for pivots.                 theory.md (N.7)
 ///
 /// Rows and columns are in the order of least degree (Amestoy, Davis and Duff 1996) of the pattern of A + A^T; what fills up is
-/// known beforehand, so that a row is eliminated by several at once. A chain of vertices with a few unknowns
+/// known beforehand, so that a row is eliminated by several at once in runs of neighbours. A chain of vertices with a few unknowns
 /// each takes less than a third of the time of KLU. Accurate where no pivot is small beside what stands in its row and column: the caller
 /// has to look at a solution. Of any unit.
 class StaticLu {
@@ -25,12 +25,15 @@ class StaticLu {
   void solve(Eigen::Ref<Eigen::VectorXd> b);
 
  private:
-  /// Of a row that is eliminated by earlier ones.
+  /// Of a row that is eliminated by earlier ones: entries of all of them that follow each other.
+  struct Run {
+    int offset = 0, to = 0, length = 0;  // behind the first entry of an earlier row that all have; in values_
+  };
   struct Elimination {
     int entry = 0;          // of the first multiplier, in values_
     int row = 0, rows = 0;  // by which: a block, or what of it is before the row
     int common = 0;         // how many last entries of these rows have the same columns
-    int first_left = 0;     // of the row's entries in these columns, of those listed in left_
+    int first_run = 0;      // up to that of the next elimination
   };
   /// Rows that follow each other and have the same columns before or behind their square on the diagonal. Each column's entries are
   /// together, four whatever the rows; so are those of the inverse of the square.
@@ -43,7 +46,7 @@ class StaticLu {
 
   void list_blocks();
   template <int rows>
-  void eliminate_by(const Elimination& e);
+  void eliminate_by(const Elimination& e, int last_run);
   /// The rows one after another; false as `factorize`.
   [[nodiscard]] bool eliminate();
   [[nodiscard]] bool eliminate_in_fours();
@@ -66,17 +69,16 @@ class StaticLu {
   std::vector<int> target_;                // in values_, of every slot of the matrix
   std::vector<Elimination> eliminations_;  // row by row
   std::vector<int> first_elimination_;     // of every row
-  std::vector<int> left_;                  // entries in values_ from which something is taken
-  std::vector<double> taken_;              // from a row by a block
-  std::vector<double> inverse_;            // of the pivots
-  std::vector<int> alone_;                 // rows with nothing but a diagonal
-  std::vector<Block> before_;              // of the others, by what is before the diagonal
-  std::vector<Block> behind_;              // by what is behind it, from the last row on
-  std::vector<int> listed_;                // columns of the blocks
-  std::vector<int> entry_;                 // of each of their rows, in values_; four a column
-  std::vector<double> columns_;            // of the blocks, four numbers a column
-  std::vector<double> squares_;            // of the blocks, inverted, four columns each
-  std::vector<double> work_;               // with room behind for a last block's four
+  std::vector<Run> runs_;
+  std::vector<double> inverse_;  // of the pivots
+  std::vector<int> alone_;       // rows with nothing but a diagonal
+  std::vector<Block> before_;    // of the others, by what is before the diagonal
+  std::vector<Block> behind_;    // by what is behind it, from the last row on
+  std::vector<int> listed_;      // columns of the blocks
+  std::vector<int> entry_;       // of each of their rows, in values_; four a column
+  std::vector<double> columns_;  // of the blocks, four numbers a column
+  std::vector<double> squares_;  // of the blocks, inverted, four columns each
+  std::vector<double> work_;     // with room behind for a last block's four
 };
 
 }  // namespace snare::numerics
