@@ -7,7 +7,6 @@
 namespace snare::wire {
 
 using Eigen::Matrix2Xd;
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::DaePoint;
@@ -18,31 +17,15 @@ Vector2d stiffness_of(const RodModel& model) {
   return {model.properties().bending_stiffness, model.properties().second_bending_stiffness};
 }
 
-Vector2d curvature_at(const RodModel& model, const DaePoint& at, int i) {
-  return at.y.segment<2>(model.curvature_of(i));
-}
-
 /// 1/k_mount of the mount at vertex i [rad/(N m)]; 0 elsewhere.
 double flexibility_at(const RodModel& model, int i) {
   const std::optional<End> end = model.end_of(i);
   return end ? 1.0 / model.properties().end(*end).rotational_stiffness : 0.0;
 }
 
-struct Edge {
-  Vector3d tangent;
-  double chord;
-  EdgeBeam beam;
-};
-
-Edge edge_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
-  const Vector3d d = vertex(instant.state, e + 1) - vertex(instant.state, e);
-  const double chord = d.norm();
-  const EdgeBeamConstants constants{model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)};
-  return {d / chord, chord, edge_beam(constants, chord, near, far)};
-}
-
-Edge edge_of(const RodModel& model, const RodInstant& instant, const DaePoint& at, int e) {
-  return edge_of(model, instant, curvature_at(model, at, e), curvature_at(model, at, e + 1), e);
+EdgeBeam beam_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
+  const double chord = (vertex(instant.state, e + 1) - vertex(instant.state, e)).norm();
+  return edge_beam({model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)}, chord, near, far);
 }
 
 }  // namespace
@@ -84,12 +67,9 @@ Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant, con
   return VertexTurning(cell).by_rotation(curved_moments(model, at, i));
 }
 
-double curved_tension(const RodModel& model, const RodInstant& instant, const DaePoint& at, int edge) {
-  return edge_of(model, instant, at, edge).beam.tension;
-}
-
 Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {
-  return stiffness_of(model).cwiseProduct(curvature_at(model, at, vertex) - model.properties().natural_curvature);
+  return stiffness_of(model).cwiseProduct(at.y.segment<2>(model.curvature_of(vertex)) -
+                                          model.properties().natural_curvature);
 }
 
 // Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite.
@@ -111,7 +91,7 @@ Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, 
     matrix.set_zero();
     Matrix2Xd rows = Matrix2Xd::Zero(2, n + 1);
     for (int e = 0; e < n; ++e) {
-      const EdgeBeam beam = edge_of(model, instant, k.col(e), k.col(e + 1), e).beam;
+      const EdgeBeam beam = beam_of(model, instant, k.col(e), k.col(e + 1), e);
       rows.col(e) += beam.gradient.segment<2>(EdgeBeam::near);
       rows.col(e + 1) += beam.gradient.segment<2>(EdgeBeam::far);
       for (int a = 0; a < 4; ++a) {

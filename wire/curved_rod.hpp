@@ -35,9 +35,7 @@ struct CurvedEnd {
 [[nodiscard]] Eigen::Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant,
                                                 const numerics::DaePoint& at, End end);
 
-/// Tension of an edge [N]; bending moments w_1, w_2 of a vertex [N m], zero of one that does not bend.
-[[nodiscard]] double curved_tension(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                                    int edge);
+/// Bending moments w_1, w_2 of a vertex [N m], zero of one that does not bend.
 [[nodiscard]] Eigen::Vector2d curved_moments(const RodModel& model, const numerics::DaePoint& at, int vertex);
 
 /// The curvatures (2, vertices) in which E is stationary at the given places [1/m].

@@ -6,11 +6,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using numerics::DaePoint;
 
-double stretch_rate(const RodModel& model, const Vector3d& tangent, const DaePoint& at, int edge) {
-  const Vector3d w = at.y.segment<3>(model.velocity_of(edge + 1)) - at.y.segment<3>(model.velocity_of(edge));
-  return tangent.dot(w) / model.rest_length(edge);
-}
-
 std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell) {
   const double time = model.damping().bending_time;
   return {time * model.properties().bending_stiffness / cell.length,

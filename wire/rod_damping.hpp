@@ -18,9 +18,6 @@
 /// kappa_j: integrated curvatures (W.24), e = |x_{i+1} - x_i|/h - 1, ' is d/dt.
 namespace snare::wire {
 
-/// e' of an edge whose unit tangent is given [1/s].
-[[nodiscard]] double stretch_rate(const RodModel& model, const Eigen::Vector3d& tangent, const numerics::DaePoint& at,
-                                  int edge);
 /// tau_b EI_j/l of a cell, j = 1, 2 [N m s].
 [[nodiscard]] std::array<double, 2> viscous_stiffness(const RodModel& model, const BendingCell& cell);
 

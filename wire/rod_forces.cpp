@@ -148,6 +148,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       power += there * (viscous * rate * rest);
       tension += viscous;
     }
+    rows_.set(Row::tension, e, tension);
     rows_.set(Row::force, e, tension * t);
     rows_.set(Row::tangent, e, t);
     rows_.set(Row::director, e, carried);

@@ -237,21 +237,18 @@ double RodPart::mount_error(const numerics::VectorView& y) const {
 RodPart::SectionLoads RodPart::section_loads(const DaePoint& at) {
   evaluate(at);
   const SpatialState& state = trial_.state;
-  const auto tangent = [&state](int e) { return state.frames[base::at(e)].tangent; };
   SectionLoads loads{Eigen::VectorXd::Zero(model_.edges()), Eigen::VectorXd::Zero(vertices())};
+  for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] = forces_.rows().row(RodRow::tension)[e];
   if (model_.is_curved()) {
-    for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] = curved_tension(model_, trial_, at, e);
     for (int i = 0; i < vertices(); ++i) loads.bending_moments[i] = curved_moments(model_, at, i).norm();
-  } else {
-    loads.tensions = rod().tensions(state);
-    const Matrix3Xd moments = rod().moments(state);
-    for (int i = 0; i < vertices(); ++i) {
-      const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
-      loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
-    }
+    return loads;
   }
-  const double viscosity = model_.damping().axial_time * model_.properties().axial_stiffness;
-  for (int e = 0; e < model_.edges(); ++e) loads.tensions[e] += viscosity * stretch_rate(model_, tangent(e), at, e);
+  const auto tangent = [&state](int e) { return state.frames[base::at(e)].tangent; };
+  const Matrix3Xd moments = rod().moments(state);
+  for (int i = 0; i < vertices(); ++i) {
+    const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
+    loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
+  }
   return loads;
 }
 

@@ -26,7 +26,8 @@ struct RodRow {
     first,
     second = first + 3,  ///< the material directors
     inverse_length = second + 3,
-    force,  ///< of an edge
+    tension,  ///< of an edge, with its damping, and the force along it
+    force,
     torque = force + 3,
     by_curvature,
     rest_length = by_curvature + 2,

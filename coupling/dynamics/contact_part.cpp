@@ -218,10 +218,30 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
   return contact_geometry(contact, search_.shape(), curve, body_, y, bristle, n.place);
 }
 
+// Calls use(first, count) for the unknowns on which contact depends: those of the body, of the vertices, of the bristles.
+template <class Use>
+void ContactPart::visit_inputs(const Use& use) const {
+  use(body_.position(), BodyPart::coordinates + BodyPart::velocities);
+  use(rod_.position_of(0), 3 * rod_.vertices());
+  use(rod_.velocity_of(0), 3 * rod_.vertices());
+  if (has_bristle()) use(bristle_, 2 * rod_.vertices());
+}
+
 // Residual and Jacobian, sums and samples are of the same places again and again.
 const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
-  if (found_.y.size() == y.size() && found_.y == y) return found_;
-  found_.y = y;
+  Eigen::Index at = 0;
+  bool same = found_.inputs.size() > 0;
+  visit_inputs([&](int first, int count) {
+    same = same && found_.inputs.segment(at, count) == y.segment(first, count);
+    at += count;
+  });
+  if (same) return found_;
+  found_.inputs.resize(at);
+  at = 0;
+  visit_inputs([&](int first, int count) {
+    found_.inputs.segment(at, count) = y.segment(first, count);
+    at += count;
+  });
   found_.nodes.clear();
   found_.stretches.clear();
   found_.elements.clear();

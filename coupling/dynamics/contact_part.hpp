@@ -43,7 +43,7 @@ class ContactPart final : public numerics::DaePart {
   /// The same as `accept` at a start, unknowns y in SI units.
   void look_around(const numerics::VectorView& y) {
     search_.update(y);
-    found_.y.resize(0);
+    found_.inputs.resize(0);
   }
 
   /// Which elements are near, and where the wire's curve is.
@@ -89,7 +89,7 @@ class ContactPart final : public numerics::DaePart {
     std::size_t stretch = 0;
   };
   struct Found {
-    Eigen::VectorXd y;  // where; empty: nowhere yet
+    Eigen::VectorXd inputs;  // unknowns at which; empty: none yet
     std::vector<Node> nodes;
     std::vector<ClosedStretch> stretches;  // of single elements
     std::vector<int> elements;             // of each stretch
@@ -98,6 +98,8 @@ class ContactPart final : public numerics::DaePart {
     BristleMeans bristles;
   };
   const Found& found_at(const numerics::VectorView& y) const;
+  template <class Use>
+  void visit_inputs(const Use& use) const;
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
