@@ -21,10 +21,6 @@ struct Lanes {
   [[gnu::always_inline]] Lanes(double a, double b, double c, double d) : v{a, b, c, d} {}
   /// Four numbers behind each other.
   [[gnu::always_inline]] static Lanes at(const double* p) { return {p[0], p[1], p[2], p[3]}; }
-  /// Four numbers, one in every so many.
-  [[gnu::always_inline]] static Lanes at(const double* p, int stride) {
-    return {p[0], p[stride], p[2 * stride], p[3 * stride]};
-  }
   [[gnu::always_inline]] void store(double* p) const {
     using Unaligned [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
     *reinterpret_cast<Unaligned*>(p) = v;

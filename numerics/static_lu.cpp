@@ -1,6 +1,7 @@
 #include "numerics/static_lu.hpp"
 
 #include "base/index.hpp"
+#include "numerics/lanes.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -78,12 +79,6 @@ template <class Work>
     work(std::integral_constant<int, 2>());
   else
     work(std::integral_constant<int, 1>());
-}
-
-/// Whether the processor takes four numbers at once.
-bool has_fours() {
-  static const bool avx2 = __builtin_cpu_supports("avx2") != 0;
-  return avx2;
 }
 
 }  // namespace
@@ -329,14 +324,14 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
 bool StaticLu::factorize(const SparseMatrix& matrix) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (std::size_t s = 0; s < target_.size(); ++s) values_[at(target_[s])] = matrix.value[s];
-  if (!(has_fours() ? eliminate_in_fours() : eliminate_in_pairs())) return false;
+  if (!(has_four_lanes() ? eliminate_in_fours() : eliminate_in_pairs())) return false;
   gather();
   return true;
 }
 
 void StaticLu::solve(Eigen::Ref<Eigen::VectorXd> b) {
   for (int i = 0; i < order_; ++i) work_[at(i)] = b[unknown_[at(i)]];
-  if (has_fours())
+  if (has_four_lanes())
     substitute_in_fours();
   else
     substitute_in_pairs();

@@ -8,14 +8,11 @@
 #include "wire/twist.hpp"
 #include "wire/vertex_turning.hpp"
 
-#include <algorithm>
 #include <type_traits>
 #include <utility>
 
 namespace snare::wire {
 
-using Eigen::Vector2d;
-using numerics::DaePoint;
 using numerics::Lanes;
 using numerics::Lanes3;
 
@@ -61,7 +58,7 @@ using PairVector = std::array<Lanes, 8>;
   return w;
 }
 
-/// H_rs of a Hessian, r not an angle unless s is one.
+/// H_rs of a Hessian, in the order of a PairVector.
 template <int r, int s>
 [[nodiscard, gnu::always_inline]] inline Lanes entry_of(const PairHessianOf<Lanes>& h) {
   constexpr bool after_r = r > of_angle, after_s = s > of_angle;
