@@ -19,7 +19,6 @@ using Eigen::Vector3d;
 using numerics::DaePoint;
 using numerics::Lanes;
 using numerics::Lanes3;
-using Row = RodRow;
 
 namespace {
 

@@ -42,6 +42,7 @@ class RodForces {
   [[nodiscard]] const RodRows& rows() const { return rows_; }
 
  private:
+  using Row = RodRow;
   void take_unknowns(const RodModel& model, const numerics::DaePoint& at);
   void work(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const Results& out);
   void work_by_four(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const Results& out);
