@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <emmintrin.h>
+#include <array>
 #include <cmath>
 
 namespace snare::numerics {

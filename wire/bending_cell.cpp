@@ -89,7 +89,7 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
   };
   const Vector3d tangent_before = add_edge(i - 1, Rows::angle_before, before, inverse.a);
   const Vector3d tangent_after = add_edge(i, Rows::angle_after, after, inverse.b);
-  turn = make_turn(tangent_before, tangent_after);
+  turn = make_turn<double>(tangent_before, tangent_after);
   if (model.is_curved() && end_) {
     // What the first edge turns from its mount is integral (1 - s/h) k ds, whose centre is at h/3: of the directors at 0
     // and at h/2 it takes 1/3 and 2/3 (W.31).

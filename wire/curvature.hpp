@@ -31,10 +31,7 @@ using Turn = TurnOf<double>;
 
 /// How the unit tangents before and after turn into each other. Not for tangents that are opposite: chi = 0.
 template <class S>
-[[nodiscard]] TurnOf<S> turn_between(const Vector3<S>& before, const Vector3<S>& after);
-[[nodiscard]] inline Turn make_turn(const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
-  return turn_between<double>(before, after);
-}
+[[nodiscard]] TurnOf<S> make_turn(const Vector3<S>& before, const Vector3<S>& after);
 
 /// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) [m] and their twist angles [rad]: each in the unit of the
 /// scalar over that.
@@ -169,7 +166,7 @@ void add_square(const PairGradient& g, double factor, PairHessian& out);
 // Here, for the compiler to put in where wires in motion spend their time.
 
 template <class S>
-[[gnu::always_inline]] inline TurnOf<S> turn_between(const Vector3<S>& before, const Vector3<S>& after) {
+[[gnu::always_inline]] inline TurnOf<S> make_turn(const Vector3<S>& before, const Vector3<S>& after) {
   TurnOf<S> turn;
   turn.before = before;
   turn.after = after;

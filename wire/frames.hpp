@@ -26,8 +26,6 @@ struct Frame {
 template <class S>
 [[nodiscard]] numerics::Vector3<S> parallel_transport(const numerics::Vector3<S>& v, const numerics::Vector3<S>& from,
                                                       const numerics::Vector3<S>& to);
-[[nodiscard]] inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
-                                                        const Eigen::Vector3d& to);
 
 /// The director of a frame that is carried from one unit tangent to another without turning about it; it is made perpendicular
 /// and of unit length anew, so that round-off does not add up over many steps.
@@ -67,11 +65,6 @@ template <class S>
                                                                       const numerics::Vector3<S>& from,
                                                                       const numerics::Vector3<S>& to) {
   return v - (v.dot(to) / (1.0 + from.dot(to))) * (from + to);
-}
-
-inline Eigen::Vector3d parallel_transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from,
-                                          const Eigen::Vector3d& to) {
-  return parallel_transport<double>(v, from, to);
 }
 
 template <class S>

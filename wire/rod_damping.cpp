@@ -2,7 +2,6 @@
 
 namespace snare::wire {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using numerics::DaePoint;
 

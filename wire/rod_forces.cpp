@@ -4,8 +4,8 @@
 #include "wire/bending_cell.hpp"
 #include "wire/curved_rod.hpp"
 #include "wire/edge_beam.hpp"
+#include "wire/rod_cells.hpp"
 #include "wire/rod_damping.hpp"
-#include "wire/spatial_cell.hpp"
 #include "wire/strand_friction.hpp"
 #include "wire/twist.hpp"
 #include "wire/vertex_turning.hpp"
@@ -110,7 +110,10 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   const int n = model.edges();
   const double stiffness = model.properties().axial_stiffness;
   const double viscosity = model.damping().axial_time * stiffness;
-  const Pair<double> bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+  const Pair<double> bending = bending_stiffness(model);
+  const Vector2d& natural = model.properties().natural_curvature;
+  // Energy of natural curvature, a length of an edge (W.33).
+  const double bent = 0.5 * (bending[0] * natural[0] * natural[0] + bending[1] * natural[1] * natural[1]);
   Lanes energy = 0.0, power = 0.0;
   for (int e = 0; e < n; e += Lanes::count) {
     const Lanes rest = rows_.at(Row::rest_length, e);
@@ -125,13 +128,10 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     // Stretching (W.3) or the beam (W.32), and its damping tau EA e' with e' = t.(v_{i+1} - v_i)/h (M.4).
     Lanes tension;
     if (model.is_curved()) {
-      const auto curvatures_of = [&](int i) __attribute__((always_inline)) {
-        return Pair<Lanes>{rows_.at(Row::curvature, i), rows_.at(Row::curvature + 1, i)};
-      };
       const BalancedBeam<Lanes> beam =
-          balanced_beam<Lanes>(rest, chord, curvatures_of(e), curvatures_of(e + 1), stiffness, bending);
+          balanced_beam<Lanes>(rest, chord, curvatures_at(rows_, e), curvatures_at(rows_, e + 1), stiffness, bending);
       tension = beam.tension;
-      energy += there * beam.energy;
+      energy += there * (beam.energy + bent * rest);
       for (const int j : {0, 1}) {
         rows_.add(Row::by_curvature + j, e, there * beam.near[base::at(j)]);
         rows_.add(Row::by_curvature + j, e + 1, there * beam.far[base::at(j)]);
@@ -172,23 +172,17 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
                                                                RodInstant& trial, const Results& out) {
   const int n = model.edges();
   const SpatialRodProperties& p = model.properties();
-  const CellTerms terms(p, model.is_curved() ? Strains::twist : Strains::all);
-  const Pair<double> stiffness{p.bending_stiffness, p.second_bending_stiffness};
+  const CellTerms terms(p, model.rod().strains());
+  const Pair<double> stiffness = bending_stiffness(model);
   const double time = model.damping().bending_time;
   Lanes energy = 0.0, power = 0.0;
   for (int i = 1; i < n; i += Lanes::count) {
-    const Lanes there = rows_.at(Row::is_inner, i);
-    const Lanes l = 0.5 * (rows_.at(Row::rest_length, i - 1) + rows_.at(Row::rest_length, i));
-    const DirectorsOf<Lanes> before{rows_.at3(Row::first, i - 1), rows_.at3(Row::second, i - 1)};
-    const DirectorsOf<Lanes> after{rows_.at3(Row::first, i), rows_.at3(Row::second, i)};
-    SpatialCellOf<Lanes> cell;
-    cell.turn = turn_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::tangent, i));
-    cell.inverse = {rows_.at(Row::inverse_length, i - 1), rows_.at(Row::inverse_length, i)};
-    const Lanes reference =
+    rows_.set(
+        Row::twist, i,
         twist_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::director, i - 1),
-                             rows_.at3(Row::tangent, i), rows_.at3(Row::director, i), rows_.at(Row::old_twist, i));
-    add_twisting<Lanes>(rows_.at(Row::theta, i) - rows_.at(Row::theta, i - 1) + reference, l, 0.0, terms, cell);
-    Pair<Lanes> weights{0.0, 0.0};
+                             rows_.at3(Row::tangent, i), rows_.at3(Row::director, i), rows_.at(Row::old_twist, i)));
+    auto [there, l, before, after, cell] = InnerCells(terms, rows_, i);
+    Pair<Lanes> weights = cell.by_kappa;
     if (model.is_curved()) {
       // (W.31), (W.33): w_j phi_j with w_j = EI_j (k_j - n_j) and phi_j = f kappa_j.
       const TurningShare<Lanes> share = turning_share(cell.turn);
@@ -202,9 +196,6 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
         weights[c] = moment * share.value;
         rows_.add(Row::by_curvature + j, i, there * (stiffness[c] * angle));
       }
-    } else {
-      add_bending<Lanes>(before, after, l, 0.0, terms, cell);
-      weights = cell.by_kappa;
     }
     energy += there * cell.energy;
     if (model.bends_with_loss()) {
@@ -237,7 +228,6 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     rows_.add(Row::force, i, g.b);
     rows_.add(Row::torque, i - 1, g.theta_a);
     rows_.add(Row::torque, i, g.theta_b);
-    rows_.set(Row::twist, i, reference);
   }
   out.assembly.energy += energy.sum();
   out.losses.power += power.sum();
@@ -317,11 +307,6 @@ void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& 
   out.losses.power = out.losses.strand_energy = 0.0;
   out.losses.couples = {Vector3d::Zero(), Vector3d::Zero()};
   out.losses.strand_rates.assign(base::at(n + 1), Vector2d::Zero());
-  if (model.is_curved()) {  // what the edges' own curvature has of energy (W.33)
-    const Vector2d bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
-    for (int e = 0; e < n; ++e)
-      out.assembly.energy += 0.5 * bending.dot(model.properties().natural_curvature.cwiseAbs2()) * model.rest_length(e);
-  }
   four_ ? work_by_four(model, at, trial, out) : work_by_two(model, at, trial, out);
   gather(model, out);
   for (const End end : ends) add_end(model, at, trial, end, out);

@@ -15,7 +15,6 @@
 namespace snare::wire {
 
 using Eigen::Matrix3Xd;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::DaePoint;
 

@@ -3,8 +3,7 @@
 #include "wire/bending_cell.hpp"
 #include "wire/curved_rod.hpp"
 #include "wire/edge_beam.hpp"
-#include "wire/rod_damping.hpp"
-#include "wire/spatial_cell.hpp"
+#include "wire/rod_cells.hpp"
 #include "wire/twist.hpp"
 #include "wire/vertex_turning.hpp"
 
@@ -95,7 +94,7 @@ RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), bloc
   const RodRows& rows = point.rows;
   const double stiffness = model.properties().axial_stiffness;
   const double viscosity = model.damping().axial_time * stiffness;
-  const Pair<double> bending{model.properties().bending_stiffness, model.properties().second_bending_stiffness};
+  const Pair<double> bending = bending_stiffness(model);
   for (int e = 0; e < model.edges(); e += Lanes::count) {
     const Lanes there = rows.at(RodRow::is_edge, e);
     const Lanes rest = rows.at(RodRow::rest_length, e);
@@ -104,10 +103,7 @@ RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), bloc
     const Lanes3 t = rows.at3(RodRow::tangent, e);
     Lanes axial, tension;
     if (model.is_curved()) {
-      const auto curvatures_of = [&](int i) __attribute__((always_inline)) {
-        return Pair<Lanes>{rows.at(RodRow::curvature, i), rows.at(RodRow::curvature + 1, i)};
-      };
-      const Pair<Lanes> near = curvatures_of(e), far = curvatures_of(e + 1);
+      const Pair<Lanes> near = curvatures_at(rows, e), far = curvatures_at(rows, e + 1);
       const BalancedBeam<Lanes> beam = balanced_beam<Lanes>(rest, chord, near, far, stiffness, bending);
       const BeamStiffness<Lanes> h = beam_stiffness<Lanes>(beam, rest, near, far, bending);
       axial = h.chord;
@@ -159,26 +155,18 @@ RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), bloc
   const RodRows& rows = point.rows;
   const int n = model.edges();
   const SpatialRodProperties& p = model.properties();
-  const CellTerms terms(p, model.is_curved() ? Strains::twist : Strains::all);
-  const Pair<double> stiffness{p.bending_stiffness, p.second_bending_stiffness};
+  const CellTerms terms(p, model.rod().strains());
+  const Pair<double> stiffness = bending_stiffness(model);
   const double time = model.damping().bending_time;
   const bool by_kappa = model.is_curved() || terms.directed || time > 0.0;
   for (int i = 1; i < n; i += Lanes::count) {
-    const Lanes there = rows.at(RodRow::is_inner, i);
-    const Lanes l = 0.5 * (rows.at(RodRow::rest_length, i - 1) + rows.at(RodRow::rest_length, i));
-    const DirectorsOf<Lanes> before{rows.at3(RodRow::first, i - 1), rows.at3(RodRow::second, i - 1)};
-    const DirectorsOf<Lanes> after{rows.at3(RodRow::first, i), rows.at3(RodRow::second, i)};
-    SpatialCellOf<Lanes> cell;
-    cell.turn = turn_between<Lanes>(rows.at3(RodRow::tangent, i - 1), rows.at3(RodRow::tangent, i));
-    cell.inverse = {rows.at(RodRow::inverse_length, i - 1), rows.at(RodRow::inverse_length, i)};
-    const Lanes tau = rows.at(RodRow::theta, i) - rows.at(RodRow::theta, i - 1) + rows.at(RodRow::twist, i);
-    add_twisting<Lanes>(tau, l, 0.0, terms, cell);
+    const InnerCells inner(terms, rows, i);
+    const Lanes there = inner.there;
+    const DirectorsOf<Lanes>&before = inner.before, &after = inner.after;
+    const SpatialCellOf<Lanes>& cell = inner.cell;
     PairHessianOf<Lanes> h;
     add_twist_hessian<Lanes>(cell.turn, cell.inverse, cell.torque, cell.twist_stiffness, h);
-    if (!model.is_curved()) {
-      add_bending<Lanes>(before, after, l, 0.0, terms, cell);
-      add_cosine_hessian<Lanes>(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
-    }
+    if (terms.bends) add_cosine_hessian<Lanes>(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
     // Products of vectors that are added: left right^T.
     std::array<PairVector, 4> left{}, right{};
     std::array<PairVector, 2> slope{};
@@ -189,7 +177,7 @@ RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), bloc
       const Lanes turn_a = rows.at(RodRow::theta_rate, i - 1), turn_b = rows.at(RodRow::theta_rate, i);
       const Pair<Lanes> kappa = curvature_pair(cell.turn, before, after);
       const TurningShare<Lanes> share = turning_share(cell.turn);
-      const Lanes by_length = time / l;
+      const Lanes by_length = time / inner.length;
       PairGradientOf<Lanes> whole;  // of w.kappa
       Lanes of_turning = 0.0;       // w.kappa
       for (std::size_t j = 0; j < 2; ++j) {

@@ -53,7 +53,7 @@ SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& 
   if (end != nullptr && !end->orients()) return cell;
   // l = (h_{i-1} + h_i)/2; at a mount half of the one rest length there is.
   const double length = end == nullptr ? 0.5 * (before.rest + after.rest) : 0.5 * (i == 0 ? after.rest : before.rest);
-  cell.turn = make_turn(before.tangent, after.tangent);
+  cell.turn = make_turn<double>(before.tangent, after.tangent);
   cell.inverse = {before.inverse_length, after.inverse_length};
   const double tau = after.theta - before.theta + state.reference_twist[base::at(i)];  // (W.26)
   add_twisting(tau, length, end == nullptr ? 0.0 : 1.0 / end->twisting_stiffness, terms, cell);

@@ -150,13 +150,11 @@ Eigen::Matrix3Xd SpatialRod::moments(const SpatialState& state) const {
 
 std::array<Vector3d, 2> SpatialRod::end_moments(const SpatialState& state) const {
   const CellTerms terms(properties_, strains_);
-  const int n = mesh_.edges();
-  const SpatialEdge left = mount_edge(properties_.left, state.left_mount, terms);
-  const SpatialEdge right = mount_edge(properties_.right, state.right_mount, terms);
-  const SpatialEdge first = edge_at(0, mesh_, state, terms);
-  const SpatialEdge last = edge_at(n - 1, mesh_, state, terms);
-  return {moment_of(cell_at(0, n, left, first, state, terms), left, first),
-          moment_of(cell_at(n, n, last, right, state, terms), last, right)};
+  const auto moment = [&](End end) {
+    const MountedCell m = mounted_cell(mesh_, state, terms, end);
+    return moment_of(m.cell, m.before, m.after);
+  };
+  return {moment(End::left), moment(End::right)};
 }
 
 Eigen::VectorXd SpatialRod::torques(const SpatialState& state) const {

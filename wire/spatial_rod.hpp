@@ -60,6 +60,9 @@ class SpatialRod {
   /// twist angle.
   void adopt_mounts(SpatialState& state) const;
 
+  /// Which strains have energy.
+  [[nodiscard]] Strains strains() const { return strains_; }
+
   /// Energy [J] alone.
   [[nodiscard]] double energy(const SpatialState& state) const;
 

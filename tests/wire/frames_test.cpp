@@ -39,10 +39,10 @@ TEST(Frames, ParallelTransportIsTheSmallestRotation) {
     const Vector3d v = any_normal(from);
     const Vector3d expected = Eigen::Quaterniond::FromTwoVectors(from, to) * v;
     // 1 + from.to may be small: its reciprocal magnifies the round-off.
-    EXPECT_LT((parallel_transport(v, from, to) - expected).norm(), 10.0 * kRoundOff / (1.0 + from.dot(to)));
+    EXPECT_LT((parallel_transport<double>(v, from, to) - expected).norm(), 10.0 * kRoundOff / (1.0 + from.dot(to)));
   }
   const Vector3d t = random_unit(random);
-  EXPECT_LT((parallel_transport(any_normal(t), t, t) - any_normal(t)).norm(), kRoundOff);
+  EXPECT_LT((parallel_transport<double>(any_normal(t), t, t) - any_normal(t)).norm(), kRoundOff);
 }
 
 TEST(Frames, TransportDoesNotTurnAboutTheTangent) {
