@@ -68,6 +68,11 @@ std::vector<int> elimination_order(const SparseMatrix& matrix) {
 /// Four numbers at once, where they are.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 
+/// Which of four numbers count; by a bitwise "and" the others are zero.
+using Mask [[gnu::vector_size(32)]] = long long;
+constexpr std::array<Mask, 4> first_of_four{Mask{0, 0, 0, 0}, Mask{-1, 0, 0, 0}, Mask{-1, -1, 0, 0},
+                                            Mask{-1, -1, -1, 0}};
+
 /// The work on a block of one to four rows, whose number the compiler knows.
 template <class Work>
 [[gnu::always_inline]] inline void by_rows(int rows, const Work& work) {
@@ -106,11 +111,15 @@ template <int rows>
         left -= factors[r] * *reinterpret_cast<const Four*>(by[r] + run.offset + j);
       *reinterpret_cast<Four*>(to + j) = left;
     }
-    for (; j < run.length; ++j) {
-      double left = to[j];
-      for (std::size_t r = 0; r < rows; ++r) left -= factors[r] * by[r][run.offset + j];
-      to[j] = left;
+    if (j == run.length) continue;
+    // The last one to three as four, of which the others stay what they are.
+    const Mask& rest = first_of_four[at(run.length - j)];
+    Four left = *reinterpret_cast<const Four*>(to + j);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const Mask entries = reinterpret_cast<Mask>(*reinterpret_cast<const Four*>(by[r] + run.offset + j)) & rest;
+      left -= factors[r] * reinterpret_cast<Four>(entries);
     }
+    *reinterpret_cast<Four*>(to + j) = left;
   }
 }
 
@@ -281,7 +290,7 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
   }
   start_.push_back(static_cast<int>(column_.size()));
   list_blocks();
-  values_.assign(column_.size() + 1, 0.0);
+  values_.assign(column_.size() + most_rows, 0.0);  // the rest of the last four, too
   inverse_.assign(at(order_), 0.0);
   std::vector<std::vector<int>> slots(at(order_));  // of the matrix, by row
   std::vector<int> column_of(matrix.row.size());
