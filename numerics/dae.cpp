@@ -73,6 +73,16 @@ void DaeSystem::events(const DaePoint& at, std::span<double> values) {
   }
 }
 
+IterationStart DaeSystem::iteration_start(const VectorView& from, const VectorView& to) {
+  IterationStart first;
+  for (DaePart* part : parts_) {
+    const IterationStart own = part->iteration_start(from, to);
+    first.share = std::min(first.share, own.share);
+    first.out_of_reach = first.out_of_reach || own.out_of_reach;
+  }
+  return first;
+}
+
 void DaeSystem::accept(const DaePoint& at) {
   for (DaePart* part : parts_) part->accept(at);
 }

@@ -100,6 +100,13 @@ struct DaePoint {
   VectorView rate;
 };
 
+/// Where Newton's method begins on the way from the last accepted unknowns to those that are predicted for a step.
+///                                                                                               theory.md (M.12)
+struct IterationStart {
+  double share = 1.0;         ///< of the way, in [0, 1]; 1: at its end [-]
+  bool out_of_reach = false;  ///< the step has to be shorter: it would go too far behind a touch
+};
+
 /// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
 ///
 /// Order of calls: `declare` once, then `sparsity` and `attach_pattern` whenever the pattern is made, then the rest. A part may
@@ -128,6 +135,10 @@ class DaePart {
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
   /// Asked before each Jacobian. True: there it has entries that the pattern has not, and `sparsity` lists them from now on.
   [[nodiscard]] virtual bool outgrows_pattern(const DaePoint& /*at*/) { return false; }
+  /// Where on the way from accepted to predicted unknowns Newton's method begins: where what touches does so as lightly as in the end.
+  [[nodiscard]] virtual IterationStart iteration_start(const VectorView& /*from*/, const VectorView& /*to*/) {
+    return {};
+  }
   /// Told every accepted step.
   virtual void accept(const DaePoint& /*at*/) {}
   /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the same making into
@@ -163,6 +174,8 @@ class DaeSystem {
   /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first where a part has outgrown it.
   const SparseMatrix& jacobian(const DaePoint& at, double c);
   void events(const DaePoint& at, std::span<double> values);
+  /// The first of the starts of all parts on the way.
+  [[nodiscard]] IterationStart iteration_start(const VectorView& from, const VectorView& to);
   /// Told every accepted step.
   void accept(const DaePoint& at);
   /// What all parts remember beside their unknowns.

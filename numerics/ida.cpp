@@ -156,7 +156,7 @@ void Ida::Memory::update_counts() {
 }
 
 void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::VectorXd& rate0) {
-  y = y0;
+  y = callbacks.accepted = y0;
   rate = rate0;
   time = at;
   starting = true;
@@ -293,6 +293,7 @@ IdaAdvance Ida::advance(double limit, double max_step) {
     check(IDAGetQuad(m.ida.get(), &at, m.integrals_view.get()), "IDAGetQuad");
   }
   m.callbacks.system.accept({m.time, m.y, m.rate});
+  m.callbacks.accepted = m.y;
   if (code == IDA_ROOT_RETURN) {
     check(IDAGetRootInfo(m.ida.get(), m.events.data()), "IDAGetRootInfo");
     return IdaAdvance::event;

@@ -86,6 +86,14 @@ extern "C" int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vec
   });
 }
 
+int IdaCallbacks::begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predicted, double& share) {
+  return guarded(*this, [&] {
+    const IterationStart start = system.iteration_start(accepted, predicted);
+    share = start.share;
+    return !start.out_of_reach;
+  });
+}
+
 // IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
 // unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
 // quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10. What
@@ -103,13 +111,14 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
   };
   if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;
   if (iteration == 0) {
+    first_correction = size;
     if (size <= converged_at_once * at.share) return SUN_NLS_SUCCESS;
   } else {
     rate = size / last_correction;
     // What no longer shrinks is round-off, when it is far below the tolerance.
     if (size <= of_round_off && rate > worst_rate) return SUN_NLS_SUCCESS;
-    if (rate > worst_rate) return give_up();
-    remainder = rate / (1.0 - rate);
+    if (rate > worst_rate && !(size < at.may_grow * first_correction)) return give_up();
+    remainder = rate < worst_rate ? rate / (1.0 - rate) : unknown_remainder;
     const int left = at.most - 1 - iteration;
     if (!at.renewable && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share) return give_up();
   }

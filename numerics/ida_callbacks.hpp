@@ -25,6 +25,7 @@ struct NewtonState {
   double share = 0.0;      ///< of the tolerance that it may leave [-]
   int most = 0;            ///< iterations
   bool renewable = false;  ///< whether slow convergence brings a matrix of the present iterate
+  double may_grow = 0.0;   ///< corrections smaller than this share of the first may be larger than the one before [-]
 };
 
 /// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.
@@ -36,13 +37,19 @@ struct IdaCallbacks {
   int analysed_pattern = 0;
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
   Eigen::VectorXd integrated{};  // their rates, as IDA has evaluated them last
-  // Of the Newton iteration: the last correction of this step, and what a rate of convergence leaves after one.
-  double last_correction = 0.0;
+  Eigen::VectorXd accepted{};    // unknowns of the last accepted state
+  // Of the Newton iteration: the first and the last correction of this step over the tolerances, and what a rate of convergence leaves after one.
+  double first_correction = 0.0;         ///< [-]
+  double last_correction = 0.0;          ///< [-]
   double rate = 0.0;                     ///< the last correction over the one before [-]
   double remainder = unknown_remainder;  ///< factor on the last correction [-]
   int stubborn = -1;                     // the unknown with the largest correction where it did not converge
 
   static constexpr double unknown_remainder = 20.0;
+
+  /// Where an iteration begins on the way from the accepted unknowns to those of any unit that are told. 0, positive where the step is out of
+  /// reach, negative where an exception waits.
+  [[nodiscard]] int begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predicted, double& share);
 
   /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration, the first of which
   /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.        theory.md (M.12)

@@ -15,6 +15,9 @@ namespace {
 constexpr int most_with_own = 8;    // iterations with a matrix of the step, but for those after a renewal
 constexpr int most_with_old = 4;    // with that of an earlier step: a new one costs about as much
 constexpr int most_corrected = 12;  // with such a one that is corrected
+// From where a touch begins, and the share of the first correction that later ones stay below while its load finds its depth.
+constexpr int most_at_touch = 20, renewals_at_touch = 10;
+constexpr double may_grow_at_touch = 0.1;
 constexpr double slow = 0.25;       // rate of convergence beyond which a new matrix pays
 constexpr double on_its_way = 0.5;  // rate below which what an old matrix has corrected is kept
 // Of the share, with a matrix of another leading coefficient. Forces within are in balance whatever the matrix; with the inertia of
@@ -65,6 +68,23 @@ void guess_correction(CorrectionGuess& guess, void* ida, N_Vector correction) {
   guess.begin(accepted, time - step, time, order, map(correction));
 }
 
+// Evaluates the first guess, or moves it back to where a touch begins.
+int evaluate_guess(Newton& self, void* ida, N_Vector correction, bool& touches) {
+  touches = false;
+  if (const int code = self.system(correction, self.step, ida); code != SUN_NLS_SUCCESS) return code;
+  double time = 0.0, coefficient = 0.0, share = 1.0;
+  N_Vector predicted{}, predicted_rate{}, guess{}, guess_rate{}, rows{};
+  void* user = nullptr;
+  static_cast<void>(IDAGetNonlinearSystemData(ida, &time, &predicted, &predicted_rate, &guess, &guess_rate, &rows,
+                                              &coefficient, &user));
+  const int code = self.callbacks.begin_iteration(map(guess), share);
+  if (code != 0) return code > 0 ? SUN_NLS_CONV_RECVR : code;
+  touches = share < 1.0;
+  if (!touches) return SUN_NLS_SUCCESS;
+  map(correction) -= (1.0 - share) * (map(guess) - self.callbacks.accepted);
+  return self.system(correction, self.step, ida);
+}
+
 int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector weight, realtype share,
                        booleantype call_setup, void* memory) {
   Newton& self = content(solver);
@@ -77,8 +97,11 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
   guess_correction(self.guess, memory, correction);
   if (self.worn) call_setup = SUNTRUE;
   self.worn = false;
+  bool touches = false;
+  int code = evaluate_guess(self, memory, correction, touches);
+  if (touches) call_setup = SUNTRUE;
+  const int most_renewals = touches ? renewals_at_touch : self.most_renewals;
   while (true) {
-    int code = self.system(correction, self.step, memory);
     if (code == SUN_NLS_SUCCESS && call_setup != SUNFALSE) {
       code = self.setup(bad ? SUNTRUE : SUNFALSE, &current, memory);
       self.coefficient = coefficient;
@@ -88,10 +111,11 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       return code;
     }
     const NewtonState limits{self.coefficient == coefficient ? share : with_other_inertia * share,
-                             current != SUNFALSE ? most_with_own + self.most_renewals
-                             : self.corrected    ? most_corrected
-                                                 : most_with_old,
-                             current != SUNFALSE && self.most_renewals > 0};
+                             touches               ? most_at_touch
+                             : current != SUNFALSE ? most_with_own + self.most_renewals
+                             : self.corrected      ? most_corrected
+                                                   : most_with_old,
+                             current != SUNFALSE && most_renewals > 0, touches ? may_grow_at_touch : 0.0};
     int renewals = 0;
     if (self.corrected) self.corrected->restart();
     for (int k = 0; code == SUN_NLS_SUCCESS; ++k) {
@@ -105,7 +129,10 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = callbacks.converged(k, limits, step, map(weight));
       if (code == SUN_NLS_SUCCESS) {
         self.worn = current == SUNFALSE && k + 1 >= most_with_old;
-        self.guess.end(map(correction), map(weight));
+        if (touches)
+          self.guess.restart();  // the next step corrects something else
+        else
+          self.guess.end(map(correction), map(weight));
         return SUN_NLS_SUCCESS;
       }
       if (code != SUN_NLS_CONTINUE) break;
@@ -116,9 +143,9 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       code = self.system(correction, self.step, memory);
       // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
-          renewals < self.most_renewals) {
+          renewals < most_renewals) {
         code = self.setup(SUNTRUE, &current, memory);
-        self.corrected->restart();
+        if (self.corrected) self.corrected->restart();
         ++renewals;
       }
     }
@@ -129,6 +156,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
     bad = true;
     if (!(code == SUN_NLS_CONV_RECVR && callbacks.rate < on_its_way && map(correction).allFinite()))
       map(correction).setZero();
+    code = self.system(correction, self.step, memory);
   }
 }
 

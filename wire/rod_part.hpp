@@ -47,6 +47,9 @@ class RodPart final : public numerics::DaePart {
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
+  /// What its places, speeds and angles may err by.
+  [[nodiscard]] const RodTolerances& tolerances() const { return tolerances_; }
+
   /// Puts a start, (3, vertices) [m] and [m/s], into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
 

@@ -60,6 +60,17 @@ void ContactPart::declare(numerics::DaeLayout& layout) {
                          0});
 }
 
+void ContactPart::attach_pattern(const numerics::SparseMatrix& pattern) {
+  slots_.attach(pattern);
+  if (found_.inputs.depends()) return;
+  for (InputMemo* memo : {&found_.inputs, &accepted_}) {
+    memo->depend_on(body_.position(), BodyPart::coordinates + BodyPart::velocities);
+    memo->depend_on(rod_.position_of(0), 3 * rod_.vertices());
+    memo->depend_on(rod_.velocity_of(0), 3 * rod_.vertices());
+    if (has_bristle()) memo->depend_on(bristle_, 2 * rod_.vertices());
+  }
+}
+
 bool ContactPart::outgrows_pattern(const DaePoint& at) {
   const Found& found = found_at(at.y);
   const auto known = [this](const Node& n) { return coupled_[base::at(n.element)]; };
@@ -218,30 +229,10 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
   return contact_geometry(contact, search_.shape(), curve, body_, y, bristle, n.place);
 }
 
-// Calls use(first, count) for the unknowns on which contact depends: those of the body, of the vertices, of the bristles.
-template <class Use>
-void ContactPart::visit_inputs(const Use& use) const {
-  use(body_.position(), BodyPart::coordinates + BodyPart::velocities);
-  use(rod_.position_of(0), 3 * rod_.vertices());
-  use(rod_.velocity_of(0), 3 * rod_.vertices());
-  if (has_bristle()) use(bristle_, 2 * rod_.vertices());
-}
-
 // Residual and Jacobian, sums and samples are of the same places again and again.
 const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
-  Eigen::Index at = 0;
-  bool same = found_.inputs.size() > 0;
-  visit_inputs([&](int first, int count) {
-    same = same && found_.inputs.segment(at, count) == y.segment(first, count);
-    at += count;
-  });
-  if (same) return found_;
-  found_.inputs.resize(at);
-  at = 0;
-  visit_inputs([&](int first, int count) {
-    found_.inputs.segment(at, count) = y.segment(first, count);
-    at += count;
-  });
+  if (found_.inputs.holds(y)) return found_;
+  found_.inputs.take(y);
   found_.nodes.clear();
   found_.stretches.clear();
   found_.elements.clear();
@@ -250,6 +241,30 @@ const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
   for (const Node& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
   if (has_bristle()) add_up_bristles(y, found_);
   return found_;
+}
+
+Press ContactPart::press_at(const VectorView& y) const {
+  Press press;
+  const Found& found = found_at(y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    press.depth = std::max(press.depth, -found.geometries[q].gap);
+    press.load += found.nodes[q].weight * found.geometries[q].state.normal;
+  }
+  return press;
+}
+
+void ContactPart::remember_press(const VectorView& y) {
+  accepted_press_ = press_at(y);
+  accepted_.take(y);
+}
+
+numerics::IterationStart ContactPart::iteration_start(const VectorView& from, const VectorView& to) {
+  if (has_law()) return {};
+  const Press predicted = press_at(to);
+  if (!accepted_.holds(from)) remember_press(from);
+  return start_with_contact(
+      accepted_press_, predicted, rod_.tolerances().position, [&] { return search_.nearest(from).gap; },
+      [&](double share) { return press_at(from + share * (to - from)).depth; });
 }
 
 void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {

@@ -4,7 +4,9 @@
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_geometry.hpp"
 #include "coupling/dynamics/contact_search.hpp"
+#include "coupling/dynamics/input_memo.hpp"
 #include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/press.hpp"
 #include "coupling/dynamics/result.hpp"
 
 #include <array>
@@ -31,19 +33,24 @@ class ContactPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Where an element touches that is not in the pattern: those that touch come in, with some neighbours, and those that are no
   /// longer near go out.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may be touched next.
-  void accept(const numerics::DaePoint& at) override { search_.update(at.y); }
+  void accept(const numerics::DaePoint& at) override {
+    search_.update(at.y);
+    remember_press(at.y);
+  }
+  [[nodiscard]] numerics::IterationStart iteration_start(const numerics::VectorView& from,
+                                                         const numerics::VectorView& to) override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
   void look_around(const numerics::VectorView& y) {
     search_.update(y);
-    found_.inputs.resize(0);
+    found_.inputs.forget();
   }
 
   /// Which elements are near, and where the wire's curve is.
@@ -89,7 +96,7 @@ class ContactPart final : public numerics::DaePart {
     std::size_t stretch = 0;
   };
   struct Found {
-    Eigen::VectorXd inputs;  // unknowns at which; empty: none yet
+    InputMemo inputs;
     std::vector<Node> nodes;
     std::vector<ClosedStretch> stretches;  // of single elements
     std::vector<int> elements;             // of each stretch
@@ -98,8 +105,8 @@ class ContactPart final : public numerics::DaePart {
     BristleMeans bristles;
   };
   const Found& found_at(const numerics::VectorView& y) const;
-  template <class Use>
-  void visit_inputs(const Use& use) const;
+  [[nodiscard]] Press press_at(const numerics::VectorView& y) const;
+  void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
@@ -128,6 +135,8 @@ class ContactPart final : public numerics::DaePart {
   std::vector<bool> coupled_;  // elements in the pattern
   int bristle_ = 0;
   numerics::PatternSlots slots_;
+  InputMemo accepted_;
+  Press accepted_press_;
   mutable Found found_;                                                       // of the last place that was asked for
   Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };

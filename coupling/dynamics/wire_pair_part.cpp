@@ -60,19 +60,30 @@ void WirePairPart::declare(numerics::DaeLayout& layout) {
   }
 }
 
+void WirePairPart::attach_pattern(const numerics::SparseMatrix& pattern) {
+  slots_.attach(pattern);
+  if (found_.inputs.depends()) return;
+  for (InputMemo* memo : {&found_.inputs, &accepted_}) {
+    for (std::size_t w = 0; w < 2; ++w) {
+      memo->depend_on(rods_[w]->position_of(0), 3 * rods_[w]->vertices());
+      memo->depend_on(rods_[w]->velocity_of(0), 3 * rods_[w]->vertices());
+      if (has_bristle()) memo->depend_on(bristles_[w], 2 * rods_[w]->vertices());
+    }
+  }
+}
+
 bool WirePairPart::outgrows_pattern(const DaePoint& at) {
-  if (search_.candidates().empty()) return false;
-  find(at.y, found_);
+  const Found& found = found_at(at.y);
   const auto elements = [](const Node& n) {
     const int own = n.places[0].element, other = n.places[1].element;
     return n.own == 0 ? std::pair(own, other) : std::pair(other, own);
   };
   const auto known = [&](const Node& n) { return std::ranges::binary_search(coupled_, elements(n)); };
-  if (std::ranges::all_of(found_.nodes, known)) return false;
+  if (std::ranges::all_of(found.nodes, known)) return false;
   std::vector<std::pair<int, int>> wanted;
   std::ranges::set_intersection(coupled_, search_.candidates(), std::back_inserter(wanted));
   const std::array<int, 2> last{search_.curve(0).elements() - 1, search_.curve(1).elements() - 1};
-  for (const Node& n : found_.nodes) {
+  for (const Node& n : found.nodes) {
     const auto [a, b] = elements(n);
     for (int i = std::max(0, a - coupled_beside); i <= std::min(last[0], a + coupled_beside); ++i) {
       for (int j = std::max(0, b - coupled_beside); j <= std::min(last[1], b + coupled_beside); ++j)
@@ -88,7 +99,7 @@ bool WirePairPart::outgrows_pattern(const DaePoint& at) {
 void WirePairPart::restore_state(const VectorView& y, std::span<const double>& memory) {
   touches_.restore_state(memory);
   coupled_.clear();
-  search_.update(y);
+  look_around(y);
 }
 
 // By pairs of vertices, of either wire, that an element of one and an element of the other couple.
@@ -157,8 +168,6 @@ WirePairPart::Node::Place WirePairPart::place(std::size_t wire, int element, dou
 }
 
 void WirePairPart::find(const VectorView& y, Found& found) const {
-  found.nodes.clear();
-  found.stretches.clear();
   for (std::size_t w = 0; w < 2; ++w) {
     for (const NearElements& n : search_.near(w))
       found.pieces[w].set(n.element, search_.curve(w).control(n.element, y));
@@ -257,11 +266,40 @@ WirePairPart::NodalLoad WirePairPart::nodal_load(const Node& n, const PairGeomet
   return load;
 }
 
-void WirePairPart::find_geometries(const VectorView& y, Found& found) const {
-  found.nodes.clear();
-  if (!search_.candidates().empty()) find(y, found);
-  found.geometries.clear();
-  for (const Node& n : found.nodes) found.geometries.push_back(geometry(n, y));
+const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
+  if (found_.inputs.holds(y)) return found_;
+  found_.inputs.take(y);
+  found_.nodes.clear();
+  found_.stretches.clear();
+  found_.geometries.clear();
+  if (!search_.candidates().empty()) find(y, found_);
+  for (const Node& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
+  if (has_bristle()) add_up_bristles(y, found_);
+  return found_;
+}
+
+Press WirePairPart::press_at(const VectorView& y) const {
+  Press press;
+  const Found& found = found_at(y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    press.depth = std::max(press.depth, -found.geometries[q].gap);
+    press.load += found.nodes[q].weight * found.geometries[q].state.normal;
+  }
+  return press;
+}
+
+void WirePairPart::remember_press(const VectorView& y) {
+  accepted_press_ = press_at(y);
+  accepted_.take(y);
+}
+
+numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, const VectorView& to) {
+  const Press predicted = press_at(to);
+  if (!accepted_.holds(from)) remember_press(from);
+  const double tolerance = std::min(rods_[0]->tolerances().position, rods_[1]->tolerances().position);
+  return start_with_contact(
+      accepted_press_, predicted, tolerance, [&] { return search_.nearest(from).gap; },
+      [&](double share) { return press_at(from + share * (to - from)).depth; });
 }
 
 void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
@@ -278,13 +316,13 @@ void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
 }
 
 void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  find_geometries(at.y, found_);
-  for (std::size_t q = 0; q < found_.nodes.size(); ++q) {
-    const Node& n = found_.nodes[q];
+  const Found& found = found_at(at.y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
     // m v_k' + ... less the forces, but for components that a mount holds.
     for (std::size_t s = 0; s < 2; ++s) {
       const wire::RodPart& rod = *rods_[wire_of(n, s)];
-      const NodalLoad load = nodal_load(n, found_.geometries[q], s);
+      const NodalLoad load = nodal_load(n, found.geometries[q], s);
       for (int k = 0; k < 4; ++k) {
         const int i = n.places[s].first + k;
         for (int a = 0; a < 3; ++a) {
@@ -294,32 +332,30 @@ void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows
     }
   }
   if (!has_bristle()) return;
-  add_up_bristles(at.y, found_);
   for (std::size_t w = 0; w < 2; ++w) {
     const int count = 2 * rods_[w]->vertices();
-    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found_.bristles[w].rates.reshaped();
+    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found.bristles[w].rates.reshaped();
   }
 }
 
 void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(slots_, values);
-  find_geometries(at.y, found_);
-  if (has_bristle()) add_up_bristles(at.y, found_);
+  const Found& found = found_at(at.y);
   for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
     for (int i = 0; i < rods_[w]->vertices(); ++i) {
       for (int a = 0; a < 2; ++a)
-        into.add(bristle_of(w, i) + a, bristle_of(w, i) + a, c + found_.bristles[w].forgetting(i));
+        into.add(bristle_of(w, i) + a, bristle_of(w, i) + a, c + found.bristles[w].forgetting(i));
     }
   }
   LocalBlock block = LocalBlock::Zero();
-  for (std::size_t k = 0; k < found_.nodes.size(); ++k) {
-    const Node& n = found_.nodes[k];
-    add_node_jacobian(n, found_.geometries[k], at.y, block);
+  for (std::size_t k = 0; k < found.nodes.size(); ++k) {
+    const Node& n = found.nodes[k];
+    add_node_jacobian(n, found.geometries[k], at.y, block);
     const auto same = [&n](const Node& next) {
       return next.own == n.own && next.places[0].element == n.places[0].element &&
              next.places[1].element == n.places[1].element;
     };
-    if (k + 1 < found_.nodes.size() && same(found_.nodes[k + 1])) continue;
+    if (k + 1 < found.nodes.size() && same(found.nodes[k + 1])) continue;
     add_block(n, block, into);
     block.setZero();
   }

@@ -3,6 +3,8 @@
 #include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_touches.hpp"
+#include "coupling/dynamics/input_memo.hpp"
+#include "coupling/dynamics/press.hpp"
 #include "coupling/dynamics/result.hpp"
 #include "coupling/dynamics/wire_pair_geometry.hpp"
 #include "coupling/dynamics/wire_pair_search.hpp"
@@ -28,17 +30,25 @@ class WirePairPart final : public numerics::DaePart {
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
-  void attach_pattern(const numerics::SparseMatrix& pattern) override { slots_.attach(pattern); }
+  void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Where elements touch that are not in the pattern: see ContactPart.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may touch next.
-  void accept(const numerics::DaePoint& at) override { search_.update(at.y); }
+  void accept(const numerics::DaePoint& at) override {
+    search_.update(at.y);
+    remember_press(at.y);
+  }
+  [[nodiscard]] numerics::IterationStart iteration_start(const numerics::VectorView& from,
+                                                         const numerics::VectorView& to) override;
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
-  void look_around(const numerics::VectorView& y) { search_.update(y); }
+  void look_around(const numerics::VectorView& y) {
+    search_.update(y);
+    found_.inputs.forget();
+  }
 
   /// Which elements of the two are near each other.
   [[nodiscard]] const WirePairSearch& search() const { return search_; }
@@ -60,15 +70,15 @@ class WirePairPart final : public numerics::DaePart {
     std::array<std::array<Eigen::Vector3d, 2>, 2> on_mounts;
   };
   /// At unknowns y of the run (SI units).
-  [[nodiscard]] Sums sums(const numerics::VectorView& y);
+  [[nodiscard]] Sums sums(const numerics::VectorView& y) const;
   /// dz/dt [m/s] of the bristles into their places of `rate`, at unknowns y in SI units.
-  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate);
+  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
 
   /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most, or of the nearest
   /// points. Its points: the closed stretches along the first wire. y in SI units.
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y);
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
   /// The same of closed stretches alone: without a search. y in SI units.
-  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y);
+  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
   [[nodiscard]] const ContactTouches& touches() const { return touches_; }
   /// What has happened since the last state told: see ContactTouches.
   [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const ContactTouches::Seen& now,
@@ -97,6 +107,7 @@ class WirePairPart final : public numerics::DaePart {
     double gap = 0.0;             // deepest [m]
   };
   struct Found {
+    InputMemo inputs;
     std::vector<Node> nodes;
     std::vector<Stretch> stretches;
     std::array<CubicPieces, 2> pieces;
@@ -113,8 +124,10 @@ class WirePairPart final : public numerics::DaePart {
   /// Rows: of either place 12 of forces, 4 of bristles. Columns: of either place 12 of places and 12 of velocities, 4 of bristles.
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
+  const Found& found_at(const numerics::VectorView& y) const;
+  [[nodiscard]] Press press_at(const numerics::VectorView& y) const;
+  void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
-  void find_geometries(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void find_along(std::size_t own, const NearElements& near, Found& found) const;
   [[nodiscard]] Node::Place place(std::size_t wire, int element, double u) const;
@@ -141,7 +154,9 @@ class WirePairPart final : public numerics::DaePart {
   std::vector<std::pair<int, int>> coupled_;  // elements in the pattern, in their order
   std::array<int, 2> bristles_{0, 0};         // first of each wire
   numerics::PatternSlots slots_;
-  Found found_;  // workspace
+  InputMemo accepted_;
+  Press accepted_press_;
+  mutable Found found_;  // of the last place that was asked for
 };
 
 }  // namespace snare::coupling

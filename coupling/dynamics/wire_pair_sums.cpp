@@ -14,13 +14,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::VectorView;
 
-WirePairPart::Sums WirePairPart::sums(const VectorView& y) {
+WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
   Sums sum;
   for (auto& wire : sum.on_mounts) wire.fill(Vector3d::Zero());
-  if (search_.candidates().empty()) return sum;
-  find(y, found_);
-  for (const Node& n : found_.nodes) {
-    const PairGeometry g = geometry(n, y);
+  const Found& found = found_at(y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const PairGeometry& g = found.geometries[q];
     sum.force += (n.own == 0 ? n.weight : -n.weight) * g.force;
     sum.normal += n.weight * g.state.normal;
     sum.energy += n.weight * pair_.foundation.energy(g.gap);
@@ -43,27 +43,25 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) {
   return sum;
 }
 
-void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
+void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
   if (!has_bristle()) return;
-  find_geometries(y, found_);
-  add_up_bristles(y, found_);
+  const Found& found = found_at(y);
   for (std::size_t w = 0; w < 2; ++w)
-    rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found_.bristles[w].rates.reshaped();
+    rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found.bristles[w].rates.reshaped();
 }
 
 // Stretches of the first wire are points of the contact; what is integrated along the second wire belongs to the one beside
 // which it acts.
-ContactSample WirePairPart::closed_sample(const VectorView& y) {
+ContactSample WirePairPart::closed_sample(const VectorView& y) const {
   ContactSample sum;
-  if (search_.candidates().empty()) return sum;
-  find(y, found_);
+  const Found& found = found_at(y);
   struct Point {
     double from = 0.0, to = 0.0;  // along the first wire [m]
     ContactSample sample;
   };
   std::vector<Point> points;
   const double round_off = 1e-9 * search_.curve(0).longest();
-  for (const Stretch& s : found_.stretches) {
+  for (const Stretch& s : found.stretches) {
     if (s.own != 0) continue;
     if (points.empty() || s.from > points.back().to + round_off) points.push_back({s.from, s.to, {}});
     points.back().to = std::max(points.back().to, s.to);
@@ -80,15 +78,16 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) {
     }
     return best != nullptr ? best->sample : points.emplace_back(Point{arc, arc, {}}).sample;
   };
-  for (const Node& n : found_.nodes) {
-    const PairGeometry g = geometry(n, y);
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    const Node& n = found.nodes[q];
+    const PairGeometry& g = found.geometries[q];
     const std::size_t first = n.own == 0 ? 0 : 1;  // place that is on the first wire
     const Node::Place& p = n.places[first];
     const double arc = search_.curve(0).begin(p.element) + p.u * search_.curve(0).length(p.element);
     const double normal = n.weight * g.state.normal;
     ContactSample& s = nearest(arc);
     s.closed = true;
-    s.gap = std::min({s.gap, g.gap, found_.stretches[n.stretch].gap});
+    s.gap = std::min({s.gap, g.gap, found.stretches[n.stretch].gap});
     s.force += (first == 0 ? n.weight : -n.weight) * g.force;
     s.normal_force += normal;
     s.point += normal * g.sides[first].x;
@@ -110,7 +109,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) {
   return sum;
 }
 
-ContactSample WirePairPart::sample(const VectorView& y) {
+ContactSample WirePairPart::sample(const VectorView& y) const {
   ContactSample s = closed_sample(y);
   if (s.closed) return s;
   const NearestPoints n = search_.nearest(y);

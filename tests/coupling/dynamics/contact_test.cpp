@@ -29,7 +29,7 @@ using Eigen::VectorXd;
 using test::body_below;
 using test::soft_wire;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// z of the shape along the wire's x.
 Matrix3d along_the_wire() {

@@ -24,7 +24,7 @@ using test::crossed_wires;
 using test::wire_between;
 using End = wire::SpatialEnd::Kind;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double degree = pi / 180.0;
 
 void free_ends(MotionWire& w) {
