@@ -24,8 +24,8 @@ constexpr double share_of_rods = 2e-4;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 // Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
 constexpr double matrix_change_without_waves = 0.5;
-// Where no wave follows, a step may go through a whole touch.
-constexpr int renewals_without_waves = 4;
+// The load of what touches a wire changes too much for one matrix.
+constexpr int renewals_of_wires = 4;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
-  if (!waves && !rods_.empty()) ida.renewals = renewals_without_waves;
+  if (!rods_.empty()) ida.renewals = renewals_of_wires;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
