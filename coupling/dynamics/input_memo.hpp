@@ -36,7 +36,7 @@ class InputMemo {
       values_.segment(at, count) = y.segment(first, count);
       at += count;
     }
-    taken_ = true;
+    taken_ = depends();
   }
   void forget() { taken_ = false; }
 

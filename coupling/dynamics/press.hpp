@@ -2,6 +2,7 @@
 
 #include "numerics/dae.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace snare::coupling {
@@ -12,30 +13,30 @@ struct Press {
   double load = 0.0;   ///< in all [N]
 };
 
-/// The share of a way, in (0, 1), after which something that is open at its beginning touches to about the depth `wanted` [m].
+/// The share of a way, in (0, 1), after which a contact is about `wanted` deep [m].
 ///
-/// gap: at the beginning of the way [m], positive; depth(share): after a share of the way [m], zero where nothing touches; at_end: after
-/// the whole way [m], larger than wanted.
+/// at_start: depth at its beginning [m], less than wanted; negative: the gap. depth(share): after a share of the way [m], zero where nothing
+/// touches; at_end: after the whole way [m], larger than wanted.
 template <class Depth>
-[[nodiscard]] double share_to_touch(double gap, double at_end, double wanted, const Depth& depth) {
+[[nodiscard]] double share_to_touch(double at_start, double at_end, double wanted, const Depth& depth) {
   constexpr int tries = 30;
   constexpr double about = 4.0;
   struct Place {
     double share = 0.0, depth = 0.0;
   };
-  Place open{0.0, -gap}, closed{1.0, at_end},
-      other = open;  // a straight line goes through the closed place and another one
+  // A straight line through two places: a closed one, and another at which the depth is known, as it is not where nothing touches.
+  Place open{0.0, at_start}, closed{1.0, at_end}, other = open;
   for (int k = 0; k < tries; ++k) {
     double share = closed.share + (wanted - closed.depth) * (other.share - closed.share) / (other.depth - closed.depth);
     if (!(share > open.share && share < closed.share)) share = 0.5 * (open.share + closed.share);
     const Place next{share, depth(share)};
     if (next.depth > wanted / about && next.depth < wanted * about) return share;
-    if (next.depth > wanted)
+    if (next.depth > wanted) {
       other = std::exchange(closed, next);
-    else
+    } else {
       open = next;
-    if (next.depth > 0.0 && next.depth < wanted)
-      other = next;  // how far from touching something is that does not, is not known
+      if (next.depth > 0.0) other = next;
+    }
   }
   return closed.share;
 }
@@ -48,19 +49,18 @@ template <class Depth>
 template <class Gap, class Depth>
 [[nodiscard]] numerics::IterationStart start_with_contact(const Press& accepted, const Press& predicted,
                                                           double tolerance, const Gap& gap, const Depth& depth) {
-  constexpr double steady = 8.0;     // most that the load may change by
-  constexpr double begun = 0.003;    // depth of a touch that has just begun, of the tolerance
-  constexpr double behind_it = 0.3;  // longest way behind the touch, of the tolerance
+  constexpr double steady = 8.0;           // most that the load may change by
+  const double begun = 0.003 * tolerance;  // depth of a touch that has just begun
+  const double reach = 0.3 * tolerance;    // of a step behind the touch
   if (predicted.depth == 0.0) return {};
-  if (accepted.load > 0.0) {
+  if (accepted.depth >= begun) {
     const bool same = predicted.load < steady * accepted.load && steady * predicted.load > accepted.load;
-    return {same ? 1.0 : 0.0};
+    return {same || accepted.load == 0.0 ? 1.0 : 0.0};
   }
-  if (accepted.depth > 0.0 || predicted.depth <= begun * tolerance) return {};
-  const double open = gap();
-  if (!(open > 0.0)) return {};
-  if (predicted.depth > behind_it * tolerance) return {0.0, true};
-  return {share_to_touch(open, predicted.depth, begun * tolerance, depth)};
+  if (predicted.depth <= begun) return {};
+  if (predicted.depth > reach) return {0.0, true};
+  const double at_start = accepted.depth > 0.0 ? accepted.depth : -std::max(0.0, gap());
+  return {share_to_touch(at_start, predicted.depth, begun, depth)};
 }
 
 }  // namespace snare::coupling

@@ -46,6 +46,17 @@ TEST(StartWithContact, IsWhereATouchBegins) {
   EXPECT_EQ(start({}, {0.002 * tolerance, 1.0}).share, 1.0);  // as shallow as that
 }
 
+// What has been touched to less than that begins there, too, whatever it presses with.
+TEST(StartWithContact, IsThereFromATouchOfRoundOff) {
+  for (const Press& accepted : {Press{}, Press{1e-17, 0.0}, Press{1e-13, 1e-9}}) {
+    const numerics::IterationStart s = start_with_contact(
+        accepted, {5e-8, 1e3}, tolerance, [] { return -1e-17; }, [](double share) { return share * 5e-8; });
+    EXPECT_FALSE(s.out_of_reach);
+    EXPECT_GT(s.share * 5e-8, 0.003 * tolerance / 4.0) << accepted.depth;
+    EXPECT_LT(s.share * 5e-8, 0.003 * tolerance * 4.0) << accepted.depth;
+  }
+}
+
 TEST(StartWithContact, RefusesStepsFarBehindATouch) {
   EXPECT_FALSE(start({}, {0.29 * tolerance, 1.0}).out_of_reach);
   EXPECT_TRUE(start({}, {0.31 * tolerance, 1.0}).out_of_reach);
@@ -59,7 +70,7 @@ TEST(ShareToTouch, FindsItWhateverTheDepthGrowsBy) {
       const auto depth = [=](double share) {
         return share <= begin ? 0.0 : std::pow((share - begin) / (1.0 - begin), power);
       };
-      const double found = depth(share_to_touch(gap, 1.0, wanted, depth));
+      const double found = depth(share_to_touch(-gap, 1.0, wanted, depth));
       EXPECT_GT(found, wanted / 4.0) << power << ", " << begin;
       EXPECT_LT(found, wanted * 4.0) << power << ", " << begin;
     }
