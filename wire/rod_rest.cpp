@@ -31,8 +31,7 @@ void spread_twist(const RodPart& part, VectorXd& y) {
 
 // The Jacobian at c is that of the balances with m c^2 added to the stiffness. c falls from a frequency at which only
 // twist and curvatures follow to one below all others: a swing about the chord, which nothing holds between pins, then
-// does not make it singular, and Newton's method still converges by 1e-6 a step. From a start that is nearly at rest it is
-// the last one at once.
+// does not make it singular, and Newton's method still converges by 1e-6 a step.
 RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
   RodInMotion rod = constants;
   rod.damping = {};
@@ -46,8 +45,7 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
   if (p.left.orients() && p.right.orients()) spread_twist(part, y);
   const double stiffness = rod.properties.bending_stiffness;
   const double slow = 1e-3 * std::sqrt(stiffness / rod.mass_per_length) / (rod.length * rod.length);
-  const double fast = 1e3 * rod.elements * rod.elements * slow;
-  double c = slow;
+  double c = 1e3 * rod.elements * rod.elements * slow;
   double shortest = rod.length;
   for (int e = 0; e + 1 < part.vertices(); ++e) shortest = std::min(shortest, part.model().rest_length(e));
 
@@ -82,17 +80,12 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
     }
     factor.solve(rows);
     // No vertex moves more than a tenth of the length at once, no edge turns more than 0.2 rad about itself.
-    constexpr double nearly_at_rest = 0.1;  // of these
-    double far = 0.0;
+    double far = 1.0;
     for (int i = 0; i < part.vertices(); ++i) {
       far = std::max({far, rows.segment<3>(part.position_of(i)).norm() / (0.1 * rod.length),
                       std::abs(rows[part.angle_of(i)]) / 0.2});
     }
-    if (result.report.iterations == 0 && !(far < nearly_at_rest)) {
-      c = fast;
-      continue;
-    }
-    y -= rows / std::max(far, 1.0);
+    y -= rows / far;
     for (int i = 0; i < part.vertices(); ++i) y.segment<3>(part.velocity_of(i)).setZero();
     system.accept({0.0, y, rate});
     c = std::max(slow, 0.1 * c);
