@@ -243,28 +243,18 @@ const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
   return found_;
 }
 
-Press ContactPart::press_at(const VectorView& y) const {
-  Press press;
-  const Found& found = found_at(y);
-  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    press.depth = std::max(press.depth, -found.geometries[q].gap);
-    press.load += found.nodes[q].weight * found.geometries[q].state.normal;
-  }
-  return press;
-}
-
 void ContactPart::remember_press(const VectorView& y) {
-  accepted_press_ = press_at(y);
+  accepted_press_ = press_of(found_at(y));
   accepted_.take(y);
 }
 
 numerics::IterationStart ContactPart::iteration_start(const VectorView& from, const VectorView& to) {
   if (has_law()) return {};
-  const Press predicted = press_at(to);
+  const Press predicted = press_of(found_at(to));
   if (!accepted_.holds(from)) remember_press(from);
   return start_with_contact(
       accepted_press_, predicted, rod_.tolerances().position, [&] { return search_.nearest(from).gap; },
-      [&](double share) { return press_at(from + share * (to - from)).depth; });
+      [&](double share) { return press_of(found_at(from + share * (to - from))).depth; });
 }
 
 void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {

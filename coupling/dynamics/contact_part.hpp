@@ -105,7 +105,6 @@ class ContactPart final : public numerics::DaePart {
     BristleMeans bristles;
   };
   const Found& found_at(const numerics::VectorView& y) const;
-  [[nodiscard]] Press press_at(const numerics::VectorView& y) const;
   void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;

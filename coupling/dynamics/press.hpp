@@ -3,6 +3,7 @@
 #include "numerics/dae.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace snare::coupling {
@@ -12,6 +13,17 @@ struct Press {
   double depth = 0.0;  ///< the largest [m], 0: nothing touches
   double load = 0.0;   ///< in all [N]
 };
+
+/// What is closed, by its nodes with weights [m] and their geometries, presses with.
+template <class Found>
+[[nodiscard]] Press press_of(const Found& found) {
+  Press press;
+  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
+    press.depth = std::max(press.depth, -found.geometries[q].gap);
+    press.load += found.nodes[q].weight * found.geometries[q].state.normal;
+  }
+  return press;
+}
 
 /// The share of a way, in (0, 1), after which a contact is about `wanted` deep [m].
 ///

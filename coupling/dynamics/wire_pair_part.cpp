@@ -278,28 +278,18 @@ const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
   return found_;
 }
 
-Press WirePairPart::press_at(const VectorView& y) const {
-  Press press;
-  const Found& found = found_at(y);
-  for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    press.depth = std::max(press.depth, -found.geometries[q].gap);
-    press.load += found.nodes[q].weight * found.geometries[q].state.normal;
-  }
-  return press;
-}
-
 void WirePairPart::remember_press(const VectorView& y) {
-  accepted_press_ = press_at(y);
+  accepted_press_ = press_of(found_at(y));
   accepted_.take(y);
 }
 
 numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, const VectorView& to) {
-  const Press predicted = press_at(to);
+  const Press predicted = press_of(found_at(to));
   if (!accepted_.holds(from)) remember_press(from);
   const double tolerance = std::min(rods_[0]->tolerances().position, rods_[1]->tolerances().position);
   return start_with_contact(
       accepted_press_, predicted, tolerance, [&] { return search_.nearest(from).gap; },
-      [&](double share) { return press_at(from + share * (to - from)).depth; });
+      [&](double share) { return press_of(found_at(from + share * (to - from))).depth; });
 }
 
 void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {

@@ -125,7 +125,6 @@ class WirePairPart final : public numerics::DaePart {
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
   const Found& found_at(const numerics::VectorView& y) const;
-  [[nodiscard]] Press press_at(const numerics::VectorView& y) const;
   void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
