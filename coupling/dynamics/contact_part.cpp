@@ -63,12 +63,11 @@ void ContactPart::declare(numerics::DaeLayout& layout) {
 void ContactPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   slots_.attach(pattern);
   if (found_.inputs.depends()) return;
-  for (InputMemo* memo : {&found_.inputs, &accepted_}) {
-    memo->depend_on(body_.position(), BodyPart::coordinates + BodyPart::velocities);
-    memo->depend_on(rod_.position_of(0), 3 * rod_.vertices());
-    memo->depend_on(rod_.velocity_of(0), 3 * rod_.vertices());
-    if (has_bristle()) memo->depend_on(bristle_, 2 * rod_.vertices());
-  }
+  found_.inputs.depend_on(body_.position(), BodyPart::coordinates + BodyPart::velocities);
+  found_.inputs.depend_on(rod_.position_of(0), 3 * rod_.vertices());
+  found_.inputs.depend_on(rod_.velocity_of(0), 3 * rod_.vertices());
+  if (has_bristle()) found_.inputs.depend_on(bristle_, 2 * rod_.vertices());
+  accepted_ = AcceptedPress(found_.inputs);
 }
 
 bool ContactPart::outgrows_pattern(const DaePoint& at) {
@@ -243,18 +242,16 @@ const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
   return found_;
 }
 
-void ContactPart::remember_press(const VectorView& y) {
-  accepted_press_ = press_of(found_at(y));
-  accepted_.take(y);
+void ContactPart::accept(const DaePoint& at) {
+  search_.update(at.y);
+  accepted_.take(at.y, [this](const VectorView& y) -> const Found& { return found_at(y); });
 }
 
 numerics::IterationStart ContactPart::iteration_start(const VectorView& from, const VectorView& to) {
   if (has_law()) return {};
-  const Press predicted = press_of(found_at(to));
-  if (!accepted_.holds(from)) remember_press(from);
-  return start_with_contact(
-      accepted_press_, predicted, rod_.tolerances().position, [&] { return search_.nearest(from).gap; },
-      [&](double share) { return press_of(found_at(from + share * (to - from))).depth; });
+  return accepted_.start(
+      from, to, rod_.tolerances().position, [this](const VectorView& y) -> const Found& { return found_at(y); },
+      [this](const VectorView& y) { return search_.nearest(y).gap; });
 }
 
 void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {

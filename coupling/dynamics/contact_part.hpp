@@ -4,7 +4,6 @@
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_geometry.hpp"
 #include "coupling/dynamics/contact_search.hpp"
-#include "coupling/dynamics/input_memo.hpp"
 #include "coupling/dynamics/options.hpp"
 #include "coupling/dynamics/press.hpp"
 #include "coupling/dynamics/result.hpp"
@@ -40,10 +39,7 @@ class ContactPart final : public numerics::DaePart {
   /// longer near go out.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may be touched next.
-  void accept(const numerics::DaePoint& at) override {
-    search_.update(at.y);
-    remember_press(at.y);
-  }
+  void accept(const numerics::DaePoint& at) override;
   [[nodiscard]] numerics::IterationStart iteration_start(const numerics::VectorView& from,
                                                          const numerics::VectorView& to) override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
@@ -105,7 +101,6 @@ class ContactPart final : public numerics::DaePart {
     BristleMeans bristles;
   };
   const Found& found_at(const numerics::VectorView& y) const;
-  void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
@@ -134,8 +129,7 @@ class ContactPart final : public numerics::DaePart {
   std::vector<bool> coupled_;  // elements in the pattern
   int bristle_ = 0;
   numerics::PatternSlots slots_;
-  InputMemo accepted_;
-  Press accepted_press_;
+  AcceptedPress accepted_;
   mutable Found found_;                                                       // of the last place that was asked for
   Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };

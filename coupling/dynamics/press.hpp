@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numerics/dae.hpp"
+#include "coupling/dynamics/input_memo.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -74,5 +74,35 @@ template <class Gap, class Depth>
   const double at_start = accepted.depth > 0.0 ? accepted.depth : -std::max(0.0, gap());
   return {share_to_touch(at_start, predicted.depth, begun, depth)};
 }
+
+/// How a contact pressed at the accepted unknowns. What is closed at unknowns y (SI units) is asked for as found_at(y): see press_of.
+class AcceptedPress {
+ public:
+  AcceptedPress() = default;
+  explicit AcceptedPress(InputMemo inputs)
+      : inputs_(std::move(inputs)) {}  ///< the unknowns on which the contact depends
+
+  /// Told the accepted unknowns y (SI units).
+  template <class FoundAt>
+  void take(const numerics::VectorView& y, const FoundAt& found_at) {
+    press_ = press_of(found_at(y));
+    inputs_.take(y);
+  }
+  /// Where Newton's method begins between unknowns (SI units); tolerance: of places [m]; gap(y) [m].
+  template <class FoundAt, class Gap>
+  [[nodiscard]] numerics::IterationStart start(const numerics::VectorView& from, const numerics::VectorView& to,
+                                               double tolerance, const FoundAt& found_at, const Gap& gap) {
+    const Press predicted = press_of(found_at(to));
+    if (predicted.depth == 0.0) return {};
+    if (!inputs_.holds(from)) take(from, found_at);  // a start that was not accepted
+    return start_with_contact(
+        press_, predicted, tolerance, [&] { return gap(from); },
+        [&](double share) { return press_of(found_at(from + share * (to - from))).depth; });
+  }
+
+ private:
+  InputMemo inputs_;
+  Press press_;
+};
 
 }  // namespace snare::coupling

@@ -63,13 +63,12 @@ void WirePairPart::declare(numerics::DaeLayout& layout) {
 void WirePairPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   slots_.attach(pattern);
   if (found_.inputs.depends()) return;
-  for (InputMemo* memo : {&found_.inputs, &accepted_}) {
-    for (std::size_t w = 0; w < 2; ++w) {
-      memo->depend_on(rods_[w]->position_of(0), 3 * rods_[w]->vertices());
-      memo->depend_on(rods_[w]->velocity_of(0), 3 * rods_[w]->vertices());
-      if (has_bristle()) memo->depend_on(bristles_[w], 2 * rods_[w]->vertices());
-    }
+  for (std::size_t w = 0; w < 2; ++w) {
+    found_.inputs.depend_on(rods_[w]->position_of(0), 3 * rods_[w]->vertices());
+    found_.inputs.depend_on(rods_[w]->velocity_of(0), 3 * rods_[w]->vertices());
+    if (has_bristle()) found_.inputs.depend_on(bristles_[w], 2 * rods_[w]->vertices());
   }
+  accepted_ = AcceptedPress(found_.inputs);
 }
 
 bool WirePairPart::outgrows_pattern(const DaePoint& at) {
@@ -278,18 +277,16 @@ const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
   return found_;
 }
 
-void WirePairPart::remember_press(const VectorView& y) {
-  accepted_press_ = press_of(found_at(y));
-  accepted_.take(y);
+void WirePairPart::accept(const DaePoint& at) {
+  search_.update(at.y);
+  accepted_.take(at.y, [this](const VectorView& y) -> const Found& { return found_at(y); });
 }
 
 numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, const VectorView& to) {
-  const Press predicted = press_of(found_at(to));
-  if (!accepted_.holds(from)) remember_press(from);
   const double tolerance = std::min(rods_[0]->tolerances().position, rods_[1]->tolerances().position);
-  return start_with_contact(
-      accepted_press_, predicted, tolerance, [&] { return search_.nearest(from).gap; },
-      [&](double share) { return press_of(found_at(from + share * (to - from))).depth; });
+  return accepted_.start(
+      from, to, tolerance, [this](const VectorView& y) -> const Found& { return found_at(y); },
+      [this](const VectorView& y) { return search_.nearest(y).gap; });
 }
 
 void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {

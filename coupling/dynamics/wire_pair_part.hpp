@@ -3,7 +3,6 @@
 #include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/closed_stretches.hpp"
 #include "coupling/dynamics/contact_touches.hpp"
-#include "coupling/dynamics/input_memo.hpp"
 #include "coupling/dynamics/press.hpp"
 #include "coupling/dynamics/result.hpp"
 #include "coupling/dynamics/wire_pair_geometry.hpp"
@@ -36,10 +35,7 @@ class WirePairPart final : public numerics::DaePart {
   /// Where elements touch that are not in the pattern: see ContactPart.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may touch next.
-  void accept(const numerics::DaePoint& at) override {
-    search_.update(at.y);
-    remember_press(at.y);
-  }
+  void accept(const numerics::DaePoint& at) override;
   [[nodiscard]] numerics::IterationStart iteration_start(const numerics::VectorView& from,
                                                          const numerics::VectorView& to) override;
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
@@ -125,7 +121,6 @@ class WirePairPart final : public numerics::DaePart {
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
   const Found& found_at(const numerics::VectorView& y) const;
-  void remember_press(const numerics::VectorView& y);
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
   void find_along(std::size_t own, const NearElements& near, Found& found) const;
@@ -153,8 +148,7 @@ class WirePairPart final : public numerics::DaePart {
   std::vector<std::pair<int, int>> coupled_;  // elements in the pattern, in their order
   std::array<int, 2> bristles_{0, 0};         // first of each wire
   numerics::PatternSlots slots_;
-  InputMemo accepted_;
-  Press accepted_press_;
+  AcceptedPress accepted_;
   mutable Found found_;  // of the last place that was asked for
 };
 
