@@ -29,6 +29,12 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
   std::vector<int> row_index(at(n), -1), column_index(at(n), -1);
   for (int u = 0; u < n; ++u) {
     if (pair_of_[at(u)] >= 0) continue;
+    const int diagonal = pattern.slot(u, u), in_column = pattern.column_start[at(u) + 1] - pattern.column_start[at(u)];
+    if (!pairs_.empty() && diagonal >= 0 && entries[at(u)] == 1 && in_column == 1) {
+      alone_.push_back(u);
+      alone_slot_.push_back(diagonal);
+      continue;
+    }
     const int place = place_of[at(u)];
     const int row = place >= 0 ? pairs_[at(place)].second : u;
     row_index[at(row)] = column_index[at(u)] = static_cast<int>(column_.size());
@@ -36,6 +42,7 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
     column_.push_back(u);
   }
   for (const auto& [p, v] : pairs_) column_index[at(v)] = column_index[at(p)];
+  of_alone_.assign(alone_.size(), 0.0);
   std::vector<std::pair<int, int>> left;
   left.reserve(pattern.row.size());
   const auto visit = [&](const auto& use) {
@@ -45,12 +52,12 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
     }
   };
   visit([&](int, int i, int j) {
-    if (i >= 0) left.emplace_back(i, j);
+    if (i >= 0 && j >= 0) left.emplace_back(i, j);
   });
   matrix_ = make_pattern(static_cast<int>(column_.size()), left);
   target_.assign(pattern.row.size(), -1);
   visit([&](int s, int i, int j) {
-    if (i >= 0) target_[at(s)] = matrix_.slot(i, j);
+    if (i >= 0 && j >= 0) target_[at(s)] = matrix_.slot(i, j);
   });
   for (const auto& [p, v] : pairs_) {
     first_rate_.push_back(rates_.size());
@@ -75,6 +82,9 @@ bool Condensation::update(const SparseMatrix& full) {
     if (pivot_[k] == 0.0) return false;
     ratio_[k] = -full.value[at(own_slot_[k])] / pivot_[k];
   }
+  for (const int slot : alone_slot_) {
+    if (full.value[at(slot)] == 0.0) return false;
+  }
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   for (int j = 0; j < full.order; ++j) {
     const int pair = pair_of_[at(j)];
@@ -91,6 +101,7 @@ void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::Vect
   const auto left = static_cast<Eigen::Index>(row_.size());
   reduced.resize(left);
   for (Eigen::Index k = 0; k < left; ++k) reduced[k] = b[row_[static_cast<std::size_t>(k)]];
+  for (std::size_t k = 0; k < alone_.size(); ++k) of_alone_[k] = b[alone_[k]] / full.value[at(alone_slot_[k])];
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     given_[k] = b[pairs_[k].first] / pivot_[k];
     if (given_[k] == 0.0) continue;
@@ -104,6 +115,7 @@ void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::Vect
 
 void Condensation::expand(const Eigen::VectorXd& reduced, Eigen::Ref<Eigen::VectorXd> x) const {
   for (Eigen::Index k = 0; k < reduced.size(); ++k) x[column_[static_cast<std::size_t>(k)]] = reduced[k];
+  for (std::size_t k = 0; k < alone_.size(); ++k) x[alone_[k]] = of_alone_[k];
   for (std::size_t k = 0; k < pairs_.size(); ++k) x[pairs_[k].second] = given_[k] + ratio_[k] * x[pairs_[k].first];
 }
 

@@ -10,7 +10,8 @@
 
 namespace snare::numerics {
 
-/// A linear system without the unknowns that a row of their own gives at once: rates v of places x, by the rows x' - v.
+/// A linear system without the unknowns that a row of their own gives at once: rates v of places x, by the rows x' - v, and beside such
+/// pairs those that no other row has, with nothing else in their own.
 ///                                                                                          theory.md (N.6)
 ///   row p:  a x + b v = r   =>   v = (r - a x)/b
 ///
@@ -48,6 +49,8 @@ class Condensation {
   std::vector<Run> rates_;                     // pair by pair
   std::vector<std::size_t> first_rate_;        // of every pair
   std::vector<double> ratio_, pivot_, given_;  // -a/b, b, and r/b of every pair
+  std::vector<int> alone_, alone_slot_;        // unknowns with nothing but their diagonal, and that
+  std::vector<double> of_alone_;               // they themselves
 };
 
 }  // namespace snare::numerics

@@ -1,6 +1,7 @@
 #include "numerics/dae.hpp"
 
 #include "base/errors.hpp"
+#include "base/index.hpp"
 
 #include <fmt/format.h>
 
@@ -45,15 +46,29 @@ void DaeSystem::make_pattern_anew() {
     part->sparsity(entries);
     part->rates(rates_);
   }
+  std::vector<bool> is_held(base::at(size()), false);
+  for (const int u : held_) is_held[base::at(u)] = true;
+  const auto holds = [&](const std::pair<int, int>& e) {
+    return is_held[base::at(e.first)] || is_held[base::at(e.second)];
+  };
+  std::erase_if(entries, holds);
+  std::erase_if(rates_, holds);
+  for (const int u : held_) entries.emplace_back(u, u);
   matrix_ = make_pattern(size(), entries);
   for (DaePart* part : parts_) part->attach_pattern(matrix_);
   ++pattern_version_;
   stale_pattern_ = false;
 }
 
+void DaeSystem::hold(std::vector<int> unknowns) {
+  held_ = std::move(unknowns);
+  stale_pattern_ = true;
+}
+
 void DaeSystem::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   rows.setZero();
   for (DaePart* part : parts_) part->residual(at, rows);
+  for (const int u : held_) rows[u] = 0.0;
 }
 
 const SparseMatrix& DaeSystem::jacobian(const DaePoint& at, double c) {
@@ -61,6 +76,7 @@ const SparseMatrix& DaeSystem::jacobian(const DaePoint& at, double c) {
   if (stale_pattern_) make_pattern_anew();
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   for (DaePart* part : parts_) part->jacobian(at, c, matrix_.value);
+  for (const int u : held_) matrix_.value[base::at(matrix_.slot(u, u))] = 1.0;
   return matrix_;
 }
 

@@ -81,10 +81,16 @@ class PatternValues {
     const int slot = slots_.slot(asked_++, row, column);
     if (slot >= 0) values_[static_cast<std::size_t>(slot)] += value;
   }
-  /// A stretch of a column from a row on, all of which the pattern has.
+  /// A stretch of a column from a row on.
   void add(int first_row, int column, const Eigen::Ref<const Eigen::VectorXd>& stretch) const {
-    const int slot = slots_.slot(asked_++, first_row, column);
-    if (slot >= 0) Eigen::Map<Eigen::VectorXd>(values_.data() + slot, stretch.size()) += stretch;
+    const auto count = static_cast<int>(stretch.size());
+    const int first = slots_.slot(asked_++, first_row, column);
+    const int last = slots_.slot(asked_++, first_row + count - 1, column);
+    if (first >= 0 && last == first + count - 1) {
+      Eigen::Map<Eigen::VectorXd>(values_.data() + first, count) += stretch;
+    } else {
+      for (int k = 0; k < count; ++k) add(first_row + k, column, stretch[k]);
+    }
   }
 
  private:
@@ -124,7 +130,7 @@ class DaePart {
   virtual void sparsity(std::vector<std::pair<int, int>>& entries) const = 0;
   /// Appends (p, v) where the row p reads y'_p - y_v = 0, whatever other parts add to it: rates of places.
   virtual void rates(std::vector<std::pair<int, int>>& /*pairs*/) const {}
-  /// Told the pattern, to look up its slots in it.
+  /// Told the pattern, to look up its slots in it. It lacks rows and columns of unknowns that are held.
   virtual void attach_pattern(const SparseMatrix& pattern) = 0;
   /// Adds to the rows of F.
   virtual void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) = 0;
@@ -169,6 +175,9 @@ class DaeSystem {
   /// All (p, v) of the parts, see DaePart: of the present pattern.
   [[nodiscard]] const std::vector<std::pair<int, int>>& rates() const noexcept { return rates_; }
 
+  /// From here on these unknowns stay as they are, whatever the parts add to their rows: dy = 0 of each. None at first.
+  void hold(std::vector<int> unknowns);
+
   /// F into `rows`.
   void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows);
   /// dF/dy + c dF/dy' into `matrix`; makes the pattern anew first where a part has outgrown it.
@@ -192,6 +201,7 @@ class DaeSystem {
   DaeLayout layout_;
   SparseMatrix matrix_;
   std::vector<std::pair<int, int>> rates_;
+  std::vector<int> held_;
   int event_count_ = 0;
   int pattern_version_ = 0;
   bool stale_pattern_ = true;

@@ -6,6 +6,7 @@
 #include "wire/edge_beam.hpp"
 #include "wire/rod_cells.hpp"
 #include "wire/rod_damping.hpp"
+#include "wire/rod_in_plane.hpp"
 #include "wire/strand_friction.hpp"
 #include "wire/twist.hpp"
 #include "wire/vertex_turning.hpp"
@@ -21,20 +22,6 @@ using numerics::Lanes;
 using numerics::Lanes3;
 
 namespace {
-
-/// What the strands of a vertex answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they hold and lose is
-/// added.
-Vector2d strand_moment(const RodModel& model, int i, double length, const Vector2d& rates, const DaePoint& at,
-                       RodLosses& losses) {
-  const Vector2d held = at.y.segment<2>(model.strand_of(i));
-  const StrandResponse s(model.strands(), held, rates / length);
-  losses.strand_rates[base::at(i)] = s.rate;
-  const double stiffness = model.strands().extra_stiffness * length;
-  losses.strand_energy += 0.5 * stiffness * held.squaredNorm();
-  // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
-  losses.power += stiffness * model.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - length * s.rate);
-  return s.moment;
-}
 
 /// Damping and strands of a vertex at an end.
 void add_bending_losses(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at,
@@ -62,10 +49,14 @@ RodForces::RodForces(const RodModel& model, bool four) : four_(four), rows_(RodR
     rows_.row(Row::is_edge)[i] = i < n ? 1.0 : 0.0;
     rows_.row(Row::is_inner)[i] = i > 0 && i < n ? 1.0 : 0.0;
     // Of no edge: along x and y.
-    for (const int r :
-         {+Row::old_tangent, +Row::tangent, Row::old_director + 1, Row::director + 1, Row::first + 1, Row::second + 2})
-      rows_.row(r)[i] = 1.0;
+    for (const int r : {+Row::old_tangent, Row::old_director + 1}) rows_.row(r)[i] = 1.0;
   }
+}
+
+void RodForces::stay_in(const std::optional<RodPlane>& plane) {
+  plane_ = plane;
+  // Nothing is worked out across the plane.
+  rows_.clear(Row::force, 3);
 }
 
 void RodForces::take_frames(const RodInstant& accepted) {
@@ -90,9 +81,8 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       places[i] = x[3 * i + k];
       velocities[i] = v[3 * i + k];
     }
-    // What stands for no vertex goes on along x.
-    for (int i = n + 1; i < rows_.length(); ++i)
-      places[i] = places[i - 1] + (k == 0 ? rows_.row(Row::rest_length)[i] : 0.0);
+    // What stands for no vertex goes on as the last edge does.
+    for (int i = n + 1; i < rows_.length(); ++i) places[i] = places[i - 1] + (places[n] - places[n - 1]);
   }
   std::copy_n(at.y.data() + model.angle_of(0), n, rows_.row(Row::theta));
   std::copy_n(at.rate.data() + model.angle_of(0), n, rows_.row(Row::theta_rate));
@@ -106,7 +96,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
 
 // Frames go from the last accepted state to the point's; then what an edge does by its stretch and the bow of its beam.
 [[gnu::always_inline]] inline void RodForces::work_on_edges(const RodModel& model, RodInstant& trial,
-                                                            const Results& out) {
+                                                            const RodSums& out) {
   const int n = model.edges();
   const double stiffness = model.properties().axial_stiffness;
   const double viscosity = model.damping().axial_time * stiffness;
@@ -157,6 +147,10 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   }
   out.assembly.energy += energy.sum();
   out.losses.power += power.sum();
+  // What stands for no edge has the last one's directions: between any others there may be no turn.
+  for (const int first : {+Row::tangent, +Row::director, +Row::first, +Row::second}) {
+    for (int r = first; r < first + 3; ++r) std::fill_n(rows_.row(r) + n, Lanes::count, rows_.row(r)[n - 1]);
+  }
   for (int e = 0; e < n; ++e) {
     const auto of_edge = [&](int r) { return Vector3d(rows_.row(r)[e], rows_.row(r + 1)[e], rows_.row(r + 2)[e]); };
     trial.state.frames[base::at(e)] = {of_edge(Row::tangent), of_edge(Row::director)};
@@ -169,7 +163,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
 // with the sum of their weights, of the twist. The moment M_j = tau EI_j/l kappa_j' + k_x m_j of damping and strands is one of
 // these weights.
 [[gnu::always_inline]] inline void RodForces::work_on_vertices(const RodModel& model, const DaePoint& at,
-                                                               RodInstant& trial, const Results& out) {
+                                                               RodInstant& trial, const RodSums& out) {
   const int n = model.edges();
   const SpatialRodProperties& p = model.properties();
   const CellTerms terms(p, model.rod().strains());
@@ -235,23 +229,44 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
 }
 
 [[gnu::always_inline]] inline void RodForces::work(const RodModel& model, const DaePoint& at, RodInstant& trial,
-                                                   const Results& out) {
+                                                   const RodSums& out) {
   work_on_edges(model, trial, out);
   work_on_vertices(model, at, trial, out);
 }
 
 // No product is joined with its sum in one rounding, so that all processors give the same bits.
 [[gnu::target("avx2")]] void RodForces::work_by_four(const RodModel& model, const DaePoint& at, RodInstant& trial,
-                                                     const Results& out) {
+                                                     const RodSums& out) {
   work(model, at, trial, out);
 }
 
-void RodForces::work_by_two(const RodModel& model, const DaePoint& at, RodInstant& trial, const Results& out) {
+void RodForces::work_by_two(const RodModel& model, const DaePoint& at, RodInstant& trial, const RodSums& out) {
   work(model, at, trial, out);
+}
+
+// Directors stay across the plane, or across the tangent in it.
+void RodForces::turn_frames(RodInstant& trial) const {
+  const auto [u, v] = plane_->axes;
+  const bool stands_across = plane_->bending == 1;
+  Vector3d director = Vector3d::Zero();
+  director[plane_->normal] = -plane_->sign;
+  for (std::size_t e = 0; e < trial.state.frames.size(); ++e) {
+    Vector3d tangent = Vector3d::Zero();
+    tangent[u] = rows_.row(Row::tangent + u)[e];
+    tangent[v] = rows_.row(Row::tangent + v)[e];
+    if (!stands_across) {
+      director[u] = -plane_->sign * tangent[v];
+      director[v] = plane_->sign * tangent[u];
+      director[plane_->normal] = 0.0;
+    }
+    trial.state.frames[e] = {tangent, director};
+    trial.directors[e] = {director, tangent.cross(director)};
+    trial.inverse_lengths[e] = rows_.row(Row::inverse_length)[e];
+  }
 }
 
 // From edges to vertices: what pulls at the edge behind and at the one before, and half the weight of both (W.8).
-void RodForces::gather(const RodModel& model, const Results& out) {
+void RodForces::gather(const RodModel& model, const RodSums& out) {
   constexpr int block = RodModel::block;
   const int n = model.edges();
   const Vector3d& weight = model.properties().weight;
@@ -277,7 +292,7 @@ void RodForces::gather(const RodModel& model, const Results& out) {
     out.by_curvature.col(i) = Vector2d(rows_.row(Row::by_curvature)[i], rows_.row(Row::by_curvature + 1)[i]);
 }
 
-void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end, const Results& out) {
+void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end, const RodSums& out) {
   const int i = model.vertex_at(end);
   SpatialState& state = trial.state;
   const std::optional<Frame>& mount = end == End::left ? state.left_mount : state.right_mount;
@@ -296,7 +311,7 @@ void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& t
   if (model.bends_with_loss()) add_bending_losses(model, cell, i, at, out.assembly.gradient, out.losses);
 }
 
-void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& trial, const Results& out) {
+void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& trial, const RodSums& out) {
   const int n = model.edges();
   take_unknowns(model, at);
   rows_.clear(Row::torque, 1);
@@ -307,7 +322,12 @@ void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& 
   out.losses.power = out.losses.strand_energy = 0.0;
   out.losses.couples = {Vector3d::Zero(), Vector3d::Zero()};
   out.losses.strand_rates.assign(base::at(n + 1), Vector2d::Zero());
-  four_ ? work_by_four(model, at, trial, out) : work_by_two(model, at, trial, out);
+  if (plane_) {
+    work_out_forces(model, *plane_, at, four_, rows_, out);
+    turn_frames(trial);
+  } else {
+    four_ ? work_by_four(model, at, trial, out) : work_by_two(model, at, trial, out);
+  }
   gather(model, out);
   for (const End end : ends) add_end(model, at, trial, end, out);
 }

@@ -60,6 +60,66 @@ void RodPart::place(const Matrix3Xd& positions, const Matrix3Xd& velocities, Eig
   }
 }
 
+namespace {
+
+constexpr double round_off = 1e-12;  // of directions [-], and of places [m]
+
+/// Whether a mount is its own mirror image in the plane across an axis at a place on it; one that gives does so along x.
+bool is_mirrored(const SpatialEnd& end, int normal, double offset) {
+  if (end.kind == SpatialEnd::Kind::free) return true;
+  if (std::abs(end.position[normal] - offset) > round_off || (end.gives() && normal == 0)) return false;
+  return !end.orients() || (std::abs(end.direction[normal]) <= round_off && end.twist_angle == 0.0);
+}
+
+}  // namespace
+
+std::optional<RodPlane> RodPart::plane_across(int normal) const {
+  const SpatialRodProperties& p = model_.properties();
+  const SpatialState& state = accepted_.state;
+  const double offset = vertex(state, 0)[normal];
+  for (const End end : ends) {
+    if (is_carried(end) || !is_mirrored(p.end(end), normal, offset)) return std::nullopt;
+  }
+  for (int i = 0; i < vertices(); ++i) {
+    if (std::abs(vertex(state, i)[normal] - offset) > round_off) return std::nullopt;
+  }
+  std::vector<Frame> frames = state.frames;
+  for (const std::optional<Frame>& mount : {state.left_mount, state.right_mount}) {
+    if (mount) frames.push_back(*mount);
+  }
+  // Of director m1 across the plane kappa_2 = -m1.kb is in it, of m1 in it kappa_1 = m2.kb (W.24).
+  const Frame& first = frames.front();
+  const bool stands_across = std::abs(first.director[normal]) > 0.5;
+  const double size = stands_across ? 1.0 : 0.0;
+  for (const Frame& f : frames) {
+    if (std::abs(std::abs(f.director[normal]) - size) > round_off) return std::nullopt;
+  }
+  for (const double m : state.reference_twist) {
+    if (std::abs(m) > round_off) return std::nullopt;
+  }
+  RodPlane plane{normal, {(normal + 1) % 3, (normal + 2) % 3}, stands_across ? 1 : 0, 1.0};
+  const double across = stands_across ? -first.director[normal] : first.tangent.cross(first.director)[normal];
+  plane.sign = across > 0.0 ? 1.0 : -1.0;
+  if (p.weight[normal] != 0.0 || p.natural_curvature[plane.odd()] != 0.0 || p.natural_twist != 0.0) return std::nullopt;
+  return plane;
+}
+
+void RodPart::stay_in(const std::optional<RodPlane>& plane) {
+  forces_.stay_in(plane);
+  stiffness_.stay_in(plane);
+  if (slots_.is_attached()) stiffness_.attach(model_, slots_);
+  y_.resize(0);
+}
+
+// The angles theta are odd, and of curvatures and strands those towards the director that stands across the plane.
+void RodPart::append_across(const RodPlane& plane, std::vector<int>& unknowns) const {
+  for (int i = 0; i < vertices(); ++i) {
+    unknowns.insert(unknowns.end(), {position_of(i) + plane.normal, velocity_of(i) + plane.normal, angle_of(i)});
+    if (model_.is_curved()) unknowns.push_back(model_.curvature_of(i) + plane.odd());
+    if (model_.strands().act()) unknowns.push_back(strand_of(i) + plane.odd());
+  }
+}
+
 void RodPart::take_unknowns(const numerics::VectorView& y) {
   for (int i = 0; i < vertices(); ++i) {
     band_.segment<3>(RodModel::block * i) = y.segment<3>(position_of(i));

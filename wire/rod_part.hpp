@@ -7,6 +7,7 @@
 #include "wire/rod_forces.hpp"
 #include "wire/rod_in_motion.hpp"
 #include "wire/rod_model.hpp"
+#include "wire/rod_plane.hpp"
 #include "wire/rod_slots.hpp"
 #include "wire/rod_stiffness.hpp"
 #include "wire/spatial_rod.hpp"
@@ -15,6 +16,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -52,6 +54,14 @@ class RodPart final : public numerics::DaePart {
 
   /// Puts a start, (3, vertices) [m] and [m/s], into the unknowns (twist angles zero) and lets the reference frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
+
+  /// The plane across axis `normal` of the world (0 to 2) in which the rod stays, since at its start it is its own mirror image there, to round-off:
+  /// its places, mounts, frames, weight and what it is by nature. None where it is not.      theory.md (M.36)
+  [[nodiscard]] std::optional<RodPlane> plane_across(int normal) const;
+  /// Works out from here on only what happens in a plane, in which its unknowns have to be and to stay; none: what happens in space.
+  void stay_in(const std::optional<RodPlane>& plane);
+  /// Appends the unknowns that leave a plane, or turn out of it.
+  void append_across(const RodPlane& plane, std::vector<int>& unknowns) const;
 
   /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is no longer held by this part: a
   /// constraint has to.

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace snare::wire {
 
@@ -41,6 +44,15 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
   VectorXd y = VectorXd::Zero(system.size());
   const VectorXd rate = y;
   part.place(start, {}, y);
+  for (const int normal : {2, 1, 0}) {
+    const std::optional<RodPlane> plane = part.plane_across(normal);
+    if (!plane) continue;
+    std::vector<int> across;
+    part.append_across(*plane, across);
+    part.stay_in(plane);
+    system.hold(std::move(across));
+    break;
+  }
   const SpatialRodProperties& p = rod.properties;
   if (p.left.orients() && p.right.orients()) spread_twist(part, y);
   const double stiffness = rod.properties.bending_stiffness;

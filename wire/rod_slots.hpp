@@ -20,6 +20,7 @@ class RodSlots {
  public:
   /// `model` and `pattern` stay the caller's.
   void attach(const RodModel& model, const numerics::SparseMatrix& pattern);
+  [[nodiscard]] bool is_attached() const { return pattern_ != nullptr; }
 
   /// Adds to a balance by a place; nothing where the balance is not there (the row is held).
   void add_place(int row, int column, double value, std::vector<double>& values) const {

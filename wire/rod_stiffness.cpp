@@ -4,6 +4,8 @@
 #include "wire/curved_rod.hpp"
 #include "wire/edge_beam.hpp"
 #include "wire/rod_cells.hpp"
+#include "wire/rod_in_plane.hpp"
+#include "wire/stiffness_blocks.hpp"
 #include "wire/twist.hpp"
 #include "wire/vertex_turning.hpp"
 
@@ -17,31 +19,10 @@ using numerics::Lanes3;
 
 namespace {
 
-// Rows of blocks, those of an edge's vector and angle being 0 to 3 of each: by places of the edge itself, of the next by it and of
-// it by the next; by rates of the vectors alone; by the curvatures at its two ends; a vertex's curvatures by themselves and by
-// the next ones.
-constexpr int of_angle = 3;
-enum Block : int {
-  own_place = 0,
-  next_place = own_place + 16,   // D_{e,e+1}
-  last_place = next_place + 16,  // D_{e+1,e}
-  own_rate = last_place + 16,
-  next_rate = own_rate + 12,
-  last_rate = next_rate + 12,
-  near_curvature = last_rate + 12,  // of an edge by the curvatures of its first vertex
-  far_curvature = near_curvature + 8,
-  curvature = far_curvature + 8,  // of a vertex's curvatures
-  next_curvature = curvature + 4,
-  blocks = next_curvature + 4
-};
-/// Row of an entry (r, s) of a block that begins at row `first`; columns of four.
-constexpr int entry(int first, int r, int s) {
-  return first + 4 * s + r;
-}
-/// The same of curvatures by curvatures, columns of two.
-constexpr int entry_of_two(int first, int r, int s) {
-  return first + 2 * s + r;
-}
+using enum stiffness::Block;
+using stiffness::entry;
+using stiffness::entry_of_two;
+using stiffness::of_angle;
 
 /// What a vertex's forces are by two edges and their angles: 0 to 2 the edge before, 3 its angle, 4 to 6 the edge after, 7 its
 /// angle.
@@ -85,7 +66,8 @@ template <int count, class Work>
 
 }  // namespace
 
-RodStiffness::RodStiffness(const RodModel& model, bool four) : four_(four), blocks_(Block::blocks, model.vertices()) {}
+RodStiffness::RodStiffness(const RodModel& model, bool four)
+    : four_(four), blocks_(stiffness::Block::blocks, model.vertices()) {}
 
 // An edge by itself: (W.3) or the beam (W.32) with H = H_ll t t^T + N/l (I - t t^T), and its damping. f t with
 // f = tau EA e' by the edge d and by w = v_{i+1} - v_i:
@@ -296,20 +278,33 @@ void RodStiffness::work_by_two(const RodModel& model, const Point& point) {
 
 namespace {
 
+/// Which components of places, and which of curvatures, are worked out, and whether edges turn about themselves.
+struct InSpace {
+  static constexpr std::array<int, 3> axes{0, 1, 2};
+  static constexpr std::array<int, 2> curvatures{0, 1};
+  static constexpr bool turns = true;
+};
+struct InPlane {
+  explicit InPlane(const RodPlane& plane) : axes(plane.axes), curvatures{plane.bending} {}
+  std::array<int, 2> axes;
+  std::array<int, 1> curvatures;
+  static constexpr bool turns = false;
+};
+
 /// Calls by_place(row, column, value), by_rate(row, column, value) for all that vertex i's balances and those of the edge behind it
 /// are by places and angles, and by velocities: rows and columns as bands counted from x_i's; value() is that of four vertices
 /// from i on.
-template <class ByPlace, class ByRate>
-[[gnu::always_inline]] inline void visit_bands(const RodRows& blocks, int i, const ByPlace& by_place,
-                                               const ByRate& by_rate) {
+template <class Components, class ByPlace, class ByRate>
+[[gnu::always_inline]] inline void visit_bands(const RodRows& blocks, int i, const Components& components,
+                                               const ByPlace& by_place, const ByRate& by_rate) {
   constexpr int block = RodModel::block;
   const auto at = [&blocks](int r, int e) __attribute__((always_inline)) {
     return blocks.at(r, e);
   };
   // D_{e,f} - D_{e+1,f} and the like, by how far the one vertex is from the other.
   const auto between = [&](int own, int next, int last, const auto& visit) __attribute__((always_inline)) {
-    for (int s = 0; s < 3; ++s) {
-      for (int r = 0; r < 3; ++r) {
+    for (const int s : components.axes) {
+      for (const int r : components.axes) {
         const int o = entry(own, r, s), x = entry(next, r, s), b = entry(last, r, s);
         visit(r, -2 * block + s, -at(b, i - 2));
         visit(r, -block + s, at(b, i - 2) - at(o, i - 1) + at(b, i - 1));
@@ -317,6 +312,7 @@ template <class ByPlace, class ByRate>
         visit(r, block + s, at(x, i - 1) - at(o, i) + at(x, i));
         visit(r, 2 * block + s, -at(x, i));
       }
+      if (!Components::turns) continue;
       const int o = entry(own, of_angle, s), x = entry(next, of_angle, s), b = entry(last, of_angle, s);
       visit(of_angle, -block + s, -at(b, i - 1));
       visit(of_angle, s, at(b, i - 1) - at(o, i));
@@ -326,7 +322,8 @@ template <class ByPlace, class ByRate>
   };
   between(own_place, next_place, last_place, by_place);
   between(own_rate, next_rate, last_rate, by_rate);
-  for (int r = 0; r < 3; ++r) {
+  if (!Components::turns) return;
+  for (const int r : components.axes) {
     const int o = entry(own_place, r, of_angle), x = entry(next_place, r, of_angle), b = entry(last_place, r, of_angle);
     by_place(r, of_angle - 2 * block, at(b, i - 2));
     by_place(r, of_angle - block, at(o, i - 1) - at(b, i - 1));
@@ -341,22 +338,24 @@ template <class ByPlace, class ByRate>
 /// The same of curvatures: by_cell(local, j, value) of the cell's unknown `local` and vertex i's curvature j, for the balance by
 /// the curvature and for its row by the place; own(j, k, value) and next(j, k, value) of its row j by its own curvature k and by
 /// that of the next vertex.
-template <class ByCell, class Own, class Next>
-[[gnu::always_inline]] inline void visit_curvatures(const RodRows& blocks, int i, const ByCell& by_cell, const Own& own,
-                                                    const Next& next) {
+template <class Components, class ByCell, class Own, class Next>
+[[gnu::always_inline]] inline void visit_curvatures(const RodRows& blocks, int i, const Components& components,
+                                                    const ByCell& by_cell, const Own& own, const Next& next) {
   const auto at = [&blocks](int r, int e) __attribute__((always_inline)) {
     return blocks.at(r, e);
   };
-  for (int j = 0; j < 2; ++j) {
-    for (int r = 0; r < 3; ++r) {
+  for (const int j : components.curvatures) {
+    for (const int r : components.axes) {
       const Lanes far = at(entry(far_curvature, r, j), i - 1), near = at(entry(near_curvature, r, j), i);
       by_cell(CellRows::before + r, j, -far);
       by_cell(CellRows::middle + r, j, far - near);
       by_cell(CellRows::after + r, j, near);
     }
-    by_cell(CellRows::angle_before, j, at(entry(far_curvature, of_angle, j), i - 1));
-    by_cell(CellRows::angle_after, j, at(entry(near_curvature, of_angle, j), i));
-    for (int k = 0; k < 2; ++k) {
+    if (Components::turns) {
+      by_cell(CellRows::angle_before, j, at(entry(far_curvature, of_angle, j), i - 1));
+      by_cell(CellRows::angle_after, j, at(entry(near_curvature, of_angle, j), i));
+    }
+    for (const int k : components.curvatures) {
       own(j, k, at(entry_of_two(curvature, j, k), i));
       next(j, k, at(entry_of_two(next_curvature, j, k), i));
     }
@@ -367,6 +366,14 @@ template <class ByCell, class Own, class Next>
 
 // The slots of all entries in the order in which they are visited, those of four vertices behind each other.
 void RodStiffness::attach(const RodModel& model, const RodSlots& slots) {
+  if (plane_)
+    list_slots(model, slots, InPlane(*plane_));
+  else
+    list_slots(model, slots, InSpace());
+}
+
+template <class Components>
+void RodStiffness::list_slots(const RodModel& model, const RodSlots& slots, const Components& components) {
   slots_.clear();
   const int vertices = model.vertices(), bands = model.bands();
   const auto list = [&](int i, const auto& slot_of) {
@@ -381,11 +388,11 @@ void RodStiffness::attach(const RodModel& model, const RodSlots& slots) {
       });
     };
     visit_bands(
-        blocks_, i, [&](int row, int column, const Lanes&) { of_bands(row, column, false); },
+        blocks_, i, components, [&](int row, int column, const Lanes&) { of_bands(row, column, false); },
         [&](int row, int column, const Lanes&) { of_bands(row, column, true); });
     if (!model.is_curved()) continue;
     visit_curvatures(
-        blocks_, i,
+        blocks_, i, components,
         [&](int local, int j, const Lanes&) {
           const auto unknown = [&](int k) { return CellRows::first_band(k) + local; };
           const auto is = [&](int k) { return unknown(k) >= 0 && unknown(k) < bands - 1; };
@@ -409,7 +416,9 @@ void RodStiffness::attach(const RodModel& model, const RodSlots& slots) {
   }
 }
 
-[[gnu::always_inline]] inline void RodStiffness::put_all(const RodModel& model, std::vector<double>& values) const {
+template <class Components>
+[[gnu::always_inline]] inline void RodStiffness::put_components(const RodModel& model, const Components& components,
+                                                                std::vector<double>& values) const {
   const int* slot = slots_.data();
   double* const to = values.data();
   const auto put = [&](const Lanes& value) __attribute__((always_inline)) {
@@ -426,9 +435,16 @@ void RodStiffness::attach(const RodModel& model, const RodSlots& slots) {
     put(value);
   };
   for (int i = 0; i < model.vertices(); i += Lanes::count) {
-    visit_bands(blocks_, i, of_bands, of_bands);
-    if (model.is_curved()) visit_curvatures(blocks_, i, twice, of_bands, twice);
+    visit_bands(blocks_, i, components, of_bands, of_bands);
+    if (model.is_curved()) visit_curvatures(blocks_, i, components, twice, of_bands, twice);
   }
+}
+
+[[gnu::always_inline]] inline void RodStiffness::put_all(const RodModel& model, std::vector<double>& values) const {
+  if (plane_)
+    put_components(model, InPlane(*plane_), values);
+  else
+    put_components(model, InSpace(), values);
 }
 
 [[gnu::target("avx2")]] void RodStiffness::put_by_four(const RodModel& model, std::vector<double>& values) const {
@@ -441,7 +457,10 @@ void RodStiffness::put_by_two(const RodModel& model, std::vector<double>& values
 
 void RodStiffness::add(const RodModel& model, const Point& point, std::vector<double>& values) {
   blocks_.clear();
-  four_ ? work_by_four(model, point) : work_by_two(model, point);
+  if (plane_)
+    work_out_stiffness(model, *plane_, point.rows, four_, blocks_);
+  else
+    four_ ? work_by_four(model, point) : work_by_two(model, point);
   for (const End end : ends) add_end(model, point, end);
   four_ ? put_by_four(model, values) : put_by_two(model, values);
 }

@@ -2,9 +2,11 @@
 
 #include "numerics/dae.hpp"
 #include "wire/rod_model.hpp"
+#include "wire/rod_plane.hpp"
 #include "wire/rod_rows.hpp"
 #include "wire/rod_slots.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace snare::wire {
@@ -20,6 +22,8 @@ class RodStiffness {
   /// four: see RodForces.
   explicit RodStiffness(const RodModel& model, bool four = numerics::has_four_lanes());
 
+  /// In which plane the rod is: then what is across it is left out. None: in space. Before `attach`.
+  void stay_in(const std::optional<RodPlane>& plane) { plane_ = plane; }
   /// Where the values are, in a pattern to which the slots are attached.
   void attach(const RodModel& model, const RodSlots& slots);
 
@@ -39,11 +43,16 @@ class RodStiffness {
   void work_on_edges(const RodModel& model, const Point& point);
   void work_on_vertices(const RodModel& model, const Point& point);
   void add_end(const RodModel& model, const Point& point, End end);
+  template <class Components>
+  void list_slots(const RodModel& model, const RodSlots& slots, const Components& components);
+  template <class Components>
+  void put_components(const RodModel& model, const Components& components, std::vector<double>& values) const;
   void put_all(const RodModel& model, std::vector<double>& values) const;
   void put_by_four(const RodModel& model, std::vector<double>& values) const;
   void put_by_two(const RodModel& model, std::vector<double>& values) const;
 
   bool four_;
+  std::optional<RodPlane> plane_;
   RodRows blocks_;
   std::vector<int> slots_;  // of the entries, -1: none
 };

@@ -1,5 +1,7 @@
 #include "wire/strand_friction.hpp"
 
+#include "base/index.hpp"
+
 #include <array>
 
 namespace snare::wire {
@@ -20,6 +22,18 @@ StrandResponse::StrandResponse(const RodStrands& s, const Vector2d& held, const 
   }
   moment = s.extra_stiffness * m;
   rate = (m - held) / s.time;
+}
+
+Vector2d strand_moment(const RodModel& model, int i, double length, const Vector2d& rates, const numerics::DaePoint& at,
+                       RodLosses& losses) {
+  const Vector2d held = at.y.segment<2>(model.strand_of(i));
+  const StrandResponse s(model.strands(), held, rates / length);
+  losses.strand_rates[base::at(i)] = s.rate;
+  const double stiffness = model.strands().extra_stiffness * length;
+  losses.strand_energy += 0.5 * stiffness * held.squaredNorm();
+  // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
+  losses.power += stiffness * model.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - length * s.rate);
+  return s.moment;
 }
 
 void add_resting_strands_jacobian(const RodModel& model, int i, double c, const RodSlots& slots,

@@ -2,6 +2,7 @@
 
 #include "numerics/dae.hpp"
 #include "wire/bending_cell.hpp"
+#include "wire/rod_losses.hpp"
 #include "wire/rod_model.hpp"
 #include "wire/rod_slots.hpp"
 
@@ -21,6 +22,11 @@ struct StrandResponse {
   /// held: z [1/m]; curvature_rate: kappa'/l [1/(m s)].
   StrandResponse(const RodStrands& s, const Eigen::Vector2d& held, const Eigen::Vector2d& curvature_rate);
 };
+
+/// What the strands of vertex i answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they hold and lose is added. length: of its
+/// cell [m].                                                                                 theory.md (M.14)
+[[nodiscard]] Eigen::Vector2d strand_moment(const RodModel& model, int i, double length, const Eigen::Vector2d& rates,
+                                            const numerics::DaePoint& at, RodLosses& losses);
 
 /// The Jacobian of vertex i's rows of z and of its cell's balances by z, places and rates. A vertex that does
 /// not bend has z' = 0. c: of DaePart::jacobian [1/s].

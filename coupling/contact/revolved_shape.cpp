@@ -82,4 +82,8 @@ DistanceField RevolvedShape::at(const Vector3d& p) const {
   return field;
 }
 
+bool RevolvedShape::is_mirrored(const Eigen::Vector3d& n, double offset) const {
+  return has_axis(n, offset);
+}
+
 }  // namespace snare::coupling

@@ -22,6 +22,7 @@ class RevolvedShape final : public ContactShape {
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const override;
   [[nodiscard]] std::vector<std::shared_ptr<const ContactShape>> pieces(double wire_radius) const override;
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:

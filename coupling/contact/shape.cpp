@@ -69,6 +69,34 @@ std::vector<Eigen::Matrix3Xd> Capsule::drawing() const {
           circle_drawing(radius_, half_length_, chords)};
 }
 
+namespace {
+constexpr double round_off = 1e-12;  // of directions [-], and of places [m]
+}  // namespace
+
+bool is_across_axis(const Vector3d& n) {
+  return std::abs(n.x()) <= round_off && std::abs(n.y()) <= round_off;
+}
+
+bool has_axis(const Vector3d& n, double offset) {
+  return std::abs(n.z()) <= round_off && std::abs(offset) <= round_off;
+}
+
+bool Ball::is_mirrored(const Vector3d& /*n*/, double offset) const {
+  return std::abs(offset) <= round_off;
+}
+
+bool HalfSpace::is_mirrored(const Vector3d& n, double /*offset*/) const {
+  return std::abs(n.z()) <= round_off;
+}
+
+bool EndlessCylinder::is_mirrored(const Vector3d& n, double offset) const {
+  return is_across_axis(n) || has_axis(n, offset);
+}
+
+bool Capsule::is_mirrored(const Vector3d& n, double offset) const {
+  return std::abs(offset) <= round_off && (is_across_axis(n) || has_axis(n, offset));
+}
+
 DistanceField Ball::at(const Vector3d& p) const {
   return distance_along(p, Matrix3d::Identity(), radius_);
 }

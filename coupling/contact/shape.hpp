@@ -39,6 +39,9 @@ class ContactShape {
   [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(double /*wire_radius*/) const {
     return {};
   }
+  /// Whether it is its own mirror image in the plane n.p = offset [m] of its frame, n unit; false where that is not known. It needs to be so to
+  /// round-off alone.
+  [[nodiscard]] virtual bool is_mirrored(const Eigen::Vector3d& /*n*/, double /*offset*/) const { return false; }
   /// Lines that show the shape, in its frame [m]; of an endless one a cut across it.
   [[nodiscard]] virtual std::vector<Eigen::Matrix3Xd> drawing() const = 0;
 };
@@ -51,12 +54,17 @@ class ContactShape {
 /// A circle about the z axis in `chords` chords, closed [m].
 [[nodiscard]] Eigen::Matrix3Xd circle_drawing(double radius, double height, int chords);
 
+/// Whether a plane is across the z axis, or has it in itself, to round-off: what is_mirrored asks of bodies about that axis. Offsets in [m].
+[[nodiscard]] bool is_across_axis(const Eigen::Vector3d& n);
+[[nodiscard]] bool has_axis(const Eigen::Vector3d& n, double offset);
+
 /// A ball about the origin; radius 0 is a point.
 class Ball final : public ContactShape {
  public:
   explicit Ball(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
@@ -70,6 +78,7 @@ class HalfSpace final : public ContactShape {
   explicit HalfSpace(double drawn) : drawn_(drawn) {}
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
@@ -82,6 +91,7 @@ class EndlessCylinder final : public ContactShape {
   explicit EndlessCylinder(double radius) : radius_(radius) {}  ///< [m], >= 0
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:
@@ -96,6 +106,7 @@ class Capsule final : public ContactShape {
   Capsule(double radius, double length) : radius_(radius), half_length_(0.5 * length) {}
   [[nodiscard]] DistanceField at(const Eigen::Vector3d& p) const override;
   [[nodiscard]] double smallest_radius() const override { return radius_; }
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 
  private:

@@ -48,4 +48,8 @@ std::vector<Eigen::Matrix3Xd> UnionShape::drawing() const {
   return lines;
 }
 
+bool UnionShape::is_mirrored(const Eigen::Vector3d& n, double offset) const {
+  return std::ranges::all_of(shapes_, [&](const auto& s) { return s->is_mirrored(n, offset); });
+}
+
 }  // namespace snare::coupling

@@ -18,6 +18,7 @@ class UnionShape final : public ContactShape {
   /// The least of the shapes' [m].
   [[nodiscard]] double smallest_radius() const override;
   [[nodiscard]] std::vector<std::shared_ptr<const ContactShape>> pieces(double wire_radius) const override;
+  [[nodiscard]] bool is_mirrored(const Eigen::Vector3d& n, double offset) const override;
   /// Of all shapes.
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override;
 

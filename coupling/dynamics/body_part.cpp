@@ -116,6 +116,13 @@ void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& value
   }
 }
 
+void BodyPart::append_across(int normal, std::vector<int>& unknowns) const {
+  unknowns.insert(unknowns.end(), {position() + normal, velocity() + normal});
+  for (int k = 0; k < 3; ++k) {
+    if (k != normal) unknowns.insert(unknowns.end(), {quaternion() + 1 + k, spin() + k});
+  }
+}
+
 void BodyPart::place(Eigen::VectorXd& y) const {
   const multibody::RigidBodyState& s = body_.start;
   y.segment<3>(position()) = s.position;

@@ -24,6 +24,9 @@ class BodyPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
+  /// Appends its unknowns that leave a plane across axis `normal` of the world (0 to 2), or turn out of it: see RodPart.
+  void append_across(int normal, std::vector<int>& unknowns) const;
+
   /// Writes the body's start into its places among the unknowns y (SI units).
   void place(Eigen::VectorXd& y) const;
   /// Of a driven body at a time [s].

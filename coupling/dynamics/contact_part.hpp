@@ -58,6 +58,11 @@ class ContactPart final : public numerics::DaePart {
   /// First of the two of a vertex; only with bristles.
   [[nodiscard]] int bristle_of(int vertex) const { return bristle_ + 2 * vertex; }
 
+  /// Appends its unknowns that leave the plane of a wire that stays in one: the bristles' deflections across it.
+  void append_across(std::vector<int>& unknowns) const {
+    for (int i = 0; has_bristle() && i < rod_.vertices(); ++i) unknowns.push_back(bristle_of(i) + 1);
+  }
+
   /// What the contact does in all, for balances.
   struct Sums {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire [N]

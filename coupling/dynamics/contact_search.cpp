@@ -34,6 +34,7 @@ ContactSearch::ContactSearch(const MotionContact& contact, std::shared_ptr<const
   margin_ = std::max(2.0 * wire_radius_, 0.5 * curve_.longest());
   thickness_ = radius > 0.0 ? radius : curve_.shortest();
   free_until_.assign(base::at(curve_.elements()), 0.0);
+  last_bound_ = free_until_;
 }
 
 Pose ContactSearch::X_WS(const VectorView& y) const {
@@ -50,7 +51,8 @@ double ContactSearch::lower_bound(const BezierWire::Control& control) const {
   return shape_->distance(box.center()) - 0.5 * box.diagonal().norm() - wire_radius_;
 }
 
-// An element whose gap was g when the way was w meets nothing before the way is w + g: only then is its distance looked up.
+// An element whose gap was g when the way was w meets nothing before the way is w + g. Its distance is looked up where half of that is gone: what goes
+// away may take longer steps.
 void ContactSearch::update(const VectorView& y) {
   const Pose where = X_WS(y);
   const Vector3d spin = where.R.transpose() *
@@ -73,10 +75,11 @@ void ContactSearch::update(const VectorView& y) {
   double clear = std::numeric_limits<double>::infinity();
   double fastest = 0.0;  // of the candidates
   for (int e = 0; e < curve_.elements(); ++e) {
-    double& until = free_until_[base::at(e)];
-    if (until - passed_ < margin_) {
-      until = passed_ + lower_bound(control(where, e, y));
-      if (until - passed_ < margin_) {
+    double &until = free_until_[base::at(e)], &looked_up = last_bound_[base::at(e)];
+    if (until - passed_ < std::max(margin_, 0.5 * looked_up)) {
+      looked_up = lower_bound(control(where, e, y));
+      until = passed_ + looked_up;
+      if (looked_up < margin_) {
         candidates_.push_back(e);
         fastest = std::max(fastest, speeds_.segment<4>(curve_.first_vertex(e)).maxCoeff());
         continue;

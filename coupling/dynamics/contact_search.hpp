@@ -62,6 +62,7 @@ class ContactSearch {
   double thickness_ = 0.0;          // of wire and shape: no step passes it [m]
   double passed_ = 0.0;             // way that anything has gone since the start [m]
   std::vector<double> free_until_;  // of every element: what it cannot be touched before [m]
+  std::vector<double> last_bound_;  // of every element: its gap at least, when it was looked up last [m]
   Eigen::Matrix3Xd last_;           // vertices of the last state, in the shape's frame [m]
   Eigen::VectorXd speeds_;          // of the vertices against the shape [m/s]
   std::vector<int> candidates_;

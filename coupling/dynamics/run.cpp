@@ -2,12 +2,14 @@
 
 #include "base/errors.hpp"
 #include "base/index.hpp"
+#include "coupling/dynamics/symmetry_plane.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -70,6 +72,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const BodyPart& b : bodies_) b.place(y_);
   constraints_->place(y_);
   require_apart();
+  stay_in_plane();
   numerics::IdaOptions ida;
   ida.relative_tolerance = options.relative_tolerance;
   ida.max_order = options.max_order.value_or(default_order());
@@ -143,6 +146,33 @@ void MotionRun::require_apart() {
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
+}
+
+// What would leave the plane of a motion that is its own mirror image stays as it is.                 theory.md (M.36)
+void MotionRun::stay_in_plane() {
+  const std::optional<int> normal = symmetry_normal(motion_);
+  if (!normal) return;
+  std::vector<wire::RodPlane> planes;
+  for (const wire::RodPart& r : rods_) {
+    const std::optional<wire::RodPlane> plane = r.plane_across(*normal);
+    if (!plane) return;
+    planes.push_back(*plane);
+  }
+  std::vector<int> across;
+  for (std::size_t i = 0; i < rods_.size(); ++i) {
+    rods_[i].stay_in(planes[i]);
+    rods_[i].append_across(planes[i], across);
+  }
+  for (const BodyPart& b : bodies_) b.append_across(*normal, across);
+  for (const ContactGroup& c : contacts_) {
+    for (const ContactPart& p : c.pieces()) p.append_across(across);
+  }
+  system_->hold(std::move(across));
+}
+
+void MotionRun::leave_plane() {
+  for (wire::RodPart& r : rods_) r.stay_in(std::nullopt);
+  system_->hold({});
 }
 
 namespace {

@@ -72,6 +72,8 @@ class MotionRun {
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
   [[nodiscard]] int default_order() const;  // of the integrator                                       theory.md (M.2)
   void require_apart();
+  void stay_in_plane();
+  void leave_plane();
   [[nodiscard]] bool write_until(double time);
   /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends the run; the first one
   /// throws base::InputError.

@@ -54,6 +54,7 @@ SmallMotions MotionRun::small_motions() {
   // Of the rates in the second matrix [1/s]: lifts them out of the round-off of the first.
   constexpr double weight = 1e3;
   const numerics::DaePoint now{time_, y_, rate_};
+  leave_plane();
   const MatrixXd A = numerics::dense(system_->jacobian(now, 0.0));
   const MatrixXd B = (numerics::dense(system_->jacobian(now, weight)) - A) / weight;
   VectorXd size(system_->size());

@@ -35,7 +35,7 @@ class SimulateCheckpoint : public CommandFixture {
   [[nodiscard]] static std::vector<std::string> arguments(const fs::path& out, const std::string& more = "") {
     std::vector<std::string> list =
         arguments_of("air_table.toml", out,
-                     {"duration_s=0.06", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
+                     {"duration_s=0.5", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
                       "output.checkpoint_wall_time_s=0"});
     if (!more.empty()) list.insert(list.end(), {"--set", more});
     return list;
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, KilledRun,
     testing::Values(Killed{"Contact",
                            "air_table.toml",
-                           {"duration_s=0.06", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
+                           {"duration_s=0.5", "wires[wire].elements=12", "output.checkpoint_interval_s=0.005",
                             "output.checkpoint_wall_time_s=0"}},
                     Killed{"Bodies",
                            "grapple_shaft.toml",

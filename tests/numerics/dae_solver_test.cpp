@@ -110,5 +110,32 @@ TEST(DaeSolver, LeavesRatesThatTheirRowDoesNotGive) {
   EXPECT_LT((dense(a) * x - b).norm(), 1e-13 * b.norm());  // round-off
 }
 
+// Unknowns that no other row has, between those of the chain, and one whose row has nothing at all.
+TEST(DaeSolver, GivesWhatStandsAloneByItsDiagonal) {
+  constexpr int n = 20;
+  const SparseMatrix a = chain(n, 20.0, 4);
+  std::vector<Triplet> list{{0, 0, 4.0}, {a.order + 1, a.order + 1, -2.0}};
+  for (int j = 0; j < a.order; ++j) {
+    for (int s = a.column_start[static_cast<std::size_t>(j)]; s < a.column_start[static_cast<std::size_t>(j) + 1]; ++s)
+      list.push_back({a.row[static_cast<std::size_t>(s)] + 1, j + 1, a.value[static_cast<std::size_t>(s)]});
+  }
+  std::vector<std::pair<int, int>> pairs = rates_of(n);
+  for (auto& [p, v] : pairs) {
+    ++p;
+    ++v;
+  }
+  SparseMatrix all = from_triplets(a.order + 2, list);
+  DaeSolver solver(all, pairs);
+  ASSERT_TRUE(solver.factorize(all));
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(all.order, -1.0, 2.0);
+  Eigen::VectorXd x = b;
+  ASSERT_TRUE(solver.solve(all, x));
+  EXPECT_LT((x - dense(all).lu().solve(b)).norm(), 1e-12 * x.norm());
+  EXPECT_EQ(x[0], b[0] / 4.0);
+  EXPECT_EQ(x[all.order - 1], b[all.order - 1] / -2.0);
+  all.value.front() = 0.0;
+  EXPECT_FALSE(solver.factorize(all));
+}
+
 }  // namespace
 }  // namespace snare::numerics

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <random>
 #include <string>
@@ -199,25 +200,30 @@ TEST_P(RodForcesOf, AreTheSameBitsFourAndTwoAtATime) {
     RodLosses losses;
     std::vector<double> values;
   };
-  const auto of = [&](bool four) {
+  const auto of = [&](bool four, const std::optional<RodPlane>& plane) {
     Outcome o;
     RodForces forces(model, four);
+    forces.stay_in(plane);
     forces.take_frames(accepted);
     RodInstant trial = accepted;
     for (int band = 0; band < model.bands(); ++band) trial.state.q[band] = m.y[model.unknown_of(band)];
     forces.evaluate(model, at, trial, {o.assembly, o.by_curvature, o.losses});
     RodStiffness stiffness(model, four);
+    stiffness.stay_in(plane);
     stiffness.attach(model, slots);
     o.values.assign(pattern.value.size(), 0.0);
     stiffness.add(model, {forces.rows(), trial, at, 7.0}, o.values);
     return o;
   };
-  const Outcome four = of(true), two = of(false);
-  EXPECT_EQ(four.assembly.energy, two.assembly.energy);
-  EXPECT_EQ(four.losses.power, two.losses.power);
-  EXPECT_EQ(four.assembly.gradient, two.assembly.gradient);
-  EXPECT_EQ(four.by_curvature, two.by_curvature);
-  EXPECT_EQ(four.values, two.values);
+  for (const std::optional<RodPlane>& plane :
+       {std::optional<RodPlane>(), std::optional(RodPlane{1, {2, 0}, 1, -1.0})}) {
+    const Outcome four = of(true, plane), two = of(false, plane);
+    EXPECT_EQ(four.assembly.energy, two.assembly.energy);
+    EXPECT_EQ(four.losses.power, two.losses.power);
+    EXPECT_EQ(four.assembly.gradient, two.assembly.gradient);
+    EXPECT_EQ(four.by_curvature, two.by_curvature);
+    EXPECT_EQ(four.values, two.values);
+  }
 }
 
 // One to three vertices beside the last four, and none.
@@ -231,6 +237,46 @@ std::vector<Crooked> crooked(Formulation formulation) {
 INSTANTIATE_TEST_SUITE_P(Plain, RodForcesOfPlain, testing::ValuesIn(crooked(Formulation::vertices)));
 INSTANTIATE_TEST_SUITE_P(Plain, RodForcesOf, testing::ValuesIn(crooked(Formulation::vertices)));
 INSTANTIATE_TEST_SUITE_P(OfHigherOrder, RodForcesOf, testing::ValuesIn(crooked(Formulation::higher_order)));
+
+// Where no four vertices are left, what stands for the others goes on as the wire does: no turn from x to -x.
+TEST(RodForces, AreNoneOfAStraightWireWhereverItPoints) {
+  for (const Formulation formulation : {Formulation::vertices, Formulation::higher_order}) {
+    for (int elements = 4; elements <= 8; ++elements) {
+      for (const double sign : {1.0, -1.0}) {
+        for (int axis = 0; axis < 3; ++axis) {
+          RodInMotion rod;
+          rod.properties = test::round_properties();
+          rod.properties.weight.setZero();
+          rod.properties.right.translational_stiffness = std::numeric_limits<double>::infinity();
+          const Eigen::Vector3d along = sign * Eigen::Vector3d::Unit(axis);
+          for (SpatialEnd* end : {&rod.properties.left, &rod.properties.right}) {
+            end->kind = SpatialEnd::Kind::clamp;
+            if (end == &rod.properties.right) end->position = along;
+            end->direction = along;
+            end->director = Eigen::Vector3d::Unit((axis + 1) % 3);
+            end->twist_angle = 0.0;
+          }
+          rod.mass_per_length = 0.3;
+          rod.length = 1.0;
+          rod.elements = elements;
+          rod.formulation = formulation;
+          rod.damping = {0.1, 0.1, 0.0};
+          RodPart part("wire", rod, {});
+          numerics::DaeSystem system({&part});
+          VectorXd y = VectorXd::Zero(system.size());
+          Matrix3Xd positions(3, part.vertices());
+          for (int i = 0; i < part.vertices(); ++i) positions.col(i) = part.coordinate(i) * along;
+          part.place(positions, {}, y);
+          const numerics::DaePoint at{0.0, y, VectorXd::Zero(y.size())};
+          VectorXd rows(y.size());
+          system.residual(at, rows);
+          EXPECT_LT(rows.cwiseAbs().maxCoeff(), 1e-13) << elements << " along " << along.transpose();
+          for (const double v : system.jacobian(at, 1.0).value) ASSERT_TRUE(std::isfinite(v)) << along.transpose();
+        }
+      }
+    }
+  }
+}
 
 }  // namespace
 }  // namespace snare::wire
