@@ -39,13 +39,8 @@ DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
   make_pattern_anew();
 }
 
-void DaeSystem::make_pattern_anew() {
-  std::vector<std::pair<int, int>> entries;
-  rates_.clear();
-  for (const DaePart* part : parts_) {
-    part->sparsity(entries);
-    part->rates(rates_);
-  }
+void DaeSystem::leave_out_held(std::vector<std::pair<int, int>>& entries) {
+  if (held_.empty()) return;
   std::vector<bool> is_held(base::at(size()), false);
   for (const int u : held_) is_held[base::at(u)] = true;
   const auto holds = [&](const std::pair<int, int>& e) {
@@ -54,6 +49,16 @@ void DaeSystem::make_pattern_anew() {
   std::erase_if(entries, holds);
   std::erase_if(rates_, holds);
   for (const int u : held_) entries.emplace_back(u, u);
+}
+
+void DaeSystem::make_pattern_anew() {
+  std::vector<std::pair<int, int>> entries;
+  rates_.clear();
+  for (const DaePart* part : parts_) {
+    part->sparsity(entries);
+    part->rates(rates_);
+  }
+  leave_out_held(entries);
   matrix_ = make_pattern(size(), entries);
   for (DaePart* part : parts_) part->attach_pattern(matrix_);
   ++pattern_version_;

@@ -196,6 +196,7 @@ class DaeSystem {
 
  private:
   void make_pattern_anew();
+  void leave_out_held(std::vector<std::pair<int, int>>& entries);
 
   std::vector<DaePart*> parts_;
   DaeLayout layout_;
