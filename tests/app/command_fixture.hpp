@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -52,8 +53,20 @@ class CommandFixture : public test::FolderFixture {
     int status;      ///< minus the signal that ended it
     double seconds;  ///< from the signal
   };
-  /// Sends a signal after a time [s] and waits.
+  /// Whether a process catches a signal: where the machine is busy, its start takes a while.
+  [[nodiscard]] static bool catches(pid_t child, int signal) {
+    std::ifstream status("/proc/" + std::to_string(child) + "/status");
+    const std::string key = "SigCgt:";
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with(key)) return (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1U) != 0;
+    }
+    return false;
+  }
+  /// Sends a signal a time [s] after it is caught, and waits.
   [[nodiscard]] static Ending interrupt(pid_t child, double after, int signal = SIGINT) {
+    constexpr int most_looks = 2000;
+    for (int k = 0; k < most_looks && !catches(child, signal); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::duration<double>(after));
     ::kill(child, signal);
     const auto begin = std::chrono::steady_clock::now();
