@@ -22,9 +22,9 @@ class Refusals : public CommandFixture {
  protected:
   void SetUp() override {
     write("x.toml", experiment(32));
-    write("long.toml", experiment(20000));  // minutes
+    write("long.toml", experiment(20000));  // ten seconds, as built for tests
   }
-  /// Status of a command that would compute for minutes and must not begin.
+  /// Status of a command that would compute for long and must not begin.
   [[nodiscard]] int refused(const std::string& arguments) const {
     return shell("timeout 20 '" SNARE_COMMAND "' " + arguments + " >out.txt 2>err.txt");
   }
