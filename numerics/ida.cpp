@@ -19,7 +19,8 @@ namespace snare::numerics {
 
 namespace {
 
-constexpr int tries = 40;  // of one step
+constexpr int tries = 40;             // of one step
+constexpr double least_growth = 1.5;  // of a step that changes                                  theory.md (M.2)
 
 std::string name_of(int code) {
   const std::unique_ptr<char, decltype(&std::free)> name(IDAGetReturnFlagName(code), &std::free);
@@ -63,6 +64,7 @@ struct Ida::Memory {
   IdaReport report;
   IdaStatistics counted;                       // of earlier starts: IDA counts from each start
   bool starting = false;                       // no step since the start
+  double uniform = 0.0;                        // from the start [s]
   double longest_step = 0.0;                   // since the last start after which there was one; 0: none yet
   StepLimit limited_by = StepLimit::accuracy;  // the last step
 
@@ -135,6 +137,7 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
+  check(IDASetEtaFixedStepBounds(m, 1.0, least_growth), "IDASetEtaFixedStepBounds");
   check(IDASetDeltaCjLSetup(m, options.matrix_change), "IDASetDeltaCjLSetup");
   if (system.event_count() > 0) {
     check(IDARootInit(m, system.event_count(), snare_ida_events), "IDARootInit");
@@ -160,6 +163,7 @@ void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::Vecto
   rate = rate0;
   time = at;
   starting = true;
+  uniform = 0.0;
   report = {};
   report.time = at;
   counted = callbacks.statistics;
@@ -175,8 +179,10 @@ double Ida::Memory::first_step(double limit) const {
   if (options.first_step > 0.0 || options.cautious_start) return options.first_step;
   constexpr double of_the_way = 1e-3;
   constexpr double of_the_longest = 0.1;
-  const double step = std::max(of_the_way * (limit - time), options.smallest_step);
-  return longest_step > 0.0 ? std::min(step, of_the_longest * longest_step) : step;
+  const double way = limit - time;
+  double step = std::max(of_the_way * way, options.smallest_step);
+  if (longest_step > 0.0) step = std::min(step, of_the_longest * longest_step);
+  return std::max(step, std::min(uniform, way));
 }
 
 std::vector<std::string> Ida::Memory::worst_unknowns() {
@@ -229,8 +235,9 @@ Ida::~Ida() = default;
 Ida::Ida(Ida&&) noexcept = default;
 Ida& Ida::operator=(Ida&&) noexcept = default;
 
-void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate) {
+void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double uniform) {
   memory_->begin(time, y, rate);
+  memory_->uniform = uniform;
 }
 
 IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {
