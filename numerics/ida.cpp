@@ -185,7 +185,7 @@ double Ida::Memory::first_step(double limit) const {
   const double way = limit - time;
   double step = std::max(of_the_way * way, options.smallest_step);
   if (longest_step > 0.0) step = std::min(step, of_the_longest * longest_step);
-  return std::max(step, std::min(uniform, way));
+  return std::max(step, std::min(uniform, 0.5 * way));
 }
 
 std::vector<std::string> Ida::Memory::worst_unknowns() {
