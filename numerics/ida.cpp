@@ -20,9 +20,6 @@ namespace snare::numerics {
 namespace {
 
 constexpr int tries = 40;  // of one step
-// A step grows by no less: by half with orders 1 and 2, while higher ones live on steps of one length.    theory.md (M.2)
-constexpr double least_growth = 1.5, least_growth_of_high_orders = 2.0;
-constexpr int highest_of_low_orders = 2;
 
 std::string name_of(int code) {
   const std::unique_ptr<char, decltype(&std::free)> name(IDAGetReturnFlagName(code), &std::free);
@@ -139,8 +136,6 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   check(IDASetNonlinearSolver(m, newton.get()), "IDASetNonlinearSolver");
   check(IDASetLinearSolver(m, linear.get(), matrix.get()), "IDASetLinearSolver");
   check(IDASetJacFn(m, snare_ida_jacobian), "IDASetJacFn");
-  const double growth = options.max_order > highest_of_low_orders ? least_growth_of_high_orders : least_growth;
-  check(IDASetEtaFixedStepBounds(m, 1.0, growth), "IDASetEtaFixedStepBounds");
   check(IDASetDeltaCjLSetup(m, options.matrix_change), "IDASetDeltaCjLSetup");
   if (system.event_count() > 0) {
     check(IDARootInit(m, system.event_count(), snare_ida_events), "IDARootInit");

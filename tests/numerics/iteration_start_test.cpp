@@ -22,8 +22,8 @@ class Impact final : public DaePart {
   enum class Start { predicted, at_touch, refuses, throws };
   explicit Impact(Start start) : start_(start) {}
   void declare(DaeLayout& layout) override {
-    layout.add({"position", {}, 2, DaeKind::differential, 3e-9, 0, false});
-    layout.add({"velocity", {}, 2, DaeKind::differential, 3e-6, 0});
+    layout.add({"position", {}, 2, DaeKind::differential, 1e-8, 0, false});
+    layout.add({"velocity", {}, 2, DaeKind::differential, 1e-5, 0});
   }
   void sparsity(std::vector<std::pair<int, int>>& entries) const override {
     for (int i = 0; i < 4; ++i) {
