@@ -169,7 +169,7 @@ class DaeSystem {
   [[nodiscard]] int size() const noexcept { return layout_.size(); }
   /// Functions whose zeros stop the integration, of all parts together.
   [[nodiscard]] int event_count() const noexcept { return event_count_; }
-  /// The matrix of the last `jacobian`; empty before.
+  /// The matrix of the last `jacobian`, or the pattern with zeros.
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
 
   /// All (p, v) of the parts, see DaePart: of the present pattern.
@@ -203,7 +203,6 @@ class DaeSystem {
   SparseMatrix matrix_;
   std::vector<std::pair<int, int>> rates_;
   std::vector<int> held_;
-  std::vector<std::size_t> held_slots_;  // of their diagonals
   int event_count_ = 0;
   int pattern_version_ = 0;
   bool stale_pattern_ = true;

@@ -63,7 +63,6 @@ struct Ida::Memory {
   IdaReport report;
   IdaStatistics counted;                       // of earlier starts: IDA counts from each start
   bool starting = false;                       // no step since the start
-  double uniform = 0.0;                        // from the start [s]
   double longest_step = 0.0;                   // since the last start after which there was one; 0: none yet
   StepLimit limited_by = StepLimit::accuracy;  // the last step
 
@@ -161,7 +160,6 @@ void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::Vecto
   rate = rate0;
   time = at;
   starting = true;
-  uniform = 0.0;
   report = {};
   report.time = at;
   counted = callbacks.statistics;
@@ -177,10 +175,8 @@ double Ida::Memory::first_step(double limit) const {
   if (options.first_step > 0.0 || options.cautious_start) return options.first_step;
   constexpr double of_the_way = 1e-3;
   constexpr double of_the_longest = 0.1;
-  const double way = limit - time;
-  double step = std::max(of_the_way * way, options.smallest_step);
-  if (longest_step > 0.0) step = std::min(step, of_the_longest * longest_step);
-  return std::max(step, std::min(uniform, 0.5 * way));
+  const double step = std::max(of_the_way * (limit - time), options.smallest_step);
+  return longest_step > 0.0 ? std::min(step, of_the_longest * longest_step) : step;
 }
 
 std::vector<std::string> Ida::Memory::worst_unknowns() {
@@ -233,9 +229,8 @@ Ida::~Ida() = default;
 Ida::Ida(Ida&&) noexcept = default;
 Ida& Ida::operator=(Ida&&) noexcept = default;
 
-void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double uniform) {
+void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate) {
   memory_->begin(time, y, rate);
-  memory_->uniform = uniform;
 }
 
 IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {

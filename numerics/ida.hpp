@@ -98,8 +98,7 @@ class Ida {
   Ida& operator=(Ida&&) noexcept;
 
   /// Begins at first order from a consistent (y, y'), after an event too. The integrals go on from where they are.
-  /// `uniform`: for about how long y + h y' is all that happens, where that is known [s]; the first step is no shorter.
-  void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double uniform = 0.0);
+  void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
   /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
   /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
   [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,

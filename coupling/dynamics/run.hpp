@@ -83,8 +83,6 @@ class MotionRun {
 
   // Starts (start_rates.cpp).
   void make_rates();
-  /// For how long no velocity of wires and free bodies leaves its tolerance by its present rate [s]; 0 where others move, too.
-  [[nodiscard]] double uniform_time() const;
   void settle();
 
   // Phases (run_phases.cpp).

@@ -2,8 +2,6 @@
 
 #include "coupling/dynamics/run.hpp"
 
-#include <limits>
-
 namespace snare::coupling {
 
 using Eigen::VectorXd;
@@ -47,32 +45,10 @@ void MotionRun::make_rates() {
   for (WirePairPart& p : pairs_) p.set_bristle_rates(y_, rate_);
 }
 
-// A wire that rests and a body that flies uniformly have no accelerations but round-off.               theory.md (M.2)
-double MotionRun::uniform_time() const {
-  const Motion& m = motion_;
-  const bool others = !m.springs.empty() || !m.arms.empty() || !m.welds.empty() || !m.mounts.empty() ||
-                      !m.bushings.empty() || !m.law_wires.empty() || !m.body_contacts.empty() || !m.loads.empty();
-  if (others) return 0.0;
-  double time = std::numeric_limits<double>::infinity();
-  const auto look = [&](const auto& accelerations, double tolerance) {
-    const double largest = accelerations.template lpNorm<Eigen::Infinity>();
-    if (!(largest * time <= tolerance)) time = tolerance / largest;
-  };
-  for (const wire::RodPart& r : rods_) {
-    for (int i = 0; i < r.vertices(); ++i) look(rate_.segment<3>(r.velocity_of(i)), r.tolerances().velocity);
-  }
-  for (const BodyPart& b : bodies_) {
-    if (!b.moves_freely() || b.body().robot) return 0.0;
-    look(rate_.segment<3>(b.velocity()), options_.body_velocity_tolerance);
-    look(rate_.segment<3>(b.spin()), options_.spin_tolerance);
-  }
-  return time;
-}
-
 void MotionRun::settle() {
   make_rates();
   ida_->set_integrals(integrals_);
-  ida_->start(time_, y_, rate_, uniform_time());
+  ida_->start(time_, y_, rate_);
 }
 
 }  // namespace snare::coupling
