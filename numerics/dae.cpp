@@ -36,7 +36,6 @@ DaeSystem::DaeSystem(std::vector<DaePart*> parts) : parts_(std::move(parts)) {
     part->declare(layout_);
     event_count_ += part->event_count();
   }
-  make_pattern_anew();
 }
 
 void DaeSystem::leave_out_held(std::vector<std::pair<int, int>>& entries) {
@@ -61,6 +60,8 @@ void DaeSystem::make_pattern_anew() {
   leave_out_held(entries);
   matrix_ = make_pattern(size(), entries);
   for (DaePart* part : parts_) part->attach_pattern(matrix_);
+  held_slots_.clear();
+  for (const int u : held_) held_slots_.push_back(base::at(matrix_.slot(u, u)));
   ++pattern_version_;
   stale_pattern_ = false;
 }
@@ -81,7 +82,7 @@ const SparseMatrix& DaeSystem::jacobian(const DaePoint& at, double c) {
   if (stale_pattern_) make_pattern_anew();
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   for (DaePart* part : parts_) part->jacobian(at, c, matrix_.value);
-  for (const int u : held_) matrix_.value[base::at(matrix_.slot(u, u))] = 1.0;
+  for (const std::size_t s : held_slots_) matrix_.value[s] = 1.0;
   return matrix_;
 }
 

@@ -115,8 +115,8 @@ struct IterationStart {
 
 /// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
 ///
-/// Order of calls: `declare` once, then `sparsity` and `attach_pattern` whenever the pattern is made, then the rest. A part may
-/// keep workspace; one part serves one integration at a time. Unknowns, rows and rates are in SI units.
+/// Order of calls: `declare` once, then the rest; `sparsity` and `attach_pattern` ahead of a `jacobian` that wants another pattern, the first one
+/// at least. A part may keep workspace; one part serves one integration at a time. Unknowns, rows and rates are in SI units.
 class DaePart {
  public:
   DaePart() = default;
@@ -169,7 +169,7 @@ class DaeSystem {
   [[nodiscard]] int size() const noexcept { return layout_.size(); }
   /// Functions whose zeros stop the integration, of all parts together.
   [[nodiscard]] int event_count() const noexcept { return event_count_; }
-  /// The matrix of the last `jacobian`, or the pattern with zeros.
+  /// The matrix of the last `jacobian`; empty before.
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
 
   /// All (p, v) of the parts, see DaePart: of the present pattern.
@@ -203,6 +203,7 @@ class DaeSystem {
   SparseMatrix matrix_;
   std::vector<std::pair<int, int>> rates_;
   std::vector<int> held_;
+  std::vector<std::size_t> held_slots_;  // of their diagonals
   int event_count_ = 0;
   int pattern_version_ = 0;
   bool stale_pattern_ = true;

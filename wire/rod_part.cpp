@@ -104,7 +104,7 @@ std::optional<RodPlane> RodPart::plane_across(int normal) const {
   return plane;
 }
 
-void RodPart::stay_in(const std::optional<RodPlane>& plane) {
+void RodPart::work_in(const std::optional<RodPlane>& plane) {
   forces_.stay_in(plane);
   stiffness_.stay_in(plane);
   if (slots_.is_attached()) stiffness_.attach(model_, slots_);
@@ -112,12 +112,19 @@ void RodPart::stay_in(const std::optional<RodPlane>& plane) {
 }
 
 // The angles theta are odd, and of curvatures and strands those towards the director that stands across the plane.
-void RodPart::append_across(const RodPlane& plane, std::vector<int>& unknowns) const {
+std::vector<int> RodPart::stay_in(const RodPlane& plane) {
+  work_in(plane);
+  std::vector<int> unknowns;
   for (int i = 0; i < vertices(); ++i) {
     unknowns.insert(unknowns.end(), {position_of(i) + plane.normal, velocity_of(i) + plane.normal, angle_of(i)});
     if (model_.is_curved()) unknowns.push_back(model_.curvature_of(i) + plane.odd());
     if (model_.strands().act()) unknowns.push_back(strand_of(i) + plane.odd());
   }
+  return unknowns;
+}
+
+void RodPart::leave_plane() {
+  work_in(std::nullopt);
 }
 
 void RodPart::take_unknowns(const numerics::VectorView& y) {

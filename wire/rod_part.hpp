@@ -58,10 +58,11 @@ class RodPart final : public numerics::DaePart {
   /// The plane across axis `normal` of the world (0 to 2) in which the rod stays, since at its start it is its own mirror image there, to round-off:
   /// its places, mounts, frames, weight and what it is by nature. None where it is not.      theory.md (M.36)
   [[nodiscard]] std::optional<RodPlane> plane_across(int normal) const;
-  /// Works out from here on only what happens in a plane, in which its unknowns have to be and to stay; none: what happens in space.
-  void stay_in(const std::optional<RodPlane>& plane);
-  /// Appends the unknowns that leave a plane, or turn out of it.
-  void append_across(const RodPlane& plane, std::vector<int>& unknowns) const;
+  /// Works out from here on only what happens in a plane, in which it has to be. Returns the unknowns that leave the plane, or turn out of it, which
+  /// have to be held.
+  [[nodiscard]] std::vector<int> stay_in(const RodPlane& plane);
+  /// What happens in space is worked out again.
+  void leave_plane();
 
   /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is no longer held by this part: a
   /// constraint has to.
@@ -127,6 +128,7 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] LeftOut left_out(const numerics::VectorView& y) const;
 
  private:
+  void work_in(const std::optional<RodPlane>& plane);
   void evaluate(const numerics::DaePoint& at);
   void begin_from_accepted();
   void add_losses_jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values);

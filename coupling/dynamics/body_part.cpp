@@ -116,11 +116,12 @@ void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& value
   }
 }
 
-void BodyPart::append_across(int normal, std::vector<int>& unknowns) const {
-  unknowns.insert(unknowns.end(), {position() + normal, velocity() + normal});
+std::vector<int> BodyPart::unknowns_across(int normal) const {
+  std::vector<int> unknowns{position() + normal, velocity() + normal};
   for (int k = 0; k < 3; ++k) {
     if (k != normal) unknowns.insert(unknowns.end(), {quaternion() + 1 + k, spin() + k});
   }
+  return unknowns;
 }
 
 void BodyPart::place(Eigen::VectorXd& y) const {

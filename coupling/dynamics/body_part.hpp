@@ -24,8 +24,8 @@ class BodyPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
-  /// Appends its unknowns that leave a plane across axis `normal` of the world (0 to 2), or turn out of it: see RodPart.
-  void append_across(int normal, std::vector<int>& unknowns) const;
+  /// Its unknowns that leave a plane across axis `normal` of the world (0 to 2), or turn out of it: see RodPart.
+  [[nodiscard]] std::vector<int> unknowns_across(int normal) const;
 
   /// Writes the body's start into its places among the unknowns y (SI units).
   void place(Eigen::VectorXd& y) const;

@@ -15,16 +15,25 @@ struct GapPlace {
   double hollow = 0.0;
 };
 
+/// A maximum of the gap within what is closed.
+struct GapCrest {
+  double u = 0.0;       ///< from 0 to 1 [-]
+  double gap = 0.0;     ///< [m], < 0
+  double before = 0.0;  ///< the least gap between it and the crest or the end before it [m]
+};
+
 /// A stretch of an element on which the gap is negative, and its deepest place.
 struct ClosedStretch {
   double from = 0.0, to = 0.0;  ///< u, from 0 to 1 [-]
   GapPlace deepest;
+  std::vector<GapCrest> crests;  ///< in their order
+  double behind = 0.0;           ///< the least gap behind the last of them [m]
 };
 
 /// Where the gap along an element is negative.                                                theory.md (G.7)
 ///
 /// Between two places the gap cannot fall by more than the way there and back, so that far parts are left out; what is left is
-/// halved until its second derivative bounds it to one sign. gap: u -> GapPlace.
+/// halved until its second derivative bounds it to one sign. gap: u -> GapPlace, once differentiable.
 class ClosedStretches {
  public:
   /// length: of the element [m]; way: a bound of the length of its curve [m]; bend: of |X''| [1/m]; resolution: on a shorter way
@@ -40,8 +49,8 @@ class ClosedStretches {
   }
 
  private:
-  // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved.
-  static constexpr double least_dip = 1e-10, least_way = 1e-6;
+  // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved, nor looked into for crests.
+  static constexpr double least_dip = 1e-10, least_way = 1e-6, least_wave = 1.0 / 16.0;
 
   struct Found {
     std::vector<ClosedStretch>& stretches;
@@ -59,7 +68,7 @@ class ClosedStretches {
       if (closed) add(gap, a, b, found);
       if (closed || shortest) return;
       if (a.slope < 0.0 && b.slope > 0.0) {
-        GapPlace bottom = minimum(gap, a, b);
+        GapPlace bottom = turn(gap, a, b);
         bottom.slope = 0.0;
         divide(gap, a, bottom, found);
         divide(gap, bottom, b, found);
@@ -102,40 +111,60 @@ class ClosedStretches {
     return a.gap + (b.gap - a.gap) * s / w + 0.5 * bend * s * (w - s) <= 0.0;
   }
 
+  /// Whether a crest and a hollow may lie between two places where the gap goes the same way: the cubic with these ends does not go that way
+  /// throughout.
+  [[nodiscard]] bool waves(const GapPlace& a, const GapPlace& b) const {
+    if (!(a.slope * b.slope > 0.0) || way_ * (b.u - a.u) <= least_wave * resolution_) return false;
+    const double chord = (b.gap - a.gap) / (length_ * (b.u - a.u));
+    return chord * a.slope <= 0.0 || std::hypot(a.slope, b.slope) > 3.0 * std::abs(chord);
+  }
+
   /// A closed piece, which goes on with the stretch before it or begins another.
   template <class Gap>
   void add(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
+    if (waves(a, b)) {
+      const GapPlace middle = gap(0.5 * (a.u + b.u));
+      add(gap, a, middle, found);
+      add(gap, middle, b, found);
+      return;
+    }
     GapPlace deepest = a.gap <= b.gap ? a : b;
     if (a.slope < 0.0 && b.slope >= 0.0) {
-      deepest = b.slope == 0.0 ? b : minimum(gap, a, b);
+      deepest = b.slope == 0.0 ? b : turn(gap, a, b);
       if (deepest.gap < 0.0) found.minima.push_back(deepest);
     }
-    if (!found.stretches.empty() && found.stretches.back().to == a.u) {
-      found.stretches.back().to = b.u;
-      if (deepest.gap < found.stretches.back().deepest.gap) found.stretches.back().deepest = deepest;
-    } else {
-      found.stretches.push_back({a.u, b.u, deepest});
+    if (found.stretches.empty() || found.stretches.back().to != a.u)
+      found.stretches.push_back({a.u, a.u, a, {}, a.gap});
+    ClosedStretch& s = found.stretches.back();
+    s.to = b.u;
+    if (deepest.gap < s.deepest.gap) s.deepest = deepest;
+    if (a.slope > 0.0 && b.slope <= 0.0) {
+      const GapPlace crest = b.slope == 0.0 ? b : turn(gap, a, b);
+      s.crests.push_back({crest.u, crest.gap, std::min(s.behind, a.gap)});
+      s.behind = b.gap;
     }
+    s.behind = std::min(s.behind, deepest.gap);
   }
 
-  /// Between a falling and a rising gap: the zero of the slope (Illinois). Its place need not be sharp, since the gap is level
-  /// there.
+  /// The minimum between a falling and a rising gap, or the maximum between a rising and a falling one: the zero of the slope (Illinois). Its
+  /// place need not be sharp, since the gap is level there.
   template <class Gap>
-  GapPlace minimum(const Gap& gap, GapPlace low, GapPlace high) const {
+  GapPlace turn(const Gap& gap, GapPlace low, GapPlace high) const {
     constexpr double level = 1e-9;
-    GapPlace best = low.gap < high.gap ? low : high;
-    double f_low = low.slope, f_high = high.slope;
+    const double sign = low.slope < high.slope ? 1.0 : -1.0;
+    GapPlace best = sign * low.gap < sign * high.gap ? low : high;
+    double f_low = sign * low.slope, f_high = sign * high.slope;
     for (int k = 0; k < 40 && high.u - low.u > 1e-12 && f_high > f_low; ++k) {
       const GapPlace p = gap(std::clamp((low.u * f_high - high.u * f_low) / (f_high - f_low), low.u, high.u));
-      if (p.gap < best.gap || std::abs(p.slope) < level) best = p;
+      if (sign * p.gap < sign * best.gap || std::abs(p.slope) < level) best = p;
       if (std::abs(p.slope) < level) break;
-      if (p.slope < 0.0) {
+      if (sign * p.slope < 0.0) {
         low = p;
-        f_low = p.slope;
+        f_low = sign * p.slope;
         f_high *= 0.5;
       } else {
         high = p;
-        f_high = p.slope;
+        f_high = sign * p.slope;
         f_low *= 0.5;
       }
     }

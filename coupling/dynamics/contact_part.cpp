@@ -70,6 +70,13 @@ void ContactPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   accepted_ = AcceptedPress(found_.inputs);
 }
 
+std::vector<int> ContactPart::stay_across(int normal) {
+  normal_ = normal;
+  std::vector<int> unknowns;
+  for (int i = 0; has_bristle() && i < rod_.vertices(); ++i) unknowns.push_back(bristle_of(i) + 1);
+  return unknowns;
+}
+
 bool ContactPart::outgrows_pattern(const DaePoint& at) {
   const Found& found = found_at(at.y);
   const auto known = [this](const Node& n) { return coupled_[base::at(n.element)]; };
@@ -162,10 +169,13 @@ void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, 
     nodes.push_back(n);
     nodes.back().stretch = index;
   };
-  for (std::size_t q = 0; q < gauss_places.size(); ++q) {
-    const double u = s.from + gauss_places[q] * (s.to - s.from);
-    add(node(e, u, gauss_weights[q] * (s.to - s.from) * length * foundation_share(curve.begin(e) + u * length)));
-  }
+  for_each_part(s, [&](double from, double to, double share) {
+    for (std::size_t q = 0; q < gauss_places.size(); ++q) {
+      const double u = from + gauss_places[q] * (to - from);
+      const double weight = share * gauss_weights[q] * (to - from) * length;
+      add(node(e, u, weight * foundation_share(curve.begin(e) + u * length)));
+    }
+  });
   const auto mount = [&](double u) {
     Node n = node(e, u, mount_weight_);
     n.place = ContactPlace::mount;
@@ -343,30 +353,30 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
   };
   // Vertices: by N_k and N_k' of their places, by N_k of their velocities.
   for (int a = 0; a < 3; ++a) {
-    ContactDirection place, slope, velocity;
-    place.x = slope.slope = velocity.v = Vector3d::Unit(a);
+    if (!moves_along(a)) continue;
+    ContactDirection place, slope, velocity, body_place, body_velocity;
+    place.x = slope.slope = velocity.v = body_place.p = body_velocity.body_velocity = Vector3d::Unit(a);
     const DerivativeRows by_place = change(place), by_slope = change(slope), by_velocity = change(velocity);
     for (int k = 0; k < 4; ++k) {
       derivatives_.col(3 * k + a) += n.value[k] * by_place + n.slope[k] * by_slope;
       derivatives_.col(velocity_columns + 3 * k + a) += n.value[k] * by_velocity;
     }
-    ContactDirection body_place, body_velocity, body_spin;
-    body_place.p = body_velocity.body_velocity = body_spin.spin = Vector3d::Unit(a);
     derivatives_.col(body_columns + a) += change(body_place);
     derivatives_.col(body_rate_columns + a) += change(body_velocity);
-    derivatives_.col(body_rate_columns + 3 + a) += change(body_spin);
   }
   // dq turns the body by 4 R Q^T dq in the world.
   const Eigen::Matrix<double, 3, 4> turn =
       4.0 * g.R_WB * multibody::quaternion_rates(y.segment<4>(body_.quaternion())).transpose();
   for (int a = 0; a < 3; ++a) {
-    ContactDirection d;
-    d.turn = Vector3d::Unit(a);
-    const DerivativeRows by_turn = change(d);
+    if (!turns_about(a)) continue;
+    ContactDirection turning, spin;
+    turning.turn = spin.spin = Vector3d::Unit(a);
+    const DerivativeRows by_turn = change(turning);
     for (int k = 0; k < 4; ++k) derivatives_.col(body_columns + 3 + k) += turn(a, k) * by_turn;
+    derivatives_.col(body_rate_columns + 3 + a) += change(spin);
   }
   if (!has_bristle()) return;
-  for (int a = 0; a < 2; ++a) {
+  for (int a = 0; a < (normal_ ? 1 : 2); ++a) {
     ContactDirection d;
     d.bristle = Vector2d::Unit(a);
     const DerivativeRows by_bristle = change(d);
@@ -381,13 +391,14 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
 
 void ContactPart::put_derivatives(int element, const numerics::PatternValues& into) const {
   const int first = search_.curve().first_vertex(element);
-  bool held = false;
-  for (int k = 0; k < 12; ++k) held = held || rod_.is_held(first + k / 3, k % 3);
+  const auto moves = [&](int k) { return moves_along(k % 3) && !rod_.is_held(first + k / 3, k % 3); };
+  bool all = true;
+  for (int k = 0; k < 12; ++k) all = all && moves(k);
   const auto put = [&](int unknown, int column) {
     const auto rows = derivatives_.col(column);
-    if (!held) into.add(rod_.velocity_of(first), unknown, rows.head<12>());
-    for (int k = 0; held && k < 12; ++k) {
-      if (!rod_.is_held(first + k / 3, k % 3)) into.add(rod_.velocity_of(first) + k, unknown, rows[k]);
+    if (all) into.add(rod_.velocity_of(first), unknown, rows.head<12>());
+    for (int k = 0; !all && k < 12; ++k) {
+      if (moves(k)) into.add(rod_.velocity_of(first) + k, unknown, rows[k]);
     }
     if (body_.moves_freely()) {
       into.add(body_.velocity(), unknown, rows.segment<3>(body_rows));
@@ -396,9 +407,11 @@ void ContactPart::put_derivatives(int element, const numerics::PatternValues& in
     if (has_bristle()) into.add(bristle_of(element), unknown, rows.tail<4>());
   };
   for (int k = 0; k < 12; ++k) {
+    if (!moves_along(k % 3)) continue;
     put(rod_.position_of(first) + k, k);
     put(rod_.velocity_of(first) + k, velocity_columns + k);
   }
+  // Unknowns of a body that are held are left out of the pattern.
   for (int k = 0; k < BodyPart::coordinates; ++k) put(body_.position() + k, body_columns + k);
   for (int k = 0; k < BodyPart::velocities; ++k) put(body_.velocity() + k, body_rate_columns + k);
   for (int k = 0; has_bristle() && k < 4; ++k) put(bristle_of(element) + k, bristle_columns + k);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -58,10 +59,11 @@ class ContactPart final : public numerics::DaePart {
   /// First of the two of a vertex; only with bristles.
   [[nodiscard]] int bristle_of(int vertex) const { return bristle_ + 2 * vertex; }
 
-  /// Appends its unknowns that leave the plane of a wire that stays in one: the bristles' deflections across it.
-  void append_across(std::vector<int>& unknowns) const {
-    for (int i = 0; has_bristle() && i < rod_.vertices(); ++i) unknowns.push_back(bristle_of(i) + 1);
-  }
+  /// Works out derivatives from here on only within a plane across axis `normal` of the world (0 to 2), in which wire and body stay. Returns the
+  /// unknowns that leave it, the bristles' deflections across the wire: see RodPart.
+  [[nodiscard]] std::vector<int> stay_across(int normal);
+  /// What happens in space is worked out again.
+  void leave_plane() { normal_.reset(); }
 
   /// What the contact does in all, for balances.
   struct Sums {
@@ -113,6 +115,9 @@ class ContactPart final : public numerics::DaePart {
   [[nodiscard]] double foundation_share(double coordinate) const;
   [[nodiscard]] Node node(int element, double u, double weight) const;
   [[nodiscard]] ContactGeometry geometry(const Node& node, const numerics::VectorView& y) const;
+  /// Whether anything moves along an axis of the world, or turns about it.
+  [[nodiscard]] bool moves_along(int axis) const { return normal_ != axis; }
+  [[nodiscard]] bool turns_about(int axis) const { return normal_.value_or(axis) == axis; }
   // Rows and columns of what an element's nodes are in the Jacobian: balances of its four vertices, of the body, rows of its two
   // bristles; by places and velocities of the vertices, by those of the body, by the bristles.
   static constexpr int body_rows = 12, bristle_rows = 18;
@@ -132,6 +137,7 @@ class ContactPart final : public numerics::DaePart {
   const BodyPart& body_;
   ContactSearch search_;
   std::vector<bool> coupled_;  // elements in the pattern
+  std::optional<int> normal_;  // of the plane in which everything stays
   int bristle_ = 0;
   numerics::PatternSlots slots_;
   AcceptedPress accepted_;

@@ -158,20 +158,21 @@ void MotionRun::stay_in_plane() {
     if (!plane) return;
     planes.push_back(*plane);
   }
-  std::vector<int> across;
-  for (std::size_t i = 0; i < rods_.size(); ++i) {
-    rods_[i].stay_in(planes[i]);
-    rods_[i].append_across(planes[i], across);
+  std::vector<int> held;
+  const auto hold = [&held](const std::vector<int>& across) { held.insert(held.end(), across.begin(), across.end()); };
+  for (std::size_t i = 0; i < rods_.size(); ++i) hold(rods_[i].stay_in(planes[i]));
+  for (const BodyPart& b : bodies_) hold(b.unknowns_across(*normal));
+  for (ContactGroup& c : contacts_) {
+    for (ContactPart& p : c.pieces()) hold(p.stay_across(*normal));
   }
-  for (const BodyPart& b : bodies_) b.append_across(*normal, across);
-  for (const ContactGroup& c : contacts_) {
-    for (const ContactPart& p : c.pieces()) p.append_across(across);
-  }
-  system_->hold(std::move(across));
+  system_->hold(std::move(held));
 }
 
 void MotionRun::leave_plane() {
-  for (wire::RodPart& r : rods_) r.stay_in(std::nullopt);
+  for (wire::RodPart& r : rods_) r.leave_plane();
+  for (ContactGroup& c : contacts_) {
+    for (ContactPart& p : c.pieces()) p.leave_plane();
+  }
   system_->hold({});
 }
 

@@ -1,5 +1,7 @@
 #include "coupling/dynamics/closed_stretches.hpp"
 
+#include "coupling/dynamics/contact_integral.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,4 +125,73 @@ TEST(ClosedStretches, NoStepWhereAMaximumPassesAVertex) {
     }
     before = now;
   }
+}
+
+namespace {
+
+/// g = h (cos^2(pi x/2) + tilt x - level), x from -1.5 to 1.5 along the element: lobes at -1 and 1 with a crest between them.
+struct TwoLobes {
+  double tilt = 0.0, level = 0.0;  // of h
+  static constexpr double height = 1e-6, ends = 1.5;
+
+  [[nodiscard]] GapPlace at(double u) const {
+    const double x = ends * (2.0 * u - 1.0), pi = std::numbers::pi, wave = std::cos(0.5 * pi * x);
+    return {u, height * (wave * wave + tilt * x - level),
+            height * (tilt - 0.5 * pi * std::sin(pi * x)) * 2.0 * ends / length, 0.0};
+  }
+  /// Loads of a foundation, in all and about the middle: by the parts, and by very many places.
+  [[nodiscard]] std::array<double, 2> by_parts() const {
+    std::vector<ClosedStretch> found;
+    std::vector<GapPlace> minima;
+    const double bend = height * std::pow(std::numbers::pi * 2.0 * ends / length, 2) / 2.0;
+    ClosedStretches(length, 2.0 * length, bend, resolution)
+        .find([this](double u) { return at(u); }, at(0.0), at(1.0), found, minima);
+    std::array<double, 2> loads{};
+    for (const ClosedStretch& s : found) {
+      coupling::for_each_part(s, [&](double from, double to, double share) {
+        for (std::size_t q = 0; q < coupling::gauss_places.size(); ++q) {
+          const double u = from + coupling::gauss_places[q] * (to - from);
+          const double load = -at(u).gap / height * share * coupling::gauss_weights[q] * (to - from);
+          loads[0] += load;
+          loads[1] += load * (u - 0.5);
+        }
+      });
+    }
+    return loads;
+  }
+  [[nodiscard]] std::array<double, 2> by_places() const {
+    constexpr int places = 20000;
+    std::array<double, 2> loads{};
+    for (int k = 0; k < places; ++k) {
+      const double u = (k + 0.5) / places, load = std::max(0.0, -at(u).gap / height) / places;
+      loads[0] += load;
+      loads[1] += load * (u - 0.5);
+    }
+    return loads;
+  }
+};
+
+}  // namespace
+
+// A stretch parts where its crest comes out, and a crest rises from what was one lobe: no load jumps, and loads stay right.
+TEST(ClosedStretches, LoadsDoNotJumpWhereAStretchPartsOrACrestRises) {
+  constexpr double step = 1e-4;
+  const auto follow = [&](TwoLobes lobes, double TwoLobes::*what, double to) {
+    const int steps = static_cast<int>(std::lround(std::abs(to - lobes.*what) / step));
+    const double way = (to - lobes.*what) / steps;
+    std::array<double, 2> before = lobes.by_parts();
+    for (int k = 0; k < steps; ++k) {
+      lobes.*what += way;
+      const std::array<double, 2> now = lobes.by_parts();
+      for (const std::size_t i : {0U, 1U})
+        ASSERT_NEAR(now[i], before[i], 3.0 * step) << "tilt " << lobes.tilt << ", level " << lobes.level;
+      before = now;
+      if (k % 500 != 0) continue;
+      const std::array<double, 2> right = lobes.by_places();
+      for (const std::size_t i : {0U, 1U})
+        EXPECT_NEAR(now[i], right[i], 0.05 * right[0]) << "tilt " << lobes.tilt << ", level " << lobes.level;
+    }
+  };
+  for (const double tilt : {0.0, 0.1, -0.4, 0.8}) follow({tilt, 0.5}, &TwoLobes::level, 2.5);
+  for (const double level : {0.9, 1.2, 2.0}) follow({-2.0, level}, &TwoLobes::tilt, 2.0);  // one lobe beyond pi/2
 }
