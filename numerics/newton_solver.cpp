@@ -32,6 +32,7 @@ struct Newton {
   CorrectionGuess guess{};
   double coefficient = 0.0;  // leading one, of the matrix
   bool worn = false;         // the matrix of an earlier step took as many iterations as a new one costs
+  bool outdated = false;     // and at the last step it did not do at all
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -52,7 +53,7 @@ SUNNonlinearSolver_Type snare_newton_type(SUNNonlinearSolver) {
 // A start of IDA.
 int snare_newton_initialize(SUNNonlinearSolver solver) {
   content(solver).guess.restart();
-  content(solver).worn = false;
+  content(solver).worn = content(solver).outdated = false;
   return SUN_NLS_SUCCESS;
 }
 
@@ -95,8 +96,8 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
   double coefficient = 0.0;  // of the step
   static_cast<void>(IDAGetCurrentCj(memory, &coefficient));
   guess_correction(self.guess, memory, correction);
-  if (self.worn) call_setup = SUNTRUE;
-  self.worn = false;
+  if (self.worn || (self.outdated && coefficient != self.coefficient)) call_setup = SUNTRUE;
+  self.worn = self.outdated = false;
   bool touches = false;
   int code = evaluate_guess(self, memory, correction, touches);
   if (touches) call_setup = SUNTRUE;
@@ -153,6 +154,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
     if (code <= 0 || current != SUNFALSE) return code;
     // With a matrix of this step once more, from where the old one was on its way to.
     call_setup = SUNTRUE;
+    self.outdated = true;
     bad = true;
     if (!(code == SUN_NLS_CONV_RECVR && callbacks.rate < on_its_way && map(correction).allFinite()))
       map(correction).setZero();
