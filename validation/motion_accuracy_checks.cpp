@@ -365,7 +365,8 @@ std::vector<Row> folded_chain_rows() {
   double last_time = 0.0;
   const MotionResult r = coupling::simulate(motion, options, [&](const MotionSample& s) {
     const double fallen = -s.wires[0](1, elements);
-    if (last < share * length && fallen >= share * length)
+    // The first time: behind its whip the end rises and comes down again.
+    if (std::isnan(passed) && last < share * length && fallen >= share * length)
       passed = last_time + (s.time - last_time) * (share * length - last) / (fallen - last);
     last = fallen;
     last_time = s.time;
