@@ -15,13 +15,13 @@ namespace snare::coupling {
 inline constexpr std::array<double, 3> gauss_places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
 inline constexpr std::array<double, 3> gauss_weights{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
-/// What a stretch is integrated over: use(from, to, share) for every part of it, shares add up to 1 everywhere.
+/// Where the load of a stretch is taken: use(u, weight), weights as shares of the element's length [-].
 ///
 /// Where a crest is about to part a stretch, that is integrated as the two that it will be; where the crest has just risen from one lobe, as one. In
 /// between, with x = 1 - (gap of the crest)/(that of the shallower lobe), the two have the share x^2 (3 - 2 x): so no load jumps where a stretch
 /// parts or closes.                                                                     theory.md (M.8)
 template <class Use>
-void for_each_part(const ClosedStretch& stretch, const Use& use) {
+void for_each_place(const ClosedStretch& stretch, const Use& use) {
   const auto lobe = [&](std::size_t k) {  // before crest k
     return k < stretch.crests.size() ? stretch.crests[k].before : stretch.behind;
   };
@@ -38,7 +38,9 @@ void for_each_part(const ClosedStretch& stretch, const Use& use) {
       const double x = std::clamp(1.0 - stretch.crests[top].gap / std::max(left, right), 0.0, 1.0);
       parted = x * x * (3.0 - 2.0 * x);
     }
-    if (parted < 1.0) use(from, to, share * (1.0 - parted));
+    const double whole = share * (1.0 - parted);
+    for (std::size_t q = 0; whole > 0.0 && q < gauss_places.size(); ++q)
+      use(from + gauss_places[q] * (to - from), whole * gauss_weights[q] * (to - from));
     if (parted == 0.0) return;
     self(self, from, stretch.crests[top].u, first, top, share * parted);
     self(self, stretch.crests[top].u, to, top + 1, last, share * parted);

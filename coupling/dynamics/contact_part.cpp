@@ -169,12 +169,8 @@ void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, 
     nodes.push_back(n);
     nodes.back().stretch = index;
   };
-  for_each_part(s, [&](double from, double to, double share) {
-    for (std::size_t q = 0; q < gauss_places.size(); ++q) {
-      const double u = from + gauss_places[q] * (to - from);
-      const double weight = share * gauss_weights[q] * (to - from) * length;
-      add(node(e, u, weight * foundation_share(curve.begin(e) + u * length)));
-    }
+  for_each_place(s, [&](double u, double weight) {
+    add(node(e, u, weight * length * foundation_share(curve.begin(e) + u * length)));
   });
   const auto mount = [&](double u) {
     Node n = node(e, u, mount_weight_);

@@ -203,19 +203,16 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
   for (const ClosedStretch& s : found.closed) {
     const double begin = curve.begin(near.element);
     found.stretches.push_back({own, begin + s.from * length, begin + s.to * length, s.deepest.gap});
-    for_each_part(s, [&](double from, double to, double share) {
-      for (std::size_t q = 0; q < gauss_places.size(); ++q) {
-        const double u = from + gauss_places[q] * (to - from);
-        const FootPoint foot = foot_point(across, near.first, near.last, along.value(near.element, u));
-        Node n;
-        n.own = own;
-        n.weight = 0.5 * share * gauss_weights[q] * (to - from) * length;
-        n.stands = foot.stands;
-        n.stretch = found.stretches.size() - 1;
-        n.places = {place(own, near.element, u), place(other, foot.element, foot.u)};
-        n.hats = {1.0 - u, u};
-        found.nodes.push_back(n);
-      }
+    for_each_place(s, [&](double u, double weight) {
+      const FootPoint foot = foot_point(across, near.first, near.last, along.value(near.element, u));
+      Node n;
+      n.own = own;
+      n.weight = 0.5 * weight * length;
+      n.stands = foot.stands;
+      n.stretch = found.stretches.size() - 1;
+      n.places = {place(own, near.element, u), place(other, foot.element, foot.u)};
+      n.hats = {1.0 - u, u};
+      found.nodes.push_back(n);
     });
   }
 }

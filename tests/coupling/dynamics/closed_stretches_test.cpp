@@ -148,13 +148,10 @@ struct TwoLobes {
         .find([this](double u) { return at(u); }, at(0.0), at(1.0), found, minima);
     std::array<double, 2> loads{};
     for (const ClosedStretch& s : found) {
-      coupling::for_each_part(s, [&](double from, double to, double share) {
-        for (std::size_t q = 0; q < coupling::gauss_places.size(); ++q) {
-          const double u = from + coupling::gauss_places[q] * (to - from);
-          const double load = -at(u).gap / height * share * coupling::gauss_weights[q] * (to - from);
-          loads[0] += load;
-          loads[1] += load * (u - 0.5);
-        }
+      coupling::for_each_place(s, [&](double u, double weight) {
+        const double load = -at(u).gap / height * weight;
+        loads[0] += load;
+        loads[1] += load * (u - 0.5);
       });
     }
     return loads;
