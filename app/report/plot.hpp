@@ -19,6 +19,9 @@ enum class Palette {
   sequential    ///< a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
 };
 
+/// First colours of the categorical palette.
+inline constexpr int black = 0, blue = 1, vermillion = 2, green = 3;
+
 /// Curves of more points than this are drawn thinned, keeping the extremes of every stretch.
 inline constexpr std::size_t max_points_per_curve = 4000;
 

@@ -29,7 +29,6 @@ using identification::Prediction;
 using identification::Series;
 using identification::Trace;
 
-constexpr int black = 0, blue = 1, vermillion = 2, green = 3;  // of the report's palette
 /// A curve, or a band, that makes the frame this many times higher than the rest gets a close-up.
 constexpr double dwarfing_ratio = 1.5, dwarfing_band_ratio = 6.0;
 /// Stages of the run shorter than this are not listed [s].
