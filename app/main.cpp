@@ -196,7 +196,7 @@ int run(int argc, char** argv) {
 
   CommonOptions new_options;
   std::string new_what;
-  CLI::App* new_files = app.add_subcommand("new", "a commented starting set of files that run");
+  CLI::App* new_files = app.add_subcommand("new", "a commented starter set of files that run");
   new_files->add_option("WHAT", new_what, "capture, experiment or wire")->required();
   new_files->add_option("--out", new_options.out, "folder for the files")->required();
   new_files->add_flag("--quiet", new_options.quiet, "no messages but errors");

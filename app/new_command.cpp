@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Shipped files that make a starting set, under the names that they get. The first is the one to run.
+/// Shipped files that make a starter set, under the names that they get. The first is the one to run.
 struct StartingSet {
   const char* name;
   std::vector<std::pair<const char*, const char*>> files;  ///< in the folder of the data, in the new one
@@ -26,15 +26,18 @@ struct StartingSet {
 };
 
 const std::array<StartingSet, 3>& starting_sets() {
-  static const std::array<StartingSet, 3> sets{
-      {{"capture",
-        {{"scenarios/ssrms_htv_capture.toml", "capture.toml"},
-         {"arms/ssrms_on_station.toml", "arms/ssrms_on_station.toml"},
-         {"arms/ssrms_like.urdf", "arms/ssrms_like.urdf"},
-         {"arms/station_like.urdf", "arms/station_like.urdf"}},
-        "simulate"},
-       {"experiment", {{"experiments/published_static.toml", "experiment.toml"}}, "trace"},
-       {"wire", {{"wires/traced_published.toml", "wire.toml"}}, "distil"}}};
+  static const std::array<StartingSet, 3> sets{{{"capture",
+                                                 {{"scenarios/ssrms_htv_capture.toml", "capture.toml"},
+                                                  {"arms/ssrms_on_station.toml", "arms/ssrms_on_station.toml"},
+                                                  {"arms/ssrms_like.urdf", "arms/ssrms_like.urdf"},
+                                                  {"arms/station_like.urdf", "arms/station_like.urdf"}},
+                                                 "simulate"},
+                                                {"experiment",
+                                                 {{"starter/experiment.toml", "experiment.toml"},
+                                                  {"starter/middle.csv", "middle.csv"},
+                                                  {"starter/quarter.csv", "quarter.csv"}},
+                                                 "trace"},
+                                                {"wire", {{"wires/traced_published.toml", "wire.toml"}}, "distil"}}};
   return sets;
 }
 

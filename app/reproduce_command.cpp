@@ -258,20 +258,23 @@ ReproducedModel model_of(const Experiment& experiment, const Trace& trace, const
   return model;
 }
 
+/// One row a position: the rms distance of each model from the published curve or the readings, and the published scatter.
 std::string error_table(const Reproduction& result) {
-  std::vector<const ReproducedModel*> models;
-  for (const ReproducedModel& model : result.models) models.push_back(&model);
-  std::ranges::sort(models, {}, [](const ReproducedModel* model) { return model->name; });
-  std::string text = fmt::format("{:<12}{:>14}{:>14}{:>10}\n", "position", "model", "rmse [N]", "nrmse");
+  std::vector<std::string> rows{fmt::format("{:<22}", "rms distance [N]")};
+  for (const ReproducedModel& model : result.models) rows[0] += fmt::format("{:>14}", model.name);
+  rows[0] += fmt::format("{:>20}", "published scatter");
   for (std::size_t k = 0; k < result.experiment.series.size(); ++k) {
     const Series& series = result.experiment.series[k];
-    for (const ReproducedModel* model : models) {
-      const identification::Misfit misfit =
-          identification::misfit(identification::measured_force(series), model->predictions[k].force);
-      text += fmt::format("{:<12}{:>14}{:>14.3f}{:>10.4f}\n", series.name, model->name, misfit.rmse, misfit.nrmse);
+    std::string row =
+        fmt::format("{:<22}", fmt::format("{} ({:g} mm)", series.name, 1e3 * series.test.contact_position));
+    for (const ReproducedModel& model : result.models) {
+      const std::vector<double>& force = model.predictions[k].force;
+      row += fmt::format("{:>14.3f}", identification::misfit(identification::measured_force(series), force).rmse);
     }
+    if (series.law) row += fmt::format("{:>20.3f}", series.law->scatter());
+    rows.push_back(std::move(row));
   }
-  return text;
+  return fmt::format("{}", fmt::join(rows, "\n"));
 }
 
 void write_all_curves(const std::filesystem::path& file, const Reproduction& result) {

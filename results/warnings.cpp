@@ -31,15 +31,14 @@ class Sentences {
   std::vector<std::string> all_;
 };
 
-/// Where the pusher has no wire before it any more at the end of a push.
-std::vector<std::string> left_behind(const std::vector<PushPoint>& points) {
+/// Warns of a wire that leaves the pusher as the pusher moves on. A pusher that is drawn back leaves the wire as it should.
+std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
   if (points.empty() || points.back().in_contact) return {};
-  auto last = points.rbegin();
-  while (last != points.rend() && !last->in_contact) ++last;
+  const auto last = std::find_if(points.rbegin(), points.rend(), [](const PushPoint& p) { return p.in_contact; });
   if (last == points.rend()) return {"the pusher never touches the wire: every force is zero"};
-  return {fmt::format(
-      "the wire has left the pusher behind a travel of {:.4g} mm and does not come back: no force from there on",
-      1e3 * last->travel)};
+  if (std::prev(last)->travel < last->travel) return {};
+  return {fmt::format("the wire leaves the pusher after a travel of {:.4g} mm: no force from there on",
+                      1e3 * last->travel)};
 }
 
 }  // namespace
@@ -54,7 +53,7 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
     const std::vector<PushPoint>& points = predictions[k].curve.curve.points;
     const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
     sentences.add(whose, wire::overload(wire, coupling::largest_stress(wire, points)));
-    sentences.add(whose, left_behind(points));
+    sentences.add(whose, lost_contact(points));
   }
   return sentences.take();
 }

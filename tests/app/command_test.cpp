@@ -46,8 +46,8 @@ class Command : public CommandFixture {
   }
 };
 
-// A starting set runs as it is, and never writes over what is there.
-TEST_F(Command, NewWritesAStartingSet) {
+// A starter set runs unchanged, and never overwrites a file.
+TEST_F(Command, NewWritesAStarterSet) {
   const Result made = run("new capture --out my");
   EXPECT_EQ(made.status, 0) << made.err;
   EXPECT_NE(made.err.find("next: snare simulate my/capture.toml"), std::string::npos) << made.err;
@@ -63,7 +63,17 @@ TEST_F(Command, NewWritesAStartingSet) {
   EXPECT_NE(unknown.err.find("must be \"capture\", \"experiment\" or \"wire\""), std::string::npos) << unknown.err;
   EXPECT_FALSE(fs::exists(folder_ / "other"));
   EXPECT_EQ(run("new wire --out w").status, 0);
-  EXPECT_EQ(run("new experiment --out e").status, 0);
+}
+
+// The starter experiment has readings, and its trace finds the displaced zero that they were computed with.
+TEST_F(Command, NewExperimentIsTraced) {
+  ASSERT_EQ(run("new experiment --out e").status, 0);
+  const Result traced = run("trace e/experiment.toml --out t --quiet");
+  ASSERT_EQ(traced.status, 0) << traced.err;
+  const auto trace = parsed("t/trace.json");
+  EXPECT_EQ(trace["verdict_kind"], "explained");
+  EXPECT_EQ(trace["selected"], nlohmann::json::array({"displacement_offset"}));
+  EXPECT_FALSE(trace["noise"]["drawn_about_published_laws"]);
 }
 
 TEST_F(Command, HelpOfEveryVerbHasAnExample) {

@@ -38,7 +38,17 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
   expect_said("--set wire.youngs_modulus_GPa=500", "the modulus of 500 GPa is above that of every metal");
   expect_said("--set series[s].travel_mm=20", "series s: the stress in the wire reaches ");
   expect_said("--set bulge.mode=2 --set wire.length_mm=180",
-              "series s: the wire has left the pusher behind a travel of 0 mm");
+              "series s: the wire leaves the pusher after a travel of 0 mm");
+}
+
+// A pusher that is drawn back past first touch leaves the wire as it should.
+TEST_F(Warnings, AWithdrawnPusherIsNone) {
+  write("x.toml", experiment(""));
+  std::string text = contents("x.toml");
+  text.replace(text.find("travel_mm = 1.0\n"), 16, "path_mm = [0.0, 1.0, -0.5]\n");
+  write("x.toml", text);
+  ASSERT_EQ(run("push x.toml --out here --quiet --json"), 0) << contents("err.txt");
+  EXPECT_TRUE(nlohmann::json::parse(contents("out.txt"))["warnings"].empty()) << contents("out.txt");
 }
 
 // A fitted stiffness that no wire has, on the page, too.

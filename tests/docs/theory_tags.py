@@ -12,7 +12,7 @@ usage: theory_tags.py REPOSITORY
 - Files and folders in backticks in the theory, CONTRIBUTING.md, README.md and docs/decisions/ exist.
 - Links to files and headings in all *.md files lead somewhere, and every page of docs/ can be reached from
   README.md.
-- A block of README.md behind `<!-- test: same as FILE -->` is that file.
+- A block after `<!-- test: same as FILE -->` is that file, one after `<!-- test: part of FILE -->` stands in it.
 
 Prints one line per problem, `file:line: ...`, and exits 1 if there is any.
 """
@@ -33,6 +33,7 @@ TAG = re.compile(rf"\(([{LETTERS}])\.(\d+)\)")
 RANGE = re.compile(rf"\(([{LETTERS}])\.(\d+)\)-\(\1\.(\d+)\)")
 DEFINITION = re.compile(rf"^\*\*\(([{LETTERS}]\.\d+)\)\*\*")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+COPY = re.compile(r"^<!-- test: (same as|part of) (\S+) -->\n```\w*\n(.*?)^```$", re.M | re.S)
 NAMED = re.compile(r"`([\w.-]+(?:/[\w.-]*)+|[\w-]+\.(?:hpp|cpp|py|md|sh|cmake|txt|toml|csv))`")
 
 
@@ -203,11 +204,14 @@ def link_problems(root: pathlib.Path) -> list[str]:
 
 
 def copy_problems(root: pathlib.Path) -> list[str]:
-    text = (root / "README.md").read_text(encoding="utf-8")
-    copies = re.findall(r"^<!-- test: same as (\S+) -->\n```\w*\n(.*?)^```$", text,
-                        re.MULTILINE | re.DOTALL)
-    return [f"README.md:1: the block is not the same as {file}" for file, block in copies
-            if not (root / file).exists() or (root / file).read_text(encoding="utf-8") != block]
+    """Blocks that say they are a file, or a part of one, and are not."""
+    found = []
+    for page in markdown_pages(root):
+        for kind, file, block in COPY.findall(page.read_text(encoding="utf-8")):
+            text = (root / file).read_text(encoding="utf-8") if (root / file).exists() else ""
+            if not (block == text if kind == "same as" else block and block in text):
+                found.append(f"{page.relative_to(root).as_posix()}:1: a block is not {kind} {file}")
+    return found
 
 
 def problems(root: pathlib.Path) -> list[str]:

@@ -89,7 +89,14 @@ class TheoryTags(unittest.TestCase):
                                  "```cpp\n/// Bends.  theory.md (W.1)-(W.2)\n```\n")
         self.assertEqual(theory_tags.problems(self.root), [])
         self.append("wire/rod.hpp", "int x;\n")
-        self.assertIn("is not the same as wire/rod.hpp", self.only_problem())
+        self.assertIn("a block is not same as wire/rod.hpp", self.only_problem())
+
+    def test_part_of_a_file_that_has_changed(self):
+        self.append("CONTRIBUTING.md", "<!-- test: part of wire/rod.hpp -->\n```cpp\n/// Bends.  theory.md (W.1)-(W.2)\n```\n")
+        self.append("wire/rod.hpp", "int x;\n")
+        self.assertEqual(theory_tags.problems(self.root), [])
+        self.write("wire/rod.hpp", "int x;  // theory.md (W.1)-(W.2)\n")
+        self.assertIn("CONTRIBUTING.md:1: a block is not part of wire/rod.hpp", self.only_problem())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,426 @@
+#!/usr/bin/env python3
+"""Writes the numbers of README.md and docs/results/ from the stored results in benchmarks/results/.
+
+usage: results_pages.py [--check | --reproduce SNARE] [REPOSITORY]
+
+A page marks what is written: everything between `<!-- numbers: NAME -->` and `<!-- end of numbers -->` is the text that the
+function registered under NAME below makes of the stored results. Without --check the pages are rewritten. With --check
+nothing is written; each region that differs is printed and the exit status is 1. With --reproduce the command SNARE first
+reproduces the published test, and benchmarks/results/reproduce.json and reproduce.txt are stored again.
+"""
+
+import argparse
+import csv
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+REGION = re.compile(r"(<!-- numbers: ([a-z_]+) -->\n)(.*?)(<!-- end of numbers -->)", re.S)
+WRITERS = {}
+
+
+def region(function):
+    """Registers the writer of the region that has the function's name."""
+    WRITERS[function.__name__] = function
+    return function
+
+
+class Stored:
+    """The stored results, read once each."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.read = {}
+
+    def text(self, name):
+        if name not in self.read:
+            self.read[name] = (self.folder / name).read_text(encoding="utf-8")
+        return self.read[name]
+
+    def json(self, name):
+        return json.loads(self.text(name))
+
+    def lines(self, name):
+        return [json.loads(line) for line in self.text(name).splitlines()]
+
+    def rows(self, name):
+        return list(csv.DictReader(self.text(name).splitlines()))
+
+    def benchmarks(self, name):
+        """Medians of a stored Google Benchmark run by name, times in seconds."""
+        units = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+        result = {}
+        for row in self.json(name)["benchmarks"]:
+            if row["name"].endswith("_median"):
+                key = re.sub(r"/(iterations:1|process_time|real_time)", "", row["name"][:-len("_median")])
+                result[key] = {**row, "seconds": row["cpu_time"] * units[row["time_unit"]]}
+        return result
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
+
+
+def number(value, digits=2):
+    """A number with so many significant digits, without an exponent from 1e-3 to 1e6."""
+    if value == 0.0:
+        return "0"
+    if not 1e-3 <= abs(value) < 1e6:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    places = digits - 1 - int(f"{abs(value):.{digits - 1}e}".split("e")[1])
+    return f"{round(value, places):.{max(places, 0)}f}"
+
+
+def percent(share):
+    return f"{100.0 * share:.1f} %"
+
+
+def duration(seconds):
+    units = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
+    unit, size = next((u for u in units if seconds >= 0.9995 * u[1]), units[-1])
+    return f"{number(seconds / size)} {unit}"
+
+
+def when(*contexts):
+    dates = sorted({c["date"][:10] for c in contexts})
+    machines = sorted({c["processor"] for c in contexts})
+    return f"Last measured {' and '.join(dates)}, one core of {' and '.join(machines)}, {contexts[0]['compiler']}.\n"
+
+
+# ---- README.md ----
+
+
+@region
+def set_up(stored):
+    result = stored.json("set_up.json")
+    rows = [[f"`{name}`", c["packages"], f"{number(c['download_MB'], 3)} MB", f"{number(c['minutes'])} min"]
+            for name, c in result["commands"].items()]
+    return table(["on a bare machine of two cores", "Debian packages", "download", "time"], rows)
+
+
+@region
+def accuracy_and_speed(stored):
+    push, motion, distil, trace = (stored.benchmarks(f) for f in ("push.json", "motion.json", "distil.json", "trace.json"))
+    static, impact = push["OutwardCurveExtrapolated/256"], motion["case_h/elements:40/higher_order:1/quasi_static:0"]
+    lookup, wire = distil["TableForce"], distil["FullWireForce"]
+    longest = max(row["seconds"] for name, row in trace.items() if name.startswith("whole_trace"))
+    captures = {(r["model"], r["elements"], r["formulation"]): r for r in stored.json("capture_speed.json")["runs"]}
+    capture = captures["full", 40, "higher_order"]
+    return table(
+        ["on one core", "relative error", "time"],
+        [["static curve of 20 points, start included", number(static["force_error"], 1), duration(static["seconds"])],
+         ["impact of a body on the wire, 0.3 s of motion", number(abs(impact["peak_force_error"]), 1),
+          duration(impact["motion_seconds"])],
+         ["force from a distilled table", f"{number(distil['DefaultTable/1']['bound_share'], 1)} of the largest force",
+          f"{duration(lookup['seconds'])} ({duration(wire['seconds'])} by the full wire)"],
+         ["capture of a free visitor of 16 t, one minute of motion", "", duration(60.0 / capture["real_time_factor"])],
+         ["trace of one test, from readings to verdict", "", f"up to {duration(longest)}"]])
+
+
+# ---- docs/results/published_test.md ----
+
+
+@region
+def first_result(stored):
+    return "```text\n" + stored.text("reproduce.txt") + "```\n"
+
+
+@region
+def published_made(stored):
+    return f"Made by `snare` {stored.json('reproduce.json')['version']}.\n"
+
+
+@region
+def published_curves(stored):
+    result = stored.json("reproduce.json")
+    names = [m["name"] for m in result["models"]]
+    labels = {m["name"]: m["label"] for m in result["models"]}
+    rows = [[f"{number(s['contact_position_mm'])} mm"] + [number(s["rmse_N"][n]) for n in names] + [number(s["sigma_N"])]
+            for s in result["series"]]
+    return table(["position"] + [f"{labels[n]}, rms distance [N]" for n in names] + ["published scatter [N]"], rows)
+
+
+@region
+def published_parameters(stored):
+    result = stored.json("reproduce.json")
+    fitted = next(m for m in result["models"] if m["name"] == "best_fit")["parameters"]
+    declared = next(m for m in result["models"] if m["name"] == "declared")["parameters"]
+    rows = []
+    for key, value in fitted.items():
+        spread = "" if value["stderr"] is None else f" +- {number(value['stderr'], 1)}"
+        rows.append([f"`{key}`", number(declared[key]["value"], 3) if key in declared else "0",
+                     number(value["value"], 3) + spread, value["unit"]])
+    return table(["number", "declared", "fitted", "unit"], rows)
+
+
+@region
+def published_ranges(stored):
+    return table(["assumed range of the fits", "verdict"],
+                 [[f"{number(v['to_mm'])} mm", v["verdict"]] for v in stored.json("reproduce.json")["verdicts"]])
+
+
+# ---- docs/results/tracing.md ----
+
+
+def sizes_table(result):
+    rows = []
+    for size in sorted(result["sizes"], key=int):
+        s = result["sizes"][size]
+        rows.append([size, int(s["sets"]), percent(s["right_class"]), percent(s["right_class_at_least"]),
+                     percent(s["decided_right"]) + f" of {int(s['decided'])}" if "decided" in s else "",
+                     number(s["mean_class_size_slips_as_one"]), percent(s["base_numbers_covered"])])
+    text = table(["size of the effect", "sets", "right class", "at least (95 %)", "decided answers that are right", "members of a class",
+                  "95 % intervals that hold"], rows)
+    return (text + f"\n{round(result['false_alarms'] * result['sets_without_effect'])} of {int(result['sets_without_effect'])} sets "
+            f"without an effect were falsely attributed one.\n")
+
+
+@region
+def blind_sizes(stored):
+    return sizes_table(stored.json("blind.json"))
+
+
+@region
+def blind_geometry(stored):
+    return sizes_table(stored.json("blind_geometry.json"))
+
+
+@region
+def blind_pairs(stored):
+    sizes = stored.json("blind_pairs.json")["sizes"]
+    return table(["size of each effect", "pairs", "both named", "at least (95 %)"],
+                 [[size, int(s["pairs"]), percent(s["pairs_both_named"]), percent(s["pairs_both_named_at_least"])]
+                  for size, s in sorted(sizes.items(), key=lambda item: int(item[0]))])
+
+
+@region
+def blind_null(stored):
+    parts = stored.json("null.json")["parts"]
+    return table(["noise, readings a series", "sets", "falsely attributed an effect", "zero in doubt", "sigma within 20 %"],
+                 [[name, p["sets"], p["false_culprits"], p["zeros_in_doubt"], percent(p["share_with_sigma_within_20_percent"])]
+                  for name, p in sorted(parts.items(), key=lambda i: (i[0].split()[0], int(i[0].split()[1])))])
+
+
+@region
+def blind_records(stored):
+    result = stored.json("blind_records.json")
+    rows = [("right class, size 5", "right_class_5_sigma"), ("right class, size 10", "right_class_10_sigma"),
+            ("right class, size 30", "right_class_30_sigma"), ("false attributions without an effect", "false_alarms"),
+            ("cause outside the catalogue, size 30: not explained", "outside_not_explained_30_sigma"),
+            ("95 % intervals of fitted numbers that hold", "intervals_of_fitted_numbers"),
+            ("95 % intervals of effects that hold", "intervals_of_effects")]
+    return table(["what", "of", "share", "95 % bounds"],
+                 [[what, result[key]["of"], percent(result[key]["share"]),
+                   " to ".join(percent(b) for b in result[key]["bounds_95"])] for what, key in rows])
+
+
+# ---- docs/results/captures.md ----
+
+
+@region
+def random_captures(stored):
+    rows = []
+    for model, file in (("strings", "random_captures.jsonl"), ("quasi-static wires", "random_captures_wires.jsonl"),
+                        ("full wires", "random_captures_full.jsonl")):
+        runs = stored.lines(file)
+        rows.append([model, len(runs), sum(r["status"] == 0 for r in runs), sum(bool(r["caught"]) for r in runs),
+                     number(max(r["peak_tension_N"] for r in runs), 3), duration(statistics.median(r["wall_s"] for r in runs))])
+    return table(["wires as", "starts", "finished", "caught", "largest tension [N]", "median time of a run"], rows)
+
+
+@region
+def capture_speed(stored):
+    words = {"stretched": "string", "quasi_static": "quasi-static wire", "full": "full wire", "higher_order": "higher order",
+             "vertices": "vertices"}
+    return table(["wires as", "elements", "discretisation", "times real time", "while holding", "steps"],
+                 [[words[r["model"]], r["elements"], words[r["formulation"]], number(r["real_time_factor"]), number(r["holding"]),
+                   r["steps"]] for r in stored.json("capture_speed.json")["runs"]])
+
+
+def by_drift(stored, file):
+    result = {}
+    for row in stored.rows(file):
+        if row["status"] == "done":
+            result.setdefault(float(row["drift_m_s"]), []).append(row)
+    return result
+
+
+@region
+def capture_envelope(stored):
+    strings, wires = (by_drift(stored, f) for f in ("htv_envelope.csv", "htv_envelope_wires.csv"))
+
+    def caught(rows):
+        return f"{sum(r['caught'] == '1' for r in rows)} of {len(rows)}" if rows else ""
+
+    return table(["drift [m/s]", "strings: caught", "largest tension [N]", "quasi-static wires: caught", "largest tension [N]"],
+                 [[number(drift), caught(rows), number(max(float(r["tension_N"]) for r in rows), 3), caught(wires.get(drift, [])),
+                   number(max(float(r["tension_N"]) for r in wires[drift]), 3)] for drift, rows in sorted(strings.items())])
+
+
+# ---- docs/results/sweeps.md ----
+
+
+@region
+def pin_offsets(stored):
+    rows = stored.rows("pin_offsets.csv")
+    done = [r for r in rows if r["status"] == "done"]
+    centre = next(r for r in done if float(r["x_mm"]) == 0.0 and float(r["y_mm"]) == 0.0)
+    return table(["cases", "rejected: initial overlap", "peak tension, pin centred [N]", "largest peak tension [N]"],
+                 [[len(rows), sum(r["status"] == "refused" for r in rows), number(float(centre["peak_N"]), 3),
+                   number(max(float(r["peak_N"]) for r in done), 3)]])
+
+
+@region
+def push_sensitivity(stored):
+    fields = stored.json("push_sensitivity.json")["fields"]
+    variables = sorted({v for f in fields.values() for v in f["sobol"]["variables"]})
+    return table(["share of the variance"] + [f"`{f}`" for f in fields],
+                 [[f"`{v}`"] + [number(f["sobol"]["variables"][v]["total"]) if v in f["sobol"]["variables"] else ""
+                                for f in fields.values()] for v in variables])
+
+
+@region
+def rigidizing(stored):
+    rows = [r for r in stored.rows("rigidizing.csv") if r["status"] == "done"]
+    return table(["visitor [kg]", "contact stiffness [N/m]", "contact damping [N s/m]", "peak at the fixture [N]", "pull [N]"],
+                 [[number(float(r["mass_kg"]), 3), number(float(r["stiffness_N_m"]), 3), number(float(r["damping_Ns_m"]), 3),
+                   number(float(r["contact_N"]), 3), number(float(r["pull_N"]), 3)] for r in rows])
+
+
+@region
+def sweep_throughput(stored):
+    return table(["threads", "captures a second", "efficiency"],
+                 [[r["threads"], number(stored.json("sweep_throughput.json")["cases"] / r["seconds"]), number(r["efficiency"])]
+                  for r in stored.json("sweep_throughput.json")["runs"]])
+
+
+# ---- docs/results/speed.md ----
+
+
+@region
+def speed_made(stored):
+    return when(*(stored.json(f)["context"] for f in ("push.json", "motion.json", "distil.json", "trace.json", "arm.json")))
+
+
+@region
+def push_speed(stored):
+    rows = stored.benchmarks("push.json")
+    return table(["elements of the finest mesh", "relative error of the force", "time"],
+                 [[n, number(rows[f"OutwardCurveExtrapolated/{n}"]["force_error"], 1),
+                   duration(rows[f"OutwardCurveExtrapolated/{n}"]["seconds"])] for n in (64, 128, 256, 512)])
+
+
+@region
+def motion_speed(stored):
+    rows = []
+    for name, row in stored.benchmarks("motion.json").items():
+        match = re.fullmatch(r"case_h/elements:(\d+)/higher_order:(\d)/quasi_static:(\d)", name)
+        if match:
+            elements, higher, quasi = (int(g) for g in match.groups())
+            rows.append([quasi, higher, elements,
+                         ["quasi-static" if quasi else "full", "higher order" if higher else "vertices", elements,
+                          number(row["peak_force_error"], 1), number(row["impulse_error"], 1), int(row["steps"]),
+                          duration(row["motion_seconds"])]])
+    return table(["wire", "discretisation", "elements", "error of the peak", "error of the impulse", "steps", "time"],
+                 [row[-1] for row in sorted(rows)])
+
+
+@region
+def law_speed(stored):
+    rows = stored.benchmarks("distil.json")
+    names = [("exported quadratic law", "ExportedLawForce"), ("table, in a program that links the library", "TableForce"),
+             ("exported table", "ExportedTableForce"), ("full wire", "FullWireForce")]
+    text = table(["one force by", "time"], [[label, duration(rows[name]["seconds"])] for label, name in names])
+    distilling = rows["DefaultTable/1"]
+    return text + (f"\nThe default table is distilled from {int(distilling['curves'])} curves in {duration(distilling['seconds'])} of "
+                   f"one core; its stated bound is {number(distilling['bound_share'], 1)} of the largest force.\n")
+
+
+@region
+def trace_speed(stored):
+    return table(["cause in the readings", "time of the trace"],
+                 [[f"`{name.split('/')[1]}`", duration(row["seconds"])] for name, row in stored.benchmarks("trace.json").items()
+                  if name.startswith("whole_trace")])
+
+
+@region
+def python_speed(stored):
+    result = stored.json("python.json")
+    return table(["from Python", "time over that of C++ or of the command"],
+                 [["force of a law at a million points", number(result["law_force"]["ratio_of_medians"], 3)],
+                  ["a push", number(result["push"]["call_over_command"], 3)]])
+
+
+@region
+def memory_use(stored):
+    return table(["what", "seconds", "memory [MB]"],
+                 [[what, number(m["seconds"]), m["memory_MB"]] for what, m in stored.json("memory.json").items()])
+
+
+def pages(root):
+    return [root / "README.md"] + sorted((root / "docs/results").glob("*.md"))
+
+
+def written(text, stored, name):
+    """The page with each region as the stored results have it."""
+    def replace(match):
+        if match.group(2) not in WRITERS:
+            raise SystemExit(f"{name}: no writer is called {match.group(2)}; there are {', '.join(WRITERS)}")
+        return match.group(1) + WRITERS[match.group(2)](stored) + match.group(4)
+
+    return REGION.sub(replace, text)
+
+
+def store_reproduction(snare, root):
+    """Stores the result of `snare reproduce` without its curves, and the first lines that it prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([snare, "reproduce", "--out", folder], cwd=root, capture_output=True, text=True, check=True)
+        result = json.loads((pathlib.Path(folder) / "reproduce.json").read_text(encoding="utf-8"))
+    kept = {key: result[key] for key in ("schema", "version", "models", "summary_statistics", "verdicts")}
+    kept["series"] = [{"name": s["name"], "contact_position_mm": s["contact_position_mm"], "sigma_N": s["published"]["sigma_N"],
+                       "rmse_N": {name: m["rmse_N"] for name, m in s["models"].items()}} for s in result["series"]]
+    lines = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("warning: ")]
+    head = [i for i, line in enumerate(lines) if line.startswith("rms distance")][0]
+    results = root / "benchmarks/results"
+    (results / "reproduce.json").write_text(json.dumps(kept, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    (results / "reproduce.txt").write_text("\n".join(lines[head:head + 5]) + "\n", encoding="utf-8")
+
+
+def update(page, stored, check, root):
+    """Rewrites a page, or prints what would change; whether it would."""
+    text = page.read_text(encoding="utf-8")
+    new = written(text, stored, page.name)
+    if new == text:
+        return False
+    if not check:
+        page.write_text(new, encoding="utf-8")
+        print(page.relative_to(root))
+        return True
+    for (_, name, old, _), (_, _, made, _) in zip(REGION.findall(text), REGION.findall(new)):
+        if old != made:
+            print(f"{page.relative_to(root)}: the region {name} differs from the stored results, which give:\n{made}")
+    return True
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--reproduce", type=pathlib.Path, metavar="SNARE")
+    parser.add_argument("repository", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).parents[1])
+    options = parser.parse_args()
+    root = options.repository.resolve()
+    if options.reproduce:
+        store_reproduction(options.reproduce.resolve(), root)
+    stored = Stored(root / "benchmarks/results")
+    stale = sum(update(page, stored, options.check, root) for page in pages(root))
+    return 1 if options.check and stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
