@@ -187,7 +187,32 @@ void ConstraintSet::place(VectorXd& y) {
   }
   for (const MountPart& m : mounts_)
     y.segment<3>(m.rod().velocity_of(m.rod().model().vertex_at(m.end()))) = m.carrier().state(y).linear;
+  for (const CarriedWire& w : carried_wires(y)) {
+    for (int i = 0; i < w.rod->vertices(); ++i) y.segment<3>(w.rod->velocity_of(i)) = w.velocity(i, y);
+  }
   enter(0.0);
+}
+
+void ConstraintSet::place_twist_rates(const VectorXd& y, VectorXd& rate) const {
+  for (const CarriedWire& w : carried_wires(y)) {
+    for (int e = 0; e + 1 < w.rod->vertices(); ++e) rate[w.rod->angle_of(e)] = w.twist_rate(e, y);
+  }
+}
+
+std::vector<CarriedWire> ConstraintSet::carried_wires(const VectorXd& y) const {
+  std::vector<CarriedWire> wires;
+  for (std::size_t k = 0; k < mounts_.size(); ++k) {
+    const int wire = motion_.mounts[k].wire;
+    if (motion_.wires[at_index(wire)].velocities.cols() > 0) continue;
+    auto found = std::ranges::find(wires, wire, &CarriedWire::wire);
+    if (found == wires.end()) found = wires.insert(wires.end(), CarriedWire{&mounts_[k].rod(), wire, {}});
+    const wire::End end = mounts_[k].end(), other = end == wire::End::left ? wire::End::right : wire::End::left;
+    const MovingFrame::State carrier = mounts_[k].carrier().state(y);
+    found->carriers[index_of(end)] = carrier;
+    const wire::SpatialEnd& opposite = motion_.wires[at_index(wire)].rod.properties.end(other);
+    if (opposite.kind == wire::SpatialEnd::Kind::free) found->carriers[index_of(other)] = carrier;
+  }
+  return wires;
 }
 
 void ConstraintSet::loosen(VectorXd& y) const {

@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "coupling/dynamics/bushing_part.hpp"
+#include "coupling/dynamics/carried_wire.hpp"
 #include "coupling/dynamics/complaints.hpp"
 #include "coupling/dynamics/load_part.hpp"
 #include "coupling/dynamics/model.hpp"
@@ -35,8 +36,11 @@ class ConstraintSet {
   void append(std::vector<numerics::DaePart*>& parts);
   [[nodiscard]] int event_count() const;
 
-  /// The arms' start, and velocities of all that is held from those of their carriers, in y.
+  /// Writes into y the arms' start and the velocities of everything that is held, from those of its carriers. A wire without
+  /// velocities of its own starts with its carriers: see CarriedWire.
   void place(Eigen::VectorXd& y);
+  /// Writes the rates [rad/s] of the edges' angles of the wires that start with their carriers.
+  void place_twist_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
   /// Multipliers zero.
   void loosen(Eigen::VectorXd& y) const;
   /// Rates of the arms that annul their rows of a residual with vanishing rates of theirs.
@@ -99,6 +103,7 @@ class ConstraintSet {
     bool floats = false;  // nothing holds its base: its momentum is counted
   };
   [[nodiscard]] bool counted(const MovingFrame& frame) const;
+  [[nodiscard]] std::vector<CarriedWire> carried_wires(const Eigen::VectorXd& y) const;
   void enter(double time);
 
   const Motion& motion_;

@@ -33,7 +33,7 @@ struct MotionWire {
   std::string name = "wire";
   wire::RodInMotion rod;        ///< constants, mounts, damping and mesh
   Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
-  Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: at rest
+  Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: with its carriers (CarriedWire), at rest between mounts in the world
   WireStrength strength = {};
   WireTightness tightness = {};
 };

@@ -250,6 +250,7 @@ void MotionRun::begin() {
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
+  constraints_->place_twist_rates(y_, rate_);
   settle();
   sense();
   phases_.start(0.0, signals(), kept());

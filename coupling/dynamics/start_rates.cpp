@@ -2,16 +2,20 @@
 
 #include "coupling/dynamics/run.hpp"
 
+#include <utility>
+
 namespace snare::coupling {
 
 using Eigen::VectorXd;
 
 // With all accelerations and constraint forces zero the rows are minus the forces; what the constraints then miss gives
 // their forces.                                                              theory.md (M.10)
+// Angles of edges have no inertia: their rates are continuous, as are the velocities that determine them.
 void MotionRun::make_rates() {
-  rate_.setZero();
+  const VectorXd before = std::exchange(rate_, VectorXd::Zero(y_.size()));
   for (const wire::RodPart& r : rods_) {
     for (int i = 0; i < r.vertices(); ++i) rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
+    for (int e = 0; e + 1 < r.vertices(); ++e) rate_[r.angle_of(e)] = before[r.angle_of(e)];
   }
   for (const BodyPart& b : bodies_) {
     rate_.segment<3>(b.position()) = y_.segment<3>(b.velocity());
