@@ -130,10 +130,19 @@ json summary_json(const Reproduction& reproduction) {
                         {"dof", a.dof},
                         {"p", a.p}});
   }
-  return {{"chi2", s.chi2},   {"chi2_coefficients", s.coefficients},
-          {"dof", s.dof},     {"numbers", s.numbers},
-          {"p", s.p},         {"scatter_N", s.scatter},
-          {"series", series}, {"adequacy", adequacy}};
+  json by_digits = json::array();
+  for (const auto& [digits, one] : reproduction.by_digits) {
+    by_digits.push_back({{"R2_digits", digits}, {"chi2", one.chi2}, {"dof", one.dof}, {"p", one.p}});
+  }
+  return {{"chi2", s.chi2},
+          {"chi2_coefficients", s.coefficients},
+          {"dof", s.dof},
+          {"numbers", s.numbers},
+          {"p", s.p},
+          {"scatter_N", s.scatter},
+          {"series", series},
+          {"by_R2_digits", by_digits},
+          {"adequacy", adequacy}};
 }
 
 }  // namespace

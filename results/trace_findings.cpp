@@ -56,12 +56,21 @@ std::string share_of_peak(const Trace& t, double force) {
                             : std::string("of no force");
 }
 
-/// What more to measure where the readings bear no more.
+/// P of a bootstrap, which cannot be smaller than one of its replicates.
+std::string bootstrap_p(double p) {
+  return p <= identification::least_bootstrap_p ? fmt::format("p <= {:g}", identification::least_bootstrap_p)
+                                                : fmt::format("p = {:.2g}", p);
+}
+
+/// What more to measure where the readings support no further number.
 std::string take_more(const Trace& t) {
   const auto fitted = t.base.numbers.size();
   if (t.from_laws) {
-    return fmt::format(" {} published numbers cannot tell more: {} are fitted, and one more would leave too few.",
-                       t.rows, fitted);
+    return fmt::format(
+        " {} published numbers cannot support an effect in addition to {} fitted ones: too few degrees of freedom "
+        "would "
+        "be left.",
+        t.rows, fitted);
   }
   const double enough = static_cast<double>(fitted + 1) + identification::fewest_dof(fitted + 1);
   return fmt::format(
@@ -74,10 +83,10 @@ std::string nothing_missing(const Trace& t) {
   std::string text;
   if (t.from_laws) {
     text = fmt::format(
-        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones and their "
-        "scatters (p = "
-        "{:.2g}); no effect is missing.",
-        t.base.numbers.size(), t.rows, t.base_tests.lack_of_fit);
+        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones ({}); no effect "
+        "is "
+        "missing.",
+        t.base.numbers.size(), t.rows, bootstrap_p(t.base_tests.lack_of_fit));
   } else if (t.base_tests.within_noise()) {
     text = fmt::format(
         "Nothing missing: the base model explains the readings to the noise (rmse {:.3g} N); no effect "
@@ -142,9 +151,9 @@ std::string not_explained(const Trace& t) {
         fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
   } else if (t.from_laws) {
     text = fmt::format(
-        "Not explained: beside {} fitted numbers the published fits and their scatters agree with the "
-        "computed ones with p = {:.2g} only.",
-        t.base.numbers.size(), t.base_tests.lack_of_fit);
+        "Not explained: with {} numbers fitted, the base model is rejected: lost readings of it would rarely give {} "
+        "published numbers as unlikely as these ({}).",
+        t.base.numbers.size(), t.rows, bootstrap_p(t.base_tests.lack_of_fit));
   } else if (t.few_readings) {
     text = fmt::format("Not explained: the base model leaves {:.3g} N rms.", t.base.rmse);
   } else {

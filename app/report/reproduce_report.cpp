@@ -4,6 +4,7 @@
 #include "app/report/report_words.hpp"
 #include "app/report/reproduce_plots.hpp"
 #include "app/report/reproduce_verdicts.hpp"
+#include "results/trace_findings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +51,12 @@ std::optional<double> overall_sigma(const Reproduction& result) {
   return std::sqrt(sum / count);
 }
 
-/// Whether the best model agrees with the published curves, in one sentence.
+/// The verdict of the tracing; until it has ended, the error of the best model over the scatter.
 void add_verdict(ReportPage& page, const Reproduction& result) {
+  if (result.trace) {
+    page.callout(results::verdict(*result.trace), result.trace->explained ? Tone::good : Tone::bad);
+    return;
+  }
   const ReproducedModel* best = result.best_model();
   const auto sigma = overall_sigma(result);
   if (!best || !sigma || *sigma <= 0.0) return;
@@ -60,16 +65,12 @@ void add_verdict(ReportPage& page, const Reproduction& result) {
     page.callout(
         fmt::format("No verdict: the {} was not computed to the end of the push at every position.", best->label),
         Tone::bad);
-  } else if (ratio > 1.0) {
-    page.callout(fmt::format("The published curves are not explained: even the {} stays {} times the published "
-                             "scatter away from them.",
-                             best->label, format_significant(ratio, 2)),
-                 Tone::bad);
   } else {
-    page.callout(fmt::format("Over all positions together the {} agrees with the published curves to within their "
-                             "scatter.",
-                             best->label),
-                 Tone::good);
+    page.callout(
+        fmt::format("No verdict: the tracing is missing. The {} is {} times the published scatter away from the "
+                    "published curves.",
+                    best->label, format_significant(ratio, 2)),
+        Tone::plain);
   }
 }
 
@@ -100,8 +101,8 @@ void add_summary(ReportPage& page, const Reproduction& result) {
                        misfit ? share_of(misfit->nrmse, "the range of the published force") : ""});
   }
   if (const auto sigma = overall_sigma(result)) {
-    figures.push_back({"Scatter of the published curves", measured(sigma, " N rms"),
-                       "\u03c3 from the published R\u00b2: no model can be judged below it"});
+    figures.push_back(
+        {"Scatter of the published curves", measured(sigma, " N rms"), "\u03c3 from the published R\u00b2"});
   }
   if (figures.empty()) page.callout("No model was computed.", Tone::bad);
   page.key_figures(figures);

@@ -59,7 +59,7 @@ struct Adequacy {
   double to = 0.0;                   ///< range that the fits are taken to have [m]
   int readings = 0;                  ///< that they are taken to rest on, at every position
   std::vector<std::string> numbers;  ///< keys
-  double chi2 = 0.0;                 ///< of coefficients and scatters
+  double chi2 = 0.0;                 ///< deviance of the published numbers
   double dof = 0.0;
   double p = 1.0;
 };
@@ -71,7 +71,8 @@ struct Reproduction {
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
   std::vector<RangeVerdict> verdicts;
-  std::optional<identification::SummaryStatistics> summary;  ///< of the best fit; none without published fits
+  std::optional<identification::SummaryStatistics> summary;    ///< of the best fit; none without published fits
+  std::map<int, identification::SummaryStatistics> by_digits;  ///< the same with R2 printed to so many decimals
   std::vector<Adequacy> adequacy;
   std::vector<std::string> warnings;  ///< what is doubtful about the models
   bool interrupted = false;           ///< this is a part of what was asked for

@@ -18,9 +18,9 @@ namespace {
 void add_adequacy(ReportPage& page, const Reproduction& result) {
   if (result.adequacy.empty()) return;
   page.paragraph(
-      "How many numbers does one wire for all positions need? p: how often the lost readings would give published fits "
-      "as far from the computed ones; below about 0.01 the numbers do not do. Neither the range nor the number of "
-      "readings is printed, so both are varied; of as many numbers the best set is shown.");
+      "How many numbers does one wire for all positions need? p: how often lost readings of this wire give published "
+      "numbers as unlikely as these, by a bootstrap; below 0.01 the wire is rejected. Neither the range nor the number "
+      "of readings is printed, so both are varied; of all sets of as many numbers the best one is shown.");
   std::map<std::pair<double, std::size_t>, std::map<int, const Adequacy*>> rows;
   std::map<int, bool> counts;
   for (const Adequacy& a : result.adequacy) {
@@ -31,7 +31,7 @@ void add_adequacy(ReportPage& page, const Reproduction& result) {
   Table table;
   table.columns = {"range [mm]"_number, "numbers"_number};
   for (const auto& [readings, known] : counts) {
-    table.columns.push_back({fmt::format("\u03c7\u00b2, {} readings", readings), ColumnKind::number});
+    table.columns.push_back({fmt::format("deviance, {} readings", readings), ColumnKind::number});
     table.columns.push_back({"p", ColumnKind::number});
   }
   for (const auto& [key, by_readings] : rows) {
@@ -47,30 +47,41 @@ void add_adequacy(ReportPage& page, const Reproduction& result) {
   page.table(table);
 }
 
+/// How the rounding of R2 moves the answer.
+void add_digits(ReportPage& page, const Reproduction& result) {
+  Words words;
+  for (const auto& [digits, s] : result.by_digits) words.push_back(fmt::format("{:.2g} with {} decimals", s.p, digits));
+  if (words.empty()) return;
+  page.paragraph(
+      fmt::format("R\u00b2 is printed rounded, which leaves an interval for the scatter of the readings: p of the "
+                  "best fit is {}.",
+                  joined(words)));
+}
+
 }  // namespace
 
 void add_verdicts(ReportPage& page, const Reproduction& result) {
   if (!result.trace && result.verdicts.empty()) return;
   page.heading("What explains the curves");
   if (result.trace) {
-    page.callout(verdict(*result.trace), result.trace->explained ? Tone::good : Tone::bad);
     page.paragraph(
         "The readings are lost: the published numbers of every fit are compared with those of the same fit to the "
-        "computed "
-        "curve. Run `snare trace` on the experiment file for the whole evidence.");
+        "computed curve, by their likelihood. Run `snare trace` on the experiment file for the whole evidence.");
+    add_digits(page, result);
     const auto& next = result.trace->next;
     if (next && !next->what.empty()) page.paragraph("To measure next: " + next->what + ".");
   }
   if (result.verdicts.empty()) return;
   page.paragraph("The range of travel of the published fits is not printed. What is said depends on it:");
   Table table;
-  table.columns = {"range [mm]"_number, "fit within the published scatter"_text,
-                   "rms error over scatter by position"_text, "the tracing says"_text};
+  table.caption =
+      "Distance: of the fitted wire from the published parabolas, as rms over their scatter. It is no test of the "
+      "wire, whose curve need not be a parabola.";
+  table.columns = {"range [mm]"_number, "distance by position"_text, "the tracing says"_text};
   for (const RangeVerdict& v : result.verdicts) {
     Words ratios;
     for (const auto& [name, fit] : v.fit) ratios.push_back(fmt::format("{} {:.2f}", name, fit.rmse / fit.scatter));
-    table.rows.push_back({format_number(1e3 * v.to), yes_no(v.within_scatter, Tone::good, Tone::plain),
-                          joined(ratios, ", "), v.verdict});
+    table.rows.push_back({format_number(1e3 * v.to), joined(ratios, ", "), v.verdict});
   }
   page.table(table);
   add_adequacy(page, result);

@@ -213,10 +213,10 @@ void add_laws(ReportPage& page, const Trace& trace) {
     table.rows.push_back(std::move(row));
   }
   if (drawn.empty()) return;
-  page.paragraph(
-      fmt::format("The points of {} are no readings. Only a fit F = A d\u00b2 + B d + C to readings was published, and "
-                  "only its three numbers count: a curve may leave the parabola as the lost readings did.",
-                  joined(drawn)));
+  page.paragraph(fmt::format(
+      "The points of {} are no readings. Only a fit F = A d\u00b2 + B d + C to readings was published, and "
+      "only its three coefficients and R\u00b2 count: a curve may leave the parabola as the lost readings did.",
+      joined(drawn)));
   page.table(table);
 }
 

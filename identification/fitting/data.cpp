@@ -20,6 +20,10 @@ Eigen::Index Data::rows() const {
   return n;
 }
 
+bool Data::published() const {
+  return !series.empty() && std::ranges::all_of(series, [this](std::size_t k) { return noise.summarised(k); });
+}
+
 std::vector<Data::Direction> Data::directions() const {
   std::vector<Direction> result;
   for (const Placing& placing : placings) {
@@ -65,13 +69,30 @@ Eigen::MatrixXd Data::whiten(const Forces& forces, Eigen::Index columns) const {
   return result;
 }
 
+// The R2 of a published fit has a residual that is not linear in the force.
 Eigen::VectorXd Data::residual(const Evaluation& evaluation) const {
-  return whiten([&](std::size_t k) { return measured[k] - evaluation.force[k]; }, 1);
+  Eigen::VectorXd result = whiten([&](std::size_t k) { return measured[k] - evaluation.force[k]; }, 1);
+  for_published([&](std::size_t k, Eigen::Index row) {
+    result[row] = noise.published[k]->r_squared_residual(evaluation.force[k]);
+  });
+  return result;
 }
 
 Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
   if (evaluation.by.empty()) return Eigen::MatrixXd::Zero(rows(), 0);
-  return whiten([&](std::size_t k) { return evaluation.by[k]; }, evaluation.by.front().cols());
+  Eigen::MatrixXd result = whiten([&](std::size_t k) { return evaluation.by[k]; }, evaluation.by.front().cols());
+  for_published([&](std::size_t k, Eigen::Index row) {
+    result.row(row) = noise.published[k]->r_squared_slope(evaluation.force[k], evaluation.by[k]);
+  });
+  return result;
+}
+
+void Data::for_published(const std::function<void(std::size_t series, Eigen::Index row)>& visit) const {
+  Eigen::Index row = 0;
+  for (const std::size_t k : series) {
+    row += rows_of(k);
+    if (noise.summarised(k)) visit(k, row - 1);
+  }
 }
 
 // f - g sigma (u . L^-1 f) / (1 + |u|^2)

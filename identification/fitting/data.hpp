@@ -38,11 +38,13 @@ struct Data {
   Noise noise;                            ///< of every series of the model
   std::vector<Placing> placings;          ///< of tests whose place is not exact; none until find_placings()
 
-  /// Whitened numbers of one series: its readings, or three where only a fit was published.
+  /// Whitened numbers of one series: its readings, or four where only a fit was published.
   [[nodiscard]] Eigen::Index rows_of(std::size_t of_series) const {
     return noise.rows(of_series, measured[of_series].size());
   }
   [[nodiscard]] Eigen::Index rows() const;
+  /// Whether all series are published fits.
+  [[nodiscard]] bool published() const;
   /// Forces as they are read [N], by columns, one matrix a series of the model.
   using Forces = std::function<Eigen::MatrixXd(std::size_t of_series)>;
   /// V^(-1/2) of `columns` columns of forces [-], the data's series one below the other.
@@ -61,6 +63,8 @@ struct Data {
                                                   const Eigen::MatrixXd& covariance) const;
 
  private:
+  /// Visits the rows of the R2 of published fits.
+  void for_published(const std::function<void(std::size_t of_series, Eigen::Index row)>& visit) const;
   /// A placing of which series are among the data, in their rows.
   struct Direction;
   [[nodiscard]] std::vector<Direction> directions() const;

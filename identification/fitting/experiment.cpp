@@ -87,6 +87,17 @@ std::vector<double> read_path(const TomlTable& series) {
   return result;
 }
 
+constexpr int most_decimals = 15;
+
+/// Decimals of the shortest notation of a number.
+int decimals_of(double number) {
+  for (int digits = 0; digits < most_decimals; ++digits) {
+    const double unit = std::pow(10.0, digits);
+    if (std::round(number * unit) / unit == number) return digits;
+  }
+  return most_decimals;
+}
+
 QuadraticLaw read_law(const TomlTable& table) {
   const Range coefficient = Range::from(-1e12, 1e12);
   QuadraticLaw law;
@@ -95,6 +106,8 @@ QuadraticLaw read_law(const TomlTable& table) {
   law.c = table.number("C_N", coefficient);
   law.r_squared = table.number("R2", Range::above(0.0, 1.0));
   law.to = table.number("to_mm", Range::above(0.0, largest_travel), mm);
+  law.r_squared_digits = table.integer_or(
+      "R2_digits", std::max(QuadraticLaw::default_r_squared_digits, decimals_of(law.r_squared)), 1, most_decimals);
   return law;
 }
 
@@ -290,6 +303,11 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
   add_per_series(fit, read_names(fit, "per_series", parameters.keys(), "a number that can be fitted"), names,
                  experiment.free);
   experiment.model_tolerance = fit.optional_number("model_tolerance", Range::from(0.0, 0.5));
+  constexpr base::Choice<PublishedScatter> scatters[]{{"common", PublishedScatter::common},
+                                                      {"each", PublishedScatter::each}};
+  if (fit.has("published_scatter")) {
+    experiment.published_scatter = fit.choice("published_scatter", scatters).value_or(experiment.published_scatter);
+  }
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
   if (!names.empty() && distinct.size() >= names.size()) fit.fail("heldout", "must leave at least one series to fit");

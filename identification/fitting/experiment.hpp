@@ -2,6 +2,7 @@
 
 #include "base/toml_tree.hpp"
 #include "coupling/statics/push_problem.hpp"
+#include "identification/fitting/published_scatter.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -25,11 +26,13 @@ struct QuadraticLaw {
   double c = 0.0;          ///< [N]
   double r_squared = 1.0;  ///< coefficient of determination that was printed with it, in (0, 1]
   double to = 0.0;         ///< the range is 0 to this travel [m], > 0
+  int r_squared_digits = default_r_squared_digits;  ///< decimals to which r_squared is rounded, 1 to 15
+
+  /// A table that drops trailing zeros prints four decimals as three.
+  static constexpr int default_r_squared_digits = 4;
 
   /// The law's force [N] at a displacement [m].
-  [[nodiscard]] double force(double displacement) const noexcept {
-    return (a * displacement + b) * displacement + c;
-  }  ///< [N] at a displacement [m]
+  [[nodiscard]] double force(double displacement) const noexcept { return (a * displacement + b) * displacement + c; }
   /// Standard deviation of the lost readings about the law that R^2 implies for readings evenly spread
   /// over the range: sqrt((1 - R^2) / R^2 * variance of the law over the range) [N].
   [[nodiscard]] double scatter() const;
@@ -64,6 +67,7 @@ struct Experiment {
   std::vector<std::string> heldout;  ///< names of series never used for fitting or selection
   /// Share of the largest measured force below which nothing is called missing, in [0, 0.5]; absent: see tracing.
   std::optional<double> model_tolerance;
+  PublishedScatter published_scatter = PublishedScatter::common;  ///< of lost readings of published fits
   SolverSettings solver;
 };
 

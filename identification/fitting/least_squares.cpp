@@ -148,6 +148,7 @@ void take(const Data& data, Evaluation evaluation, Fit& fit) {
   fit.jacobian = data.jacobian(fit.evaluation);
   fit.chi2 = fit.residual.squaredNorm();
   fit.covariance = covariance_of(fit.jacobian);
+  fit.estimated = data.noise.estimated;
 }
 
 void fail(const std::string& message, Fit& fit) {

@@ -20,8 +20,11 @@ struct Fit {
   Eigen::MatrixXd covariance;     ///< of the coordinates, (J^T J)^-1 in the directions that the data see
   double chi2 = 0.0;
   numerics::SolveReport report;
-  /// Degrees of freedom: whitened numbers less fitted ones, may be negative.
-  [[nodiscard]] double dof() const { return static_cast<double>(residual.size()) - static_cast<double>(free); }
+  double estimated = 0.0;  ///< standard deviations that are estimated from the same data: those of published fits
+  /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be negative.
+  [[nodiscard]] double dof() const {
+    return static_cast<double>(residual.size()) - static_cast<double>(free) - estimated;
+  }
   /// Bayesian information criterion chi2 + k ln n [-].
   [[nodiscard]] double bic() const;
   [[nodiscard]] std::vector<Setting> fitted() const;

@@ -1,7 +1,6 @@
 #include "identification/fitting/noise.hpp"
 
 #include "identification/fitting/prediction.hpp"
-#include "identification/fitting/published_fit.hpp"
 #include "identification/fitting/replicate_scatter.hpp"
 
 #include <algorithm>
@@ -23,24 +22,17 @@ double range_of_forces(const std::vector<Series>& series) {
   return high - low;
 }
 
-/// Of a series with a published fit the quadratics, of others nothing; nothing at all without any.
-std::vector<Eigen::MatrixXd> summaries_of(const std::vector<Series>& series) {
-  std::vector<Eigen::MatrixXd> result;
-  if (std::none_of(series.begin(), series.end(), [](const Series& s) { return s.law.has_value(); })) return result;
-  for (const Series& s : series) {
-    result.push_back(s.law ? quadratic_basis(measured_displacement(s)) : Eigen::MatrixXd());
+/// Published fits among the series, with the standard deviations that they declare, or with that about parabolas.
+void add_published(const std::vector<Series>& series, Noise& noise) {
+  const std::vector<PublishedSeries> published = published_series(series);
+  if (published.empty()) return;
+  noise.published.resize(series.size());
+  const double common = scatter_about_parabolas(published);
+  for (const PublishedSeries& one : published) {
+    noise.published[one.index].emplace(one);
+    noise.set_published_sigma(one.index, one.sigma.value_or(common));
   }
-  return result;
-}
-
-/// Scatter of the lost readings about the fit, three numbers of which are fitted.
-double law_sigma(const Series& s) {
-  if (s.force_sigma) return *s.force_sigma;
-  const auto n = static_cast<double>(measured_displacement(s).size());
-  double largest = 0.0;
-  for (const double f : measured_force(s)) largest = std::max(largest, std::abs(f));
-  // R^2 = 1 is printed where it rounds to that.
-  return std::max(s.law->scatter() * std::sqrt(n / std::max(1.0, n - 3.0)), 1e-6 * largest);
+  noise.estimated = estimated_scatters(published, noise.scatter);
 }
 
 }  // namespace
@@ -66,8 +58,13 @@ std::vector<Noise::Step> noise_filter(const Series& series, double white, double
   return filter;
 }
 
+void Noise::set_published_sigma(std::size_t series, double of_series) {
+  sigma[series] = of_series;
+  published[series]->set_sigma(of_series);
+}
+
 Eigen::MatrixXd Noise::whiten(std::size_t series, const Eigen::MatrixXd& values) const {
-  if (summarised(series)) return summary[series] * values / sigma[series];
+  if (summarised(series)) return published[series]->whiten(values);
   if (filter.empty()) return values / sigma[series];
   const std::vector<Step>& steps = filter[series];
   Eigen::MatrixXd result(values.rows(), values.cols());
@@ -95,14 +92,15 @@ double Noise::mean_sigma(const std::vector<Series>& series) const {
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-Noise declared_noise(const std::vector<Series>& series) {
+Noise declared_noise(const std::vector<Series>& series, PublishedScatter scatter) {
   Noise noise;
+  noise.scatter = scatter;
   const bool declared =
       std::all_of(series.begin(), series.end(), [](const Series& s) { return s.force_sigma || s.law; });
   if (!declared || series.empty()) return noise;
   noise.source = "declared";
-  for (const Series& s : series) noise.sigma.push_back(s.force_sigma ? *s.force_sigma : law_sigma(s));
-  noise.summary = summaries_of(series);
+  for (const Series& s : series) noise.sigma.push_back(s.force_sigma.value_or(0.0));
+  add_published(series, noise);
   return noise;
 }
 
@@ -156,15 +154,15 @@ Noise noise_from_residuals(const std::vector<Series>& series, const std::vector<
   Noise noise = noise_of_readings(read, left, forces);
   if (read.size() == series.size()) return noise;
   Noise all = noise;
-  all.summary = summaries_of(series);
   all.sigma.clear();
   all.filter.clear();
   std::size_t at = 0;
   for (const Series& s : series) {
-    all.sigma.push_back(s.law ? law_sigma(s) : noise.sigma[at]);
+    all.sigma.push_back(s.law ? 0.0 : noise.sigma[at]);
     if (!noise.filter.empty()) all.filter.push_back(s.law ? std::vector<Noise::Step>() : noise.filter[at]);
     if (!s.law) ++at;
   }
+  add_published(series, all);
   return all;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identification/fitting/experiment.hpp"
+#include "identification/fitting/published_likelihood.hpp"
 
 #include <Eigen/Core>
 
@@ -31,17 +32,22 @@ struct Noise {
     double inverse = 0.0;  ///< 1 / standard deviation of the reading given those before [1/N]
   };
   std::vector<std::vector<Step>> filter;  ///< one a series; empty without correlation
-  /// Q^T of (I.11) of series of which a fit was published, one a series; empty for others, or for all.
-  std::vector<Eigen::MatrixXd> summary;
+  /// Series of which a fit was published, one a series; none for others. Empty where no series has one.   (I.11)
+  std::vector<std::optional<PublishedRows>> published;
+  PublishedScatter scatter = PublishedScatter::common;  ///< of published fits
+  double estimated = 0.0;  ///< standard deviations of published fits that are estimated with the fitted numbers
 
-  /// Of a series of which only a fit was published, so that it has three numbers and no readings.
-  [[nodiscard]] bool summarised(std::size_t series) const { return !summary.empty() && summary[series].size() > 0; }
+  /// Whether only a fit was published of a series, so that it has four numbers and no readings.
+  [[nodiscard]] bool summarised(std::size_t series) const { return !published.empty() && published[series]; }
   /// Whitened numbers of a series of `readings`.
   [[nodiscard]] Eigen::Index rows(std::size_t series, Eigen::Index readings) const {
-    return summarised(series) ? summary[series].rows() : readings;
+    return summarised(series) ? PublishedRows::count : readings;
   }
+  /// Sets the standard deviation of a lost reading of a series with a published fit [N], > 0.
+  void set_published_sigma(std::size_t series, double sigma);
 
-  /// L^-1 values [-], L L^T the covariance [N^2]. By columns of values [N]; as many operations as values.
+  /// L^-1 values [-], L L^T the covariance [N^2]. By columns of values [N]; as many operations as values. The last row
+  /// of a published fit, which depends on the force itself, is zero: see PublishedRows.
   [[nodiscard]] Eigen::MatrixXd whiten(std::size_t series, const Eigen::MatrixXd& values) const;
   /// Mean standard deviation over all readings [N].
   [[nodiscard]] double mean_sigma(const std::vector<Series>& series) const;
@@ -53,8 +59,9 @@ struct Noise {
                                                     const std::vector<double>& height);
 
 /// The noise that the file declares (every series has force_sigma_N or a law); else sigma is empty and none is known
-/// before a fit.
-[[nodiscard]] Noise declared_noise(const std::vector<Series>& series);
+/// before a fit. Published fits that declare none have the scatter about parabolas, an upper bound, until a fit says more.
+[[nodiscard]] Noise declared_noise(const std::vector<Series>& series,
+                                   PublishedScatter scatter = PublishedScatter::common);
 
 /// The noise from what a fit leaves: of replicates about each other, by restricted maximum likelihood (an independent and
 /// a smooth part); without replicates from second differences,

@@ -1,140 +1,212 @@
 #include "identification/fitting/published_fit.hpp"
 
-#include "identification/fitting/prediction.hpp"
-#include "identification/fitting/statistics.hpp"
-
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace snare::identification {
 
 namespace {
 
 using Eigen::Index;
+using Point = PublishedDeviance::Point;
 
-/// Columns d^2, d, 1 with d over the longest travel, so that they are of one size.
-Eigen::MatrixXd quadratics(const std::vector<double>& travel, double longest) {
-  Eigen::MatrixXd x(static_cast<Index>(travel.size()), 3);
-  for (Index i = 0; i < x.rows(); ++i) {
-    const double u = travel[static_cast<std::size_t>(i)] / longest;
-    x.row(i) << u * u, u, 1.0;
+std::vector<PublishedSeries> published_of(const Model& model, const std::vector<std::size_t>& series) {
+  std::vector<PublishedSeries> result = published_series(model.series());
+  std::erase_if(result, [&](const PublishedSeries& s) { return std::ranges::find(series, s.index) == series.end(); });
+  return result;
+}
+
+/// A model with some of its numbers fitted to published fits.
+class PublishedModel {
+ public:
+  PublishedModel(const Model& model, std::vector<PublishedSeries> series, const std::vector<Setting>& settings,
+                 std::size_t free, PublishedScatter scatter)
+      : model_(model), series_(std::move(series)), settings_(settings), free_(free), scatter_(scatter) {
+    for (std::size_t k = 0; k < free_; ++k) by_.push_back(settings_[k].parameter);
   }
-  return x;
-}
 
-double longest_of(const std::vector<double>& travel) {
-  double longest = 0.0;
-  for (const double d : travel) longest = std::max(longest, std::abs(d));
-  return longest > 0.0 ? longest : 1.0;
-}
+  /// Maximises the likelihood; whether the model could be computed.
+  [[nodiscard]] bool fit();
+  /// With the steps that no bound of a number forbids.
+  [[nodiscard]] PublishedDeviance deviance() const;
+  [[nodiscard]] Point best() const;
+  [[nodiscard]] const std::vector<Setting>& settings() const { return settings_; }
+  [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
 
-/// Gram and Schmidt twice: orthonormal to roundings.
-Eigen::MatrixXd orthonormal(Eigen::MatrixXd x) {
-  for (Index k = 0; k < x.cols(); ++k) {
-    for (int pass = 0; pass < 2; ++pass) {
-      for (Index j = 0; j < k; ++j) x.col(k) -= x.col(j).dot(x.col(k)) * x.col(j);
-    }
-    const double norm = x.col(k).norm();
-    if (norm > 0.0) x.col(k) /= norm;
-  }
-  return x;
-}
+ private:
+  [[nodiscard]] PublishedDeviance linear(const Evaluation& evaluation, const std::vector<Index>& columns) const;
+  [[nodiscard]] std::vector<Index> all_columns() const;
+  [[nodiscard]] bool on_bound(std::size_t k) const;
+  [[nodiscard]] std::vector<Setting> moved(const Eigen::VectorXd& step, double share) const;
+  /// Best standard deviations with the numbers held.
+  [[nodiscard]] Point held(const Evaluation& evaluation, const Point& start) const;
 
-double about_mean(const Eigen::VectorXd& y) {
-  return (y.array() - y.mean()).square().sum();
-}
-
-/// One series: sums of squares of the lost readings about their fit, and of the computed curve about its own.
-struct Comparison {
-  FitComparison fit;
-  double lost = 0.0;           // (1 - R^2) S_yy
-  double curved = 0.0;         // |(I - H) F|^2
-  double spread = 0.0;         // of the computed curve's parabola about its mean
-  Eigen::VectorXd difference;  // Q^T (law - F)
-  Eigen::Matrix3d inverse;     // (X^T X)^-1 in A, B, C
-  double dof = 0.0;            // n - 3
+  const Model& model_;
+  std::vector<PublishedSeries> series_;
+  std::vector<Setting> settings_;
+  std::size_t free_;
+  PublishedScatter scatter_;
+  std::vector<const Parameter*> by_;
+  Evaluation evaluation_;
+  Point at_;  // no steps
 };
 
-Comparison compare(const Series& series, const std::vector<double>& force) {
-  const std::vector<double>& travel = measured_displacement(series);
-  const double longest = longest_of(travel);
-  const Eigen::MatrixXd x = quadratics(travel, longest);
-  const Eigen::MatrixXd q = orthonormal(x);
-  const QuadraticLaw& law = *series.law;
-  Eigen::VectorXd published(x.rows());
-  for (Index i = 0; i < x.rows(); ++i) published[i] = law.force(travel[static_cast<std::size_t>(i)]);
-  const Eigen::Map<const Eigen::VectorXd> f(force.data(), x.rows());
-  const Eigen::Vector3d unit{1.0 / (longest * longest), 1.0 / longest, 1.0};
-  const Eigen::Matrix3d inverse = (x.transpose() * x).inverse();
-  const Eigen::Vector3d computed = unit.asDiagonal() * (inverse * (x.transpose() * f));
-  Comparison c;
-  c.fit.published = {law.a, law.b, law.c};
-  c.fit.computed = {computed[0], computed[1], computed[2]};
-  c.fit.published_r2 = law.r_squared;
-  c.lost = (1.0 - law.r_squared) / law.r_squared * about_mean(published);
-  const Eigen::VectorXd fitted = q * (q.transpose() * f);
-  c.curved = (f - fitted).squaredNorm();
-  c.spread = about_mean(fitted);
-  c.difference = q.transpose() * (published - f);
-  c.inverse = unit.asDiagonal() * inverse * unit.asDiagonal();
-  c.dof = std::max(1.0, static_cast<double>(x.rows()) - 3.0);
+PublishedDeviance PublishedModel::linear(const Evaluation& evaluation, const std::vector<Index>& columns) const {
+  std::vector<LinearCurve> curves;
+  for (const PublishedSeries& s : series_) {
+    const Eigen::VectorXd& force = evaluation.force[s.index];
+    Eigen::MatrixXd by(force.size(), static_cast<Index>(columns.size()));
+    for (Index j = 0; j < by.cols(); ++j) by.col(j) = evaluation.by[s.index].col(columns[static_cast<std::size_t>(j)]);
+    curves.push_back(linear_curve(s, force, by));
+  }
+  return {series_, std::move(curves), scatter_};
+}
+
+std::vector<Index> PublishedModel::all_columns() const {
+  std::vector<Index> columns;
+  for (std::size_t k = 0; k < free_; ++k) columns.push_back(static_cast<Index>(k));
+  return columns;
+}
+
+bool PublishedModel::on_bound(std::size_t k) const {
+  const Setting& s = settings_[k];
+  const double lower = model_.lower(*s.parameter);
+  const double upper = model_.upper(*s.parameter);
+  return s.coordinate <= lower || s.coordinate >= upper;
+}
+
+std::vector<Setting> PublishedModel::moved(const Eigen::VectorXd& step, double share) const {
+  std::vector<Setting> settings = settings_;
+  for (std::size_t k = 0; k < free_; ++k) {
+    Setting& s = settings[k];
+    s.coordinate = std::clamp(s.coordinate + share * step[static_cast<Index>(k)], model_.lower(*s.parameter),
+                              model_.upper(*s.parameter));
+  }
+  return settings;
+}
+
+Point PublishedModel::held(const Evaluation& evaluation, const Point& start) const {
+  Point from = start;
+  from.step.resize(0);
+  return linear(evaluation, {}).minimise(from);
+}
+
+PublishedDeviance PublishedModel::deviance() const {
+  std::vector<Index> columns = all_columns();
+  std::erase_if(columns, [this](Index k) { return on_bound(static_cast<std::size_t>(k)); });
+  return linear(evaluation_, columns);
+}
+
+Point PublishedModel::best() const {
+  Point point = at_;
+  point.step = Eigen::VectorXd::Zero(deviance().steps());
+  return point;
+}
+
+// Gauss-Newton steps: the curves are linear about the current numbers, the likelihood is exact. A step that does not
+// lower the deviance is halved.
+bool PublishedModel::fit() {
+  constexpr int most_iterations = 30;
+  constexpr int most_halvings = 8;
+  constexpr double enough = 1e-4;  // of the deviance
+  evaluation_ = model_.evaluate(settings_, by_);
+  if (!evaluation_.complete) return false;
+  if (by_.empty()) evaluation_.by.assign(evaluation_.force.size(), {});
+  at_ = held(evaluation_, linear(evaluation_, {}).start());
+  for (int k = 0; k < most_iterations && free_ > 0; ++k) {
+    Point from = at_;
+    from.step = Eigen::VectorXd::Zero(static_cast<Index>(free_));
+    const Point wanted = linear(evaluation_, all_columns()).minimise(from);
+    if (at_.deviance - wanted.deviance < enough) break;
+    double gain = 0.0;
+    double share = 1.0;
+    for (int halving = 0; halving < most_halvings && !(gain > 0.0); ++halving, share *= 0.5) {
+      const std::vector<Setting> next = moved(wanted.step, share);
+      Evaluation there = model_.evaluate(next, by_);
+      if (!there.complete) continue;
+      const Point point = held(there, wanted);
+      gain = at_.deviance - point.deviance;
+      if (!(gain > 0.0)) continue;
+      settings_ = next;
+      evaluation_ = std::move(there);
+      at_ = point;
+    }
+    if (gain < enough) break;
+  }
+  return true;
+}
+
+/// (X^T X)^-1 of A, B, C and the projection of forces on them, as (A, B, C) = M Q^T F.
+Eigen::Matrix3d coefficients_of_basis(const PublishedSeries& series, const std::vector<double>& travel) {
+  Eigen::Matrix3d in_basis;  // Q^T of d^2, d, 1
+  const auto n = static_cast<Index>(travel.size());
+  const Eigen::Map<const Eigen::VectorXd> d(travel.data(), n);
+  in_basis.col(0) = series.basis * d.cwiseAbs2();
+  in_basis.col(1) = series.basis * d;
+  in_basis.col(2) = series.basis * Eigen::VectorXd::Ones(n);
+  return in_basis.inverse();
+}
+
+FitComparison compare(const PublishedSeries& one, const Series& series, const Eigen::VectorXd& force, double sigma) {
+  FitComparison c;
+  const Eigen::Matrix3d to_abc = coefficients_of_basis(one, measured_displacement(series));
+  const Eigen::Vector3d fitted = one.basis * force;
+  const Eigen::Vector3d computed = to_abc * fitted;
+  const Eigen::Matrix3d covariance = sigma * sigma * to_abc * to_abc.transpose();
+  c.published = {series.law->a, series.law->b, series.law->c};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Index>(k);
+    c.computed[k] = computed[i];
+    c.deviation[k] = std::sqrt(covariance(i, i));
+  }
+  c.chi2 = (one.numbers.coefficients - fitted).squaredNorm() / (sigma * sigma);
+  c.published_r2 = series.law->r_squared;
+  const double about_mean = one.about_mean(fitted);
+  const double curved = std::max(0.0, force.squaredNorm() - fitted.squaredNorm());
+  c.computed_r2 = about_mean / (about_mean + curved + (one.count - 3.0) * sigma * sigma);
+  c.scatter = sigma;
   return c;
 }
 
 }  // namespace
 
-Eigen::MatrixXd quadratic_basis(const std::vector<double>& travel) {
-  return orthonormal(quadratics(travel, longest_of(travel))).transpose();
-}
-
-// With e the readings' noise and H the projection on the quadratics,
-//   (1 - R^2) S_yy = |(I - H)(F + e)|^2, of mean |(I - H) F|^2 + (n - 3) sigma^2.
-SummaryStatistics summary_statistics(const std::vector<Series>& series, const std::vector<std::vector<double>>& force,
-                                     std::size_t numbers) {
-  constexpr double least_noise = 0.25;  // of the lost squares: not all of them are the curve's
+SummaryStatistics summary_statistics(const Model& model, const std::vector<std::size_t>& series,
+                                     const std::vector<Setting>& settings, std::size_t free,
+                                     const SummaryOptions& options) {
   SummaryStatistics result;
-  result.numbers = numbers;
-  std::vector<Comparison> all;
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    if (!series[k].law || force[k].size() != measured_displacement(series[k]).size() || force[k].size() < 4) continue;
-    all.push_back(compare(series[k], force[k]));
+  result.numbers = free;
+  result.settings = settings;
+  const std::vector<PublishedSeries> published = published_of(model, series);
+  if (published.empty()) return result;
+  PublishedModel fitted(model, published, settings, free, options.scatter);
+  result.dof = 4.0 * static_cast<double>(published.size()) - static_cast<double>(free) -
+               estimated_scatters(published, options.scatter);
+  if (!fitted.fit()) {
+    result.p = 0.0;
+    return result;
   }
-  if (all.empty()) return result;
+  result.settings = fitted.settings();
+  const Point best = fitted.best();
+  result.chi2 = best.deviance;
+  double bias = 1.0;
+  if (options.bootstrap) {
+    const BootstrapResult bootstrap = published_bootstrap(fitted.deviance(), best, options.replicates);
+    result.p = bootstrap.p;
+    bias = bootstrap.bias;
+  }
   double squares = 0.0;
-  double count = 0.0;
-  for (Comparison& c : all) {
-    const double own = std::max(c.lost - c.curved, least_noise * c.lost);
-    c.fit.scatter = std::sqrt(own / c.dof);
-    squares += own;
-    count += c.dof;
+  for (std::size_t k = 0; k < published.size(); ++k) {
+    const PublishedSeries& one = published[k];
+    const double sigma = best.sigma(one, static_cast<Index>(k)) / (one.sigma ? 1.0 : std::sqrt(bias));
+    result.series.push_back(compare(one, model.series()[one.index], fitted.evaluation().force[one.index], sigma));
+    result.coefficients += result.series.back().chi2;
+    squares += sigma * sigma;
   }
-  const double variance = squares / count;
-  result.scatter = std::sqrt(variance);
-  for (Comparison& c : all) {
-    const double own = c.fit.scatter * c.fit.scatter;
-    c.fit.chi2 = own > 0.0 ? c.difference.squaredNorm() / own : 0.0;
-    result.coefficients += c.fit.chi2;
-    const double expected = c.curved + c.dof * variance;
-    if (all.size() > 1 && variance > 0.0) {
-      result.chi2 += std::pow(c.lost - expected, 2) / (2.0 * c.dof * variance * variance + 4.0 * c.curved * variance);
-    }
-    c.fit.computed_r2 = c.spread / (c.spread + expected);
-    for (Index i = 0; i < 3; ++i) c.fit.deviation[static_cast<std::size_t>(i)] = std::sqrt(own * c.inverse(i, i));
-    result.series.push_back(c.fit);
-  }
-  result.chi2 += result.coefficients;
-  const auto laws = static_cast<double>(all.size());
-  const double scatters = all.size() > 1 ? laws - 1.0 : 0.0;
-  result.dof = 3.0 * laws + scatters - static_cast<double>(numbers);
-  // Of a scatter that is a difference of squares, by its variance 2 (n - 3) sigma^4 + 4 sigma^2 |(I - H) F|^2.
-  double known = 0.0;
-  for (const Comparison& c : all) {
-    const double own = c.fit.scatter * c.fit.scatter;
-    known += own > 0.0 ? c.dof * c.dof / (c.dof + 2.0 * c.curved / own) : c.dof;
-  }
-  result.p = result.dof > 0.0 ? fisher_tail(result.chi2 / result.dof, result.dof, known) : 1.0;
+  result.scatter = std::sqrt(squares / static_cast<double>(published.size()));
   return result;
 }
 

@@ -136,6 +136,20 @@ double ljung_box_p(const std::vector<Eigen::VectorXd>& residuals, int lags) {
   return dof > 0.0 ? chi_square_tail(q, dof) : 1.0;
 }
 
+double uniform_p(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto rank = static_cast<double>(i);
+    distance = std::max({distance, values[i] - rank / n, (rank + 1.0) / n - values[i]});
+  }
+  const double x = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
+  double p = 0.0;
+  for (int j = 1; j < 100; ++j) p += (j % 2 == 1 ? 2.0 : -2.0) * std::exp(-2.0 * j * j * x * x);
+  return std::clamp(p, 0.0, 1.0);
+}
+
 std::vector<double> holm(const std::vector<double>& p) {
   std::vector<std::size_t> order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -37,6 +37,9 @@ namespace snare::identification {
 /// the entries, added over the series; p by chi-square.
 [[nodiscard]] double ljung_box_p(const std::vector<Eigen::VectorXd>& residuals, int lags);
 
+/// P of the Kolmogorov-Smirnov test that values are uniform on [0, 1], with Stephens' (1970) correction for their number.
+[[nodiscard]] double uniform_p(std::vector<double> values);
+
 /// Holm's (1979) adjusted p values [-], in the order given.
 [[nodiscard]] std::vector<double> holm(const std::vector<double>& p);
 

@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "identification/effects/catalogue.hpp"
+#include "identification/fitting/published_fit.hpp"
 #include "identification/tracing/trace_input.hpp"
 
 #include <fmt/format.h>
@@ -30,9 +31,12 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
     start.push_back({&p, p.coordinate(declared, declared)});
     length = length || key == "wire.length_mm";
   }
-  if (data.rows() < static_cast<Eigen::Index>(keys.size()) + 3) {
+  const double most = static_cast<double>(data.rows()) - data.noise.estimated - 3.0;
+  if (static_cast<double>(keys.size()) > most) {
+    const char* what = data.noise.estimated > 0.0 ? "published numbers" : "readings";
     throw InputError({experiment.file.string(), 0, "fit.free", std::to_string(keys.size()) + " keys",
-                      fmt::format("must leave at least 3 of the {} readings over", data.rows())});
+                      fmt::format("must leave at least 3 degrees of freedom: at most {:g} keys with {} {}",
+                                  std::max(0.0, most), data.rows(), what)});
   }
   if (data.noise.sigma.empty()) data.noise.sigma.assign(model.series().size(), 1.0);
   FitOptions fitting;
@@ -76,7 +80,27 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
   return best;
 }
 
+namespace {
+
+/// Sets the standard deviation of published fits to that of greatest likelihood, its bias corrected, if it is smaller
+/// than that about parabolas: a wrong model makes it larger, which would hide the missing effect. Fits again.
+void settle_scatter(const Model& model, Data& data, Fit& base) {
+  const SummaryStatistics found =
+      summary_statistics(model, data.series, base.settings, base.free, {.scatter = data.noise.scatter});
+  if (found.series.size() != data.series.size()) return;
+  std::size_t at = 0;
+  for (const std::size_t k : data.series) {
+    const double sigma = found.series[at++].scatter;
+    if (!model.series()[k].force_sigma && sigma < data.noise.sigma[k]) data.noise.set_published_sigma(k, sigma);
+  }
+  base = fit(model, data, {found.settings.begin(), found.settings.begin() + static_cast<std::ptrdiff_t>(base.free)});
+}
+
+}  // namespace
+
 void settle_noise(const Model& model, Data& data, Fit& base) {
+  if (data.published() && data.noise.estimated > 0.0) settle_scatter(model, data, base);
+  if (!base.report.usable()) return;
   const bool declared = !data.noise.source.empty();
   if (!declared) {
     std::vector<Eigen::VectorXd> residuals;

@@ -145,13 +145,16 @@ Left in_forces(const Data& data, const Fit& fit) {
   for (std::size_t i = 0; i < data.series.size(); ++i) {
     const std::size_t k = data.series[i];
     const Eigen::Index n = data.rows_of(k);
-    // Of a published fit its three numbers, times the scatter.
+    // Of a published fit its four numbers, times the scatter.
     const auto seen = [&](const Eigen::MatrixXd& forces_of_it) -> Eigen::MatrixXd {
       return data.noise.summarised(k) ? data.noise.sigma[k] * data.noise.whiten(k, forces_of_it) : forces_of_it;
     };
     forces.residual.segment(row, n) = seen(left[i]);
     if (!by.empty()) forces.jacobian.middleRows(row, n) = seen(by[i]);
     row += n;
+    if (!data.noise.summarised(k)) continue;
+    forces.residual[row - 1] = data.noise.sigma[k] * fit.residual[row - 1];
+    forces.jacobian.row(row - 1) = data.noise.sigma[k] * fit.jacobian.row(row - 1);
   }
   return forces;
 }

@@ -1,6 +1,5 @@
 #include "identification/tracing/residual_tests.hpp"
 
-#include "identification/fitting/published_fit.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/model_error.hpp"
 
@@ -19,21 +18,6 @@ bool ResidualTests::like_noise() const {
   return p() > (of_published ? least_published_p : level);
 }
 
-namespace {
-
-/// Of coefficients and scatters, as everywhere where published fits are compared.
-double published_p(const Model& model, const Data& data, const Fit& fit) {
-  std::vector<Series> series;
-  std::vector<std::vector<double>> force;
-  for (const std::size_t k : data.series) {
-    series.push_back(model.series()[k]);
-    force.emplace_back(fit.evaluation.force[k].begin(), fit.evaluation.force[k].end());
-  }
-  return summary_statistics(series, force, fit.free).p;
-}
-
-}  // namespace
-
 ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fit) {
   std::vector<Eigen::VectorXd> pieces;
   Eigen::Index row = 0;
@@ -48,10 +32,10 @@ ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fi
   tests.rmse = fitted_rmse(data, fit.evaluation);
   tests.noise = data.noise.mean_sigma(model.series());
   tests.left = remainder(model, data, fit);
-  tests.of_published = !data.series.empty() && std::all_of(data.series.begin(), data.series.end(),
-                                                           [&](std::size_t k) { return data.noise.summarised(k); });
+  tests.of_published = data.published();
   if (tests.of_published) {
-    tests.lack_of_fit = published_p(model, data, fit);
+    tests.published = summary_statistics(model, data.series, fit.settings, fit.free, {.scatter = data.noise.scatter});
+    tests.lack_of_fit = tests.published->p;
     return tests;
   }
   // Replicates say how much their mean may be off; of the noise from second differences its own degrees of freedom.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "identification/fitting/least_squares.hpp"
+#include "identification/fitting/published_fit.hpp"
 #include "identification/tracing/remainder.hpp"
+
+#include <optional>
 
 namespace snare::identification {
 
@@ -12,9 +15,10 @@ struct ResidualTests {
   double lack_of_fit = 1.0;         ///< p of chi2 against the noise; against replicates of the smooth part alone
   bool against_replicates = false;  ///< the noise is that of replicates, which differ smoothly themselves
   bool of_published = false;        ///< all series are published fits: lack_of_fit is that of their numbers (I.11)
-  double rmse = 0.0;                ///< of the residual [N]
-  double noise = 0.0;               ///< of a reading [N]
-  Remainder left{};                 ///< the smooth part of what is left
+  std::optional<SummaryStatistics> published{};  ///< of these
+  double rmse = 0.0;                             ///< of the residual [N]
+  double noise = 0.0;                            ///< of a reading [N]
+  Remainder left{};                              ///< the smooth part of what is left
 
   /// P of all three together [-]; against replicates, and of published fits, of the lack of fit alone.
   [[nodiscard]] double p() const;

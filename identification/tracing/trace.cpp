@@ -43,13 +43,13 @@ Division::Division(const Experiment& experiment) : all(experiment.series) {
   for (std::size_t k = 0; k < all.size(); ++k) (is_heldout[k] ? heldout : fitted).push_back(all[k]);
 }
 
-Data data_of(const std::vector<Series>& fitted) {
+Data data_of(const std::vector<Series>& fitted, PublishedScatter scatter) {
   Data data;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
     data.series.push_back(k);
     data.measured.push_back(forces_of(fitted[k]));
   }
-  data.noise = declared_noise(fitted);
+  data.noise = declared_noise(fitted, scatter);
   return data;
 }
 
@@ -119,7 +119,7 @@ Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Divisi
       model_(std::move(series.fitted), for_search(experiment.solver)),
       heldout_(series.heldout, for_search(experiment.solver)),
       all_(series.all, experiment.solver, false),
-      data_(data_of(model_.series())) {
+      data_(data_of(model_.series(), experiment.published_scatter)) {
   result_.series = std::move(series.all);
   result_.from_laws = series.from_laws;
   result_.heldout = series.is_heldout;
@@ -212,8 +212,7 @@ std::vector<Setting> Tracer::begun_anew() const {
 void Tracer::add_effects() {
   current_ = base_;
   tests_ = result_.base_tests;
-  const auto readings = static_cast<double>(data_.rows());
-  result_.few_readings = readings - static_cast<double>(base_.free + 1) < fewest_dof(base_.free + 1);
+  result_.few_readings = base_.dof() - 1.0 < fewest_dof(base_.free + 1);
   const double tolerance = result_.tolerance;
   while (static_cast<int>(added_.size()) < options_.most_effects) {
     // Where a size is asked for, what is smaller is not looked for.

@@ -20,7 +20,7 @@ struct Trace {
   std::vector<Series> series;  ///< as used: a published law at its travels in the place of readings
   std::vector<bool> heldout;   ///< one a series
   Noise noise;
-  bool from_laws = false;   ///< published fits stand for readings: only their three numbers count
+  bool from_laws = false;   ///< published fits replace lost readings: only their four numbers count
   std::size_t rows = 0;     ///< readings, and numbers of published fits, that are fitted
   double mesh_error = 0.0;  ///< largest discretisation error of the final model [N]
   ModelError declared, base, final;

@@ -8,8 +8,8 @@
 
 namespace snare::identification {
 
-/// Puts the law itself at its travels in the place of readings that were never published. Only its three numbers count
-/// (Noise::summary), so that a curve may leave the parabola as the readings did. Whether there was any.
+/// Replaces readings that were never published by the law itself at its travels. Only its four numbers count
+/// (Noise::published), so that a curve may leave the parabola as the readings did. Returns whether there was any.
 [[nodiscard]] bool replace_laws(std::vector<Series>& series);
 
 /// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that do not

@@ -124,6 +124,23 @@ TEST(Experiment, ValidFileIsReadInSi) {
   EXPECT_EQ(law.test.travel.back(), 0.004);
 }
 
+// R2 counts as rounded to four decimals, or to as many as it has, unless the file says otherwise.
+TEST(Experiment, DecimalsOfR2) {
+  const auto digits = [](const std::vector<Override>& changes) {
+    return parse_experiment("x.toml", valid_experiment, parameters(), changes).series[1].law->r_squared_digits;
+  };
+  EXPECT_EQ(digits({}), 4);
+  EXPECT_EQ(digits({{"series[2].law.R2", "0.99876"}}), 5);
+  EXPECT_EQ(digits({{"series[2].law.R2", "1"}}), 4);
+  EXPECT_EQ(digits({{"series[2].law.R2_digits", "3"}}), 3);
+  EXPECT_EQ(digits({{"series[2].law.R2_digits", "2"}}), 2) << "fewer than R2 has: a wider interval";
+  const std::string said = test::refusal([&] { return digits({{"series[2].law.R2_digits", "0"}}); });
+  EXPECT_NE(said.find("R2_digits = 0, must be"), std::string::npos) << said;
+  EXPECT_EQ(
+      parse_experiment("x.toml", valid_experiment, parameters(), {{"fit.published_scatter", "each"}}).published_scatter,
+      PublishedScatter::each);
+}
+
 TEST(Experiment, EveryOptionalKeyIsRead) {
   const std::string text =
       "schema = 'snare-experiment/1'\ntitle = 't'\nsource = 's'\n"
