@@ -34,6 +34,8 @@ endif()
 # Private settings of our own targets; never exported.
 add_library(snare_build_settings INTERFACE)
 target_compile_options(snare_build_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+# GCC 12 warns falsely about strings that are joined (its bug 105651).
+target_compile_options(snare_build_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(CMAKE_UNITY_BUILD)
   # A joined source counts as a header: what is private to it would be seen by others. And a local name is not hidden by a
   # function of the next source, of which the two know nothing.

@@ -17,9 +17,9 @@ using base::Range;
 using base::TomlNode;
 using base::TomlTable;
 
-class Reader {
+class BenchmarkReader {
  public:
-  Reader(const std::filesystem::path& file, const TomlNode& root, base::TomlDocument& document)
+  BenchmarkReader(const std::filesystem::path& file, const TomlNode& root, base::TomlDocument& document)
       : file_(file), root_(root), document_(document) {}
 
   BenchmarkFile read() {
@@ -136,7 +136,7 @@ BenchmarkFile read_benchmark_file(const std::filesystem::path& file, const std::
   for (const base::Override& change : overrides) base::apply_override(root, change, problems);
   base::TomlDocument document(file.string(), root);
   for (base::InputProblem& problem : problems) document.add(std::move(problem));
-  return Reader(file, root, document).read();
+  return BenchmarkReader(file, root, document).read();
 }
 
 }  // namespace snare::study

@@ -14,7 +14,7 @@ namespace {
 using coupling::MotionResult;
 using std::numbers::pi;
 
-constexpr double mass = 2.0;  // [kg]
+constexpr double ball_mass = 2.0;  // [kg]
 
 /// A body that strikes the plane y = 0 of a law.
 struct Strike {
@@ -26,7 +26,7 @@ struct Strike {
 Strike strike(const coupling::ContactLaw& law, double speed, double expected_duration) {
   coupling::Motion motion;
   coupling::MotionBody body;
-  body.properties.mass = mass;
+  body.properties.mass = ball_mass;
   body.start.position = {0.0, -0.05 * speed * expected_duration, 0.0};
   body.start.velocity = {0.0, speed, 0.0};
   motion.bodies.push_back(body);
@@ -69,7 +69,7 @@ std::vector<Row> hunt_crossley_rows() {
         (-u - std::log1p(-u) < left ? low : high) = u;
       }
       const double expected = low / av;  // a u over a v
-      const double duration = pi * std::sqrt(mass / 3e4);
+      const double duration = pi * std::sqrt(ball_mass / 3e4);
       const Strike s = strike(coupling::power_law(k, p, av / speed * k, 1.0), speed, duration);
       rows.push_back({"contact laws", fmt::format("Hunt-Crossley, p = {:g}, c v/k = {:g}, restitution", p, av), "",
                       "a v - ln(1 + a v) = -a u - ln(1 - a u)", expected, s.speed_after / speed, ErrorKind::relative,
@@ -84,13 +84,13 @@ std::vector<Row> dashpot_rows() {
   std::vector<Row> rows;
   constexpr double k = 3e4;
   constexpr double speed = 0.2;
-  const double w0 = std::sqrt(k / mass);
+  const double w0 = std::sqrt(k / ball_mass);
   for (const double ratio : {0.02, 0.2, 0.6, 0.9}) {
     const double b = ratio * w0;
     const double w = std::sqrt(w0 * w0 - b * b);
     const double angle = std::atan2(2.0 * b * w, w * w - b * b);  // in (0, pi) for every ratio below 1
     const double expected = std::exp(-b / w * (pi - angle));
-    const Strike s = strike(coupling::spring_dashpot(k, 2.0 * b * mass), speed, pi / w0);
+    const Strike s = strike(coupling::spring_dashpot(k, 2.0 * b * ball_mass), speed, pi / w0);
     rows.push_back({"contact laws", fmt::format("spring and dashpot, {:g} of critical, restitution", ratio), "",
                     "Schwager, Poeschel 2007", expected, s.speed_after / speed, ErrorKind::relative, 1e-4});
   }
@@ -101,7 +101,7 @@ std::vector<Row> dashpot_rows() {
 std::vector<Row> hertz_rows() {
   constexpr double k = 1e9;
   constexpr double speed = 0.5;
-  const double depth = std::pow(1.25 * mass * speed * speed / k, 0.4);
+  const double depth = std::pow(1.25 * ball_mass * speed * speed / k, 0.4);
   // 4/5 sqrt(pi) Gamma(2/5)/Gamma(9/10)
   const double factor = 0.8 * std::sqrt(pi) * std::tgamma(0.4) / std::tgamma(0.9);
   const Strike s = strike(coupling::power_law(k, 1.5, 0.0, 1.0), speed, factor * depth / speed);

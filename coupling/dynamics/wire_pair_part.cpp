@@ -25,7 +25,7 @@ constexpr Eigen::Index rows_of_place = 12, row_of_bristle = 24;
 constexpr Eigen::Index columns_of_place = 24, column_of_velocity = 12, column_of_bristle = 48;
 
 // Elements on either side of those that touch which are in the pattern, too.
-constexpr int coupled_beside = 1;
+constexpr int neighbours_coupled = 1;
 
 double smaller_default(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b) {
   const auto of = [](const wire::RodPart& rod, double radius) {
@@ -84,8 +84,8 @@ bool WirePairPart::outgrows_pattern(const DaePoint& at) {
   const std::array<int, 2> last{search_.curve(0).elements() - 1, search_.curve(1).elements() - 1};
   for (const Node& n : found.nodes) {
     const auto [a, b] = elements(n);
-    for (int i = std::max(0, a - coupled_beside); i <= std::min(last[0], a + coupled_beside); ++i) {
-      for (int j = std::max(0, b - coupled_beside); j <= std::min(last[1], b + coupled_beside); ++j)
+    for (int i = std::max(0, a - neighbours_coupled); i <= std::min(last[0], a + neighbours_coupled); ++i) {
+      for (int j = std::max(0, b - neighbours_coupled); j <= std::min(last[1], b + neighbours_coupled); ++j)
         wanted.emplace_back(i, j);
     }
   }
