@@ -1,7 +1,7 @@
 """Builds the Python package by CMake: pip install .
 
-Needs the Debian packages of scripts/debian-packages.txt, and nothing from the net but the build tools of pyproject.toml; with those of
-Debian nothing at all: pip install --no-build-isolation .
+Needs the Debian packages of scripts/debian-packages.txt and libsundials-dev, and from the network only the build tools of
+pyproject.toml; with those of Debian nothing: pip install --no-build-isolation .
 """
 
 import pathlib

@@ -1,9 +1,21 @@
 # Everything comes from the system; nothing is downloaded. SnareInstall.cmake repeats this list for users
 # of the installed package (cmake/snareConfig.cmake.in).
 
+# What scripts/setup.sh has unpacked there in place of a package that is not installed.
+list(APPEND CMAKE_PREFIX_PATH "${PROJECT_SOURCE_DIR}/build/debian/usr")
+
+# snare_required_unless_auto(<variable> <option>): how find_package looks for what a part of the build needs.
+function(snare_required_unless_auto variable option)
+  if(${option} STREQUAL "AUTO")
+    set(${variable} QUIET PARENT_SCOPE)
+  else()
+    set(${variable} REQUIRED PARENT_SCOPE)
+  endif()
+endfunction()
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(KLU REQUIRED)
-find_package(SUNDIALS 6.4 REQUIRED COMPONENTS idas nvecserial sunlinsolklu sunmatrixsparse)
+find_package(SUNDIALS 6.4 REQUIRED COMPONENTS idas nvecserial sunmatrixsparse)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(fmt REQUIRED)
 find_package(tomlplusplus REQUIRED)

@@ -8,7 +8,7 @@ configure_package_config_file(cmake/snareConfig.cmake.in snareConfig.cmake
 write_basic_package_version_file(snareConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(EXPORT snareTargets NAMESPACE snare:: DESTINATION "${SNARE_PACKAGE_DIR}")
 install(FILES "${PROJECT_BINARY_DIR}/snareConfig.cmake" "${PROJECT_BINARY_DIR}/snareConfigVersion.cmake"
-              cmake/FindKLU.cmake cmake/SuiteSparseLibrary.cmake
+              cmake/FindKLU.cmake cmake/FindSUNDIALS.cmake cmake/SuiteSparseLibrary.cmake
         DESTINATION "${SNARE_PACKAGE_DIR}")
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
