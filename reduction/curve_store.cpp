@@ -164,7 +164,7 @@ PushedCurve CurveStore::solve(const CurvePlace& place) const {
       break;
     }
     force.push_back(points[i].force);
-    curve.largest_strain = std::max(curve.largest_strain, points[i].tension_left / test.wire.axial_stiffness());
+    curve.largest_strain = std::max(curve.largest_strain, points[i].largest_tension / test.wire.axial_stiffness());
     curve.dissipated = points[i].dissipated;
     if (i < solution.discretisation_error.size())
       curve.discretisation_error = std::max(curve.discretisation_error, solution.discretisation_error[i]);

@@ -27,7 +27,7 @@ struct PushedCurve {
   std::vector<double> loading;        ///< force [N], one a travel
   std::vector<double> unloading;      ///< on the way back, at the same travels; empty where nothing dissipates [N]
   double discretisation_error = 0.0;  ///< largest estimate over the curve [N]
-  double largest_strain = 0.0;        ///< of the wire at the left mount [-]
+  double largest_strain = 0.0;        ///< of the wire [-]
   double dissipated = 0.0;            ///< by friction on the pusher over load and unload [J]
   bool complete = false;              ///< every travel was reached
   std::string stopped;                ///< why not

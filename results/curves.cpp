@@ -45,7 +45,14 @@ const PointColumn after_error[] = {{"transverse_force_N", &PushPoint::transverse
                                    {"axial_force_N", &PushPoint::axial_force},
                                    {"energy_J", &PushPoint::energy},
                                    {"dissipated_J", &PushPoint::dissipated},
-                                   {"imbalance_N", &PushPoint::imbalance}};
+                                   {"imbalance_N", &PushPoint::imbalance},
+                                   {"reaction_along_left_N", &PushPoint::reaction_along_left},
+                                   {"reaction_across_left_N", &PushPoint::reaction_across_left},
+                                   {"reaction_z_left_N", &PushPoint::reaction_z_left},
+                                   {"reaction_along_right_N", &PushPoint::reaction_along_right},
+                                   {"reaction_across_right_N", &PushPoint::reaction_across_right},
+                                   {"reaction_z_right_N", &PushPoint::reaction_z_right},
+                                   {"largest_tension_N", &PushPoint::largest_tension}};
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #include "coupling/statics/contact_forces.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 namespace snare::coupling {
@@ -8,6 +8,7 @@ namespace snare::coupling {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 /// Turned left by a right angle: of a radial, the direction of increasing angle about the pin's centre.
 Vector2d left_of(const Vector2d& v) {
@@ -82,25 +83,28 @@ PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& st
   return sum;
 }
 
-MountForces mount_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
-  MountForces result;
-  const wire::PlanarRodProperties& p = system.rod().properties();
+std::array<Vector2d, 2> mount_forces(const PushSystem& system, const numerics::PathPoint& at) {
   std::array<Vector2d, 2> reaction = system.mount_reactions();
-  if (p.left.kind == wire::PlanarEnd::Kind::free) {
+  if (system.rod().properties().left.kind == wire::PlanarEnd::Kind::free) {
     // The supports follow the pusher among the contacts.
     for (std::size_t k = 1; k < system.sliding.size(); ++k) {
       reaction[k - 1] = at.border.segment<2>(system.sliding_rows(k).force);
     }
-    const Eigen::VectorXd tensions = system.rod().tensions(state);
-    result.tension_left = tensions[0];
-    result.tension_right = tensions[tensions.size() - 1];
-  } else {
-    result.tension_left = -reaction[0].dot(p.left.direction);
-    result.tension_right = reaction[1].dot(p.right.direction);
   }
-  const double length = state.controls[2] - state.controls[0];
-  result.total = reaction[0] + reaction[1] + length * p.weight;
-  return result;
+  return reaction;
+}
+
+void put_end_forces(const std::array<Vector3d, 2>& reactions, const std::array<Vector3d, 2>& tangents,
+                    const Eigen::VectorXd& tensions, PushPoint& point) {
+  point.reaction_along_left = reactions[0].x();
+  point.reaction_across_left = reactions[0].y();
+  point.reaction_z_left = reactions[0].z();
+  point.reaction_along_right = reactions[1].x();
+  point.reaction_across_right = reactions[1].y();
+  point.reaction_z_right = reactions[1].z();
+  point.tension_left = -reactions[0].dot(tangents[0]);
+  point.tension_right = reactions[1].dot(tangents[1]);
+  point.largest_tension = std::max({tensions.maxCoeff(), point.tension_left, point.tension_right});
 }
 
 ContactExtent contact_extent(const PushSystem& system, const wire::PlanarState& state) {

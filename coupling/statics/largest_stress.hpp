@@ -8,11 +8,11 @@
 
 namespace snare::coupling {
 
-/// Largest stress in a wire over the points of a push, by its tension on either side and its bending moment [Pa].   theory.md (W.35)
+/// Largest stress in a wire over the points of a push, by its largest tension and its largest bending moment [Pa].   theory.md (W.35)
 [[nodiscard]] inline double largest_stress(const wire::WireSpecification& wire, const std::vector<PushPoint>& points) {
   double stress = 0.0;
   for (const PushPoint& p : points)
-    stress = std::max(stress, wire::largest_stress(wire, std::max(p.tension_left, p.tension_right), p.bending_moment));
+    stress = std::max(stress, wire::largest_stress(wire, p.largest_tension, p.bending_moment));
   return stress;
 }
 

@@ -2,8 +2,10 @@
 
 #include "coupling/statics/contact_forces.hpp"
 #include "coupling/statics/out_of_plane.hpp"
+#include "wire/end_tangents.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +14,7 @@ namespace snare::coupling {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 constexpr int history_length = 4;  // points behind the predictor: a cubic
 
@@ -206,10 +209,14 @@ void PlanarPush::record(double travel) {
     // A search for an event or a first point: the last assembly was elsewhere.
     system_.assemble(point_, workspace_.system, workspace_.by_parameter);
   }
-  const MountForces mounts = mount_forces(system_, state, point_);
-  p.tension_left = mounts.tension_left;
-  p.tension_right = mounts.tension_right;
-  p.imbalance = (mounts.total + force).norm();
+  const auto in_space = [](const std::array<Vector2d, 2>& of) {
+    return std::array{Vector3d(of[0].x(), of[0].y(), 0.0), Vector3d(of[1].x(), of[1].y(), 0.0)};
+  };
+  const std::array<Vector2d, 2> mounts = mount_forces(system_, point_);
+  const wire::PlanarRod& rod = system_.rod();
+  put_end_forces(in_space(mounts), in_space(wire::end_tangents(rod, state)), rod.tensions(state), p);
+  const Vector2d weight = (state.controls[2] - state.controls[0]) * rod.properties().weight;
+  p.imbalance = (mounts[0] + mounts[1] + force + weight).norm();
   const PusherForces contact = pusher_forces(system_, state, point_);
   p.normal_force = contact.normal;
   p.friction_force = contact.friction;

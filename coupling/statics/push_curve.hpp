@@ -38,8 +38,13 @@ struct PushPoint {
   double normal_force = 0.0;      ///< of the pusher on the wire, all contact points together [N], >= 0
   double friction_force = 0.0;    ///< along the wire, the same way [N]; |friction| <= mu normal
   double axial_force = 0.0;       ///< on the pusher along z, where it is tilted [N]
-  double tension_left = 0.0;      ///< axial force in the wire at the left mount, tension positive [N]
+  double tension_left = 0.0;      ///< axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
   double tension_right = 0.0;     ///< at the right mount [N]
+  double largest_tension = 0.0;   ///< along the wire, its ends included, tension positive [N]
+  /// Force of a mount, or of a support, on the wire [N]: along the chord from the left mount to the right one; across it, in
+  /// the sense of the bulge; along z, out of their plane. The two, the pusher's force and the weight add up to zero.
+  double reaction_along_left = 0.0, reaction_across_left = 0.0, reaction_z_left = 0.0;
+  double reaction_along_right = 0.0, reaction_across_right = 0.0, reaction_z_right = 0.0;
   /// Material coordinate of the (middle of the) contact from the left mount [m]
   double contact_coordinate = 0.0;
   double bending_moment = 0.0;  ///< largest in the wire [N m], >= 0; of a push in space not known, 0

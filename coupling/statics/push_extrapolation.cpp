@@ -9,9 +9,20 @@ namespace snare::coupling {
 
 namespace {
 
-/// The values that are extrapolated, beside the derivatives of the force.
-constexpr std::array extrapolated_values{&PushPoint::force, &PushPoint::transverse_force, &PushPoint::tension_left,
-                                         &PushPoint::tension_right, &PushPoint::contact_coordinate};
+/// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them: their
+/// balance holds after extrapolation as it does on every mesh.
+constexpr std::array extrapolated_values{&PushPoint::force,
+                                         &PushPoint::transverse_force,
+                                         &PushPoint::axial_force,
+                                         &PushPoint::tension_left,
+                                         &PushPoint::tension_right,
+                                         &PushPoint::contact_coordinate,
+                                         &PushPoint::reaction_along_left,
+                                         &PushPoint::reaction_across_left,
+                                         &PushPoint::reaction_z_left,
+                                         &PushPoint::reaction_along_right,
+                                         &PushPoint::reaction_across_right,
+                                         &PushPoint::reaction_z_right};
 
 /// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
 struct CoarsePoint {

@@ -12,9 +12,26 @@ namespace {
 
 bool is_finite(const PushPoint& p) {
   const auto finite = [](double value) { return std::isfinite(value); };
-  for (const double value : {p.travel, p.force, p.transverse_force, p.normal_force, p.friction_force, p.axial_force,
-                             p.tension_left, p.tension_right, p.contact_coordinate, p.bending_moment, p.wrapped_length,
-                             p.energy, p.dissipated, p.imbalance, p.viscous_stiffness}) {
+  for (const double value : {p.travel,
+                             p.force,
+                             p.transverse_force,
+                             p.normal_force,
+                             p.friction_force,
+                             p.axial_force,
+                             p.tension_left,
+                             p.tension_right,
+                             p.contact_coordinate,
+                             p.bending_moment,
+                             p.wrapped_length,
+                             p.energy,
+                             p.dissipated,
+                             p.imbalance,
+                             p.viscous_stiffness,
+                             p.largest_tension,
+                             p.reaction_along_left,
+                             p.reaction_across_left,
+                             p.reaction_along_right,
+                             p.reaction_across_right}) {
     if (!finite(value)) return false;
   }
   return std::all_of(p.force_by.begin(), p.force_by.end(), finite);

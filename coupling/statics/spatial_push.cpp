@@ -1,8 +1,10 @@
 #include "coupling/statics/spatial_push.hpp"
 
+#include "coupling/statics/contact_forces.hpp"
 #include "coupling/statics/out_of_plane.hpp"
 #include "coupling/statics/push_path.hpp"
 #include "coupling/statics/spatial_contact.hpp"
+#include "wire/end_tangents.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +52,7 @@ class SpatialPush final : public PushPath {
   [[nodiscard]] double force_along(const numerics::PathPoint& at) const {
     return SpatialPushSystem::force(at).dot(contact_->pin().motion);
   }
-  void put_tensions(PushPoint& p) const;
+  void put_mounts(PushPoint& p) const;
 
   const PushProblem& test_;
   int coarsening_;
@@ -220,16 +222,16 @@ StepOutcome SpatialPush::step_to(double travel) {
   return {StepOutcome::Kind::taken, settled.report};
 }
 
-void SpatialPush::put_tensions(PushPoint& p) const {
-  const std::array<Vector3d, 2>& reaction = contact_->system().mount_reactions();
-  p.tension_left = -reaction[0].dot(contact_->rod().properties().left.direction);
-  p.tension_right = reaction[1].dot(contact_->rod().properties().right.direction);
+void SpatialPush::put_mounts(PushPoint& p) const {
+  const SpatialPushSystem& system = contact_->system();
+  const wire::SpatialState s = system.state(point_);
+  put_end_forces(system.mount_reactions(), wire::end_tangents(contact_->rod(), s), contact_->rod().tensions(s), p);
 }
 
 // No force at first touch; the rest of the row is that of the unloaded wire.
 bool SpatialPush::record_touch() {
   PushPoint p;
-  put_tensions(p);
+  put_mounts(p);
   p.contact_coordinate = point_.border[SpatialPushSystem::Rows::coordinate];
   p.energy = contact_->energy(point_);
   curve_.points.push_back(p);
@@ -249,7 +251,7 @@ void SpatialPush::record(double travel) {
   p.normal_force = g.normal_force;
   p.friction_force = g.friction.norm();
   p.axial_force = force.z();
-  put_tensions(p);
+  put_mounts(p);
   const std::array<Vector3d, 2>& reaction = system.mount_reactions();
   const Vector3d weight = (s.controls[2] - s.controls[0]) * contact_->rod().properties().weight;
   p.imbalance = (reaction[0] + reaction[1] + force + weight).norm();

@@ -167,14 +167,14 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   const std::size_t readings = sampling.readings.empty() ? at.size() : (whole ? sampling.readings.size() : 0);
   const std::vector<double> speed = flows ? speeds(series) : std::vector<double>();
   result.force.assign(readings, reading.force_offset);
-  result.tension.assign(readings, 0.0);
+  result.mount_pull.assign(readings, 0.0);
   if (push.examine_rates) result.viscous_stiffness.assign(readings, 0.0);
   result.force_by.setZero(static_cast<Eigen::Index>(readings), numbers);
   // F = offset + gain (F_wire + tau v G), v the speed and G the viscous stiffness: theory.md (I.2)
   const auto add = [&](std::size_t i, const coupling::PushPoint* p, double weight) {
     if (p == nullptr) return;
     result.force[i] += weight * reading.force_gain * p->force;
-    result.tension[i] += weight * p->tension_left;
+    result.mount_pull[i] -= weight * p->reaction_along_left;
     if (push.examine_rates) result.viscous_stiffness[i] += weight * p->viscous_stiffness;
     if (flows) {
       result.force[i] += weight * reading.force_gain * reading.relaxation_time * speed[i] * p->viscous_stiffness;

@@ -19,7 +19,7 @@ struct Prediction {
   coupling::ExtrapolatedCurve curve;      ///< at the travels after first touch, in order
   std::vector<double> force;              ///< recorded force [N], one a displacement that was reached
   Eigen::MatrixXd force_by;               ///< d force / d number: a row a displacement, a column a variation asked for
-  std::vector<double> tension;            ///< in the wire at the left mount, one a displacement [N]
+  std::vector<double> mount_pull;         ///< of the wire on the left mount along the chord, one a displacement [N]
   std::vector<double> viscous_stiffness;  ///< as PushPoint's, one a displacement; only where it was asked for [N/m]
   ReadingModel reading;                   ///< as it was predicted with
   std::size_t before_touch = 0;           ///< points that lie before first touch: they have no entry in `curve`

@@ -122,7 +122,7 @@ Prediction part_of(const Prediction& whole, const Series& merged, const Series& 
   for (const Eigen::Index row : rows) {
     const auto i = static_cast<std::size_t>(row);
     result.force.push_back(whole.force[i]);
-    result.tension.push_back(whole.tension[i]);
+    result.mount_pull.push_back(whole.mount_pull[i]);
     if (!whole.viscous_stiffness.empty()) result.viscous_stiffness.push_back(whole.viscous_stiffness[i]);
   }
   result.force_by = whole.force_by(rows, Eigen::all);

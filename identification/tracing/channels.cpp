@@ -89,12 +89,12 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
   const Evaluation smooth = model.evaluate(current.settings, {&span, &zero});
   if (smooth.complete) {
     if (!supports) {
-      const auto tension = [&](std::size_t k, Eigen::Index i) {
-        return current.evaluation.predictions[k].tension[static_cast<std::size_t>(i)];
+      const auto pull = [&](std::size_t k, Eigen::Index i) {
+        return current.evaluation.predictions[k].mount_pull[static_cast<std::size_t>(i)];
       };
       add(function_of(
-              data, tension, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
-          Channel::mount, "tension at the mount [N]", "moves the mounts apart [mm]", 1e-3, span.key);
+              data, pull, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
+          Channel::mount, "pull on the mount along the chord [N]", "moves the mounts apart [mm]", 1e-3, span.key);
     }
     add(function_of(
             data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0),
