@@ -1,5 +1,6 @@
 #include "reduction/wire_file.hpp"
 
+#include "base/decimal.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "coupling/statics/spatial_push.hpp"
@@ -86,10 +87,11 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   if (slack > 0.0) nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
   if (const auto asked = read_interval(table, "slack_mm", Range::from(-1e3, 1e5))) {
     nominal.slack = *asked;
-    if (span + asked->low < shortest_length * span)
+    if (base::exceeds(shortest_length * span, span + asked->low))
       table.fail("slack_mm", fmt::format("must be >= {}: a wire at most 1 % shorter than the span of {} mm",
                                          in_mm((shortest_length - 1.0) * span), in_mm(span)));
-    if (!(asked->low <= slack && slack <= asked->high))
+    const double length = nominal.test.wire.length;
+    if (base::exceeds(asked->low, slack, {span, length}) || base::exceeds(slack, asked->high, {span, length}))
       table.fail("slack_mm", fmt::format("must contain that of the wire, {} mm", in_mm(slack)));
   }
 }

@@ -1,5 +1,6 @@
 #include "scenario/motion_reader.hpp"
 
+#include "base/decimal.hpp"
 #include "base/units.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +47,8 @@ multibody::RigidBodyProperties read_body_properties(const TomlTable& table) {
   properties.mass = table.number("mass_kg", Range::above(0.0, 1e7));
   if (const auto inertia = read_vector(table, "inertia_kg_m2", Range::above(0.0, 1e12), 1.0)) {
     properties.inertia = inertia->asDiagonal();
-    if (2.0 * inertia->maxCoeff() > inertia->sum())
+    const double largest = inertia->maxCoeff();
+    if (base::exceeds(largest, inertia->sum() - largest))
       table.fail("inertia_kg_m2", "must satisfy the triangle inequality: none larger than the other two together");
   }
   return properties;
@@ -55,7 +57,7 @@ multibody::RigidBodyProperties read_body_properties(const TomlTable& table) {
 void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   o.duration = root.number("duration_s", durations);
   o.output_interval = root.number_or("output_interval_s", 1e-3, durations);
-  if (o.duration / o.output_interval > most_outputs)
+  if (base::exceeds(o.duration / o.output_interval, most_outputs))
     root.fail("output_interval_s", fmt::format("gives more than {:g} lines", most_outputs));
   const TomlTable solver = root.table("solver");
   const auto tolerance = [&solver](std::string_view key, double& value, double most) {
@@ -80,7 +82,7 @@ MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions&
   MotionOutput output;
   output.paraview = table.boolean_or("paraview", output.paraview);
   o.checkpoint_interval = table.number_or("checkpoint_interval_s", o.duration / 10.0, durations);
-  if (o.duration / o.checkpoint_interval > most_outputs)
+  if (base::exceeds(o.duration / o.checkpoint_interval, most_outputs))
     table.fail("checkpoint_interval_s", fmt::format("gives more than {:g} checkpoints", most_outputs));
   output.checkpoint_wall_time =
       table.number_or("checkpoint_wall_time_s", output.checkpoint_wall_time, Range::from(0.0, 1e6));

@@ -1,5 +1,6 @@
 #include "scenario/push_reader.hpp"
 
+#include "base/decimal.hpp"
 #include "base/units.hpp"
 
 #include <fmt/format.h>
@@ -75,7 +76,7 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held) {
   wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
   read_modulus(table, held, wire);
   wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
-  if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e5))) {
+  if (const auto stress = table.optional_number("yield_stress_MPa", Range::from(1.0, 1e9))) {
     wire::Yielding yielding;
     yielding.yield_stress = 1e6 * *stress;
     yielding.hardening_ratio =
@@ -181,7 +182,7 @@ std::array<double, 3> read_gravity(const TomlTable& table) {
 // What no key can say alone. A number that was refused is NaN, and no comparison with it holds.
 void check_length_and_diameter(const wire::WireSpecification& wire, double span, bool rests, const TomlTable& table) {
   const double shortest = (rests ? 1.0 : shortest_length) * span;
-  if (wire.length < shortest)
+  if (base::exceeds(shortest, wire.length))
     table.fail("length_mm", rests ? fmt::format("must be >= {}, the span of the supports", in_mm(span))
                                   : fmt::format("must be >= {}, {:g} % of the span of {} mm", in_mm(shortest),
                                                 100.0 * shortest_length, in_mm(span)));
@@ -232,7 +233,7 @@ void require_simple_motion(const PushTables& tables, const coupling::PushProblem
 
 std::optional<std::string> position_problem(double position, double span) {
   const double margin = mount_margin * span;
-  if (position >= margin && position <= span - margin) return std::nullopt;
+  if (!base::exceeds(margin, position) && !base::exceeds(position, span - margin, {span})) return std::nullopt;
   return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount", in_mm(margin),
                      in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
 }

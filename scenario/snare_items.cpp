@@ -51,10 +51,9 @@ struct Snares::Item {
   std::optional<SnareJoint> carriage = {};
   std::optional<DeclaredWire> wire = {};
 
-  /// Of the place of a wire on the fixed ring.
+  /// Of the place of a wire on the fixed ring, to either side that the ring turns.                  theory.md (M.24)
   [[nodiscard]] double azimuth(std::size_t k) const {
-    return first_azimuth +
-           sense * 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
+    return first_azimuth + 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
   }
 
   /// A ring with a spoke at the place of every wire, so that its turning can be seen.

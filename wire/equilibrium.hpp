@@ -29,6 +29,20 @@ struct EquilibriumReport : numerics::SolveReport {
   double pivot_ratio = 0.0;  ///< smallest over largest |pivot|: near 0 means a neutral direction
 };
 
+/// EA [N] and EI [N m^2] of a section none of whose sliders slides: what round-off and the first tangent have to do with.
+struct StickingStiffness {
+  double axial = 0.0, bending = 0.0;
+};
+template <class Properties>
+StickingStiffness sticking_stiffness(const Properties& p) {
+  StickingStiffness all{p.axial_stiffness, p.bending_stiffness};
+  if constexpr (requires { p.axial_sliders; }) {
+    for (const SliderElement& slider : p.axial_sliders) all.axial += slider.stiffness;
+    for (const SliderElement& slider : p.bending_sliders) all.bending += slider.stiffness;
+  }
+  return all;
+}
+
 /// Force below which a residual of the rod is round-off or of no account [N].
 ///
 /// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the
@@ -40,6 +54,13 @@ inline double force_tolerance(double tolerance, double bending_stiffness, double
   const double round_off = std::numeric_limits<double>::epsilon() * length *
                            (0.5 * axial_stiffness / h + 2.0 * bending_stiffness / (h * h * h));
   return std::max(tolerance * scale, round_off);
+}
+
+/// Force that the last places of a coordinate of about `length` [m] make in the spring of a mount that gives [N]: what a residual of
+/// its row cannot fall below. The mount's place is then known to some 1e-16 of the length, as it is of a rigid one.
+/// stiffness [N/m]; infinite, or of a free end: 0.
+inline double mount_round_off(double stiffness, double length) {
+  return std::isinf(stiffness) ? 0.0 : 4.0 * std::numeric_limits<double>::epsilon() * length * stiffness;
 }
 
 /// Finds an equilibrium of a rod that only its mounts and its weight hold.            theory.md (W.9)
@@ -58,19 +79,23 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
   for (int e = 0; e < rod.mesh().edges(); ++e) {
     shortest = std::min(shortest, rod.mesh().rest_length(e, state.controls));
   }
-  const double ea = rod.properties().axial_stiffness;
-  const double ei = rod.properties().bending_stiffness;
+  const auto [ea, ei] = sticking_stiffness(rod.properties());
   double shift = 0.0;
   double previous = std::numeric_limits<double>::max();
 
   // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times an edge.
   const auto is_angle = [](Eigen::Index i) { return i % Rod::block >= Rod::dimension; };
+  const std::array<double, 2> mounts{mount_round_off(rod.properties().left.translational_stiffness, length),
+                                     mount_round_off(rod.properties().right.translational_stiffness, length)};
+  const Eigen::Index right_row = Rod::block * rod.mesh().edges();
   const auto evaluate = [&](const State& at) {
     rod.assemble(at, no_controls, assembly);
     rod.hold_mounts(assembly);
     double largest = 0.0;
     for (Eigen::Index i = 0; i < assembly.gradient.size(); ++i) {
-      const double residual = std::abs(assembly.gradient[i]) / (is_angle(i) ? shortest : 1.0);
+      const double round_off = i == 0 ? mounts[0] : (i == right_row ? mounts[1] : 0.0);
+      const double force = std::abs(assembly.gradient[i]) - round_off;
+      const double residual = force / (is_angle(i) ? shortest : 1.0);
       largest = residual <= largest ? largest : residual;  // keeps a NaN
     }
     return largest;

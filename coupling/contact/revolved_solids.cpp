@@ -97,7 +97,7 @@ Profile grapple_profile(const GrappleShaft& s) {
   d.require(s.cam_length > 0.0, "cam_length", s.cam_length, "must be > 0");
   d.require(s.end_radius > 0.0 && s.end_radius < s.cam_radius, "end_radius", s.end_radius,
             "must be > 0 and < cam_radius");
-  d.require(s.bulge >= 0.0 && s.bulge <= 0.5 * chord, "bulge", s.bulge,
+  d.require(s.bulge >= 0.0 && s.bulge <= with_round_off * 0.5 * chord, "bulge", s.bulge,
             fmt::format("must be >= 0 and <= {}, half its chord", 0.5 * chord));
   d.raise();
   // Radius of an arc of height b over a chord c: (c^2/4 + b^2)/(2 b).

@@ -138,9 +138,10 @@ void PushSystem::take_reactions(const wire::PlanarState& s, const numerics::Path
   for (const wire::PlanarEnd* end : {&rod_->properties().left, &rod_->properties().right}) {
     // A mount that gives carries its force in the spring, which is part of the gradient.
     if (end->kind == wire::PlanarEnd::Kind::free || std::isinf(end->translational_stiffness)) continue;
+    // By the wire's side of the balance: the spring of a stiff mount gives less than the last places of x can show.
     const bool left = end == &rod_->properties().left;
     const double x = s.q[left ? 0 : last];
-    reactions_[left ? 0 : 1].x() = -end->translational_stiffness * (x - end->position.x());
+    reactions_[left ? 0 : 1].x() -= end->translational_stiffness * (x - end->position.x());
   }
   for (std::size_t k = 0; k < mounts.size(); ++k) {
     if (!mounts[k].feeds()) reactions_[mounts[k].right ? 1 : 0].x() = at.border[mount_row(k)];
@@ -389,11 +390,17 @@ double PushSystem::error(const numerics::PathPoint& at, const numerics::Bordered
     largest = std::max(largest, at.border.segment<2>(sliding_rows(k).force).norm());
   }
   const double tension = std::max(reactions_[0].norm(), reactions_[1].norm());
-  const double force = wire::force_tolerance(1e-10, p.bending_stiffness, p.axial_stiffness, length_, shortest_edge_,
-                                             std::max(largest, tension));
+  const auto [axial, bending] = wire::sticking_stiffness(p);
+  const double force =
+      wire::force_tolerance(1e-10, bending, axial, length_, shortest_edge_, std::max(largest, tension));
   const double position = 1e-12 * length_;
   const Eigen::VectorXd& residual = system.border_residual;
-  double error = system.band_residual.lpNorm<Eigen::Infinity>() / force;
+  const Eigen::Index right = 2 * rod_->mesh().edges();
+  const Eigen::VectorXd& band = system.band_residual;
+  double error =
+      std::max({std::abs(band[0]) / (force + wire::mount_round_off(p.left.translational_stiffness, length_)),
+                std::abs(band[right]) / (force + wire::mount_round_off(p.right.translational_stiffness, length_)),
+                band.segment(1, right - 1).lpNorm<Eigen::Infinity>() / force, std::abs(band[right + 1]) / force});
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     const SlidingContact& contact = sliding[k];
     const SlidingRows rows = sliding_rows(k);

@@ -76,7 +76,8 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
   const std::array<const wire::SpatialEnd*, 2> ends{&rod_->properties().left, &rod_->properties().right};
   for (std::size_t k = 0; k < 2; ++k) {
     if (std::isinf(ends[k]->translational_stiffness)) continue;
-    reactions_[k].x() = -ends[k]->translational_stiffness * (s.q[k == 0 ? 0 : last] - ends[k]->position.x());
+    // By the wire's side of the balance, as in PushSystem.
+    reactions_[k].x() -= ends[k]->translational_stiffness * (s.q[k == 0 ? 0 : last] - ends[k]->position.x());
   }
   rod_->hold_mounts(assembly_);
   system.band_residual = assembly_.gradient;
@@ -196,7 +197,9 @@ double SpatialPushSystem::error(const numerics::PathPoint& at, const numerics::B
   double error = 0.0;
   for (Eigen::Index i = 0; i < system.band_residual.size(); ++i) {
     // Rows of the edge angles are moments: a force times the edge is as good as a force.
-    const double allowed = i % block == block - 1 ? balance * shortest_edge_ : balance;
+    double allowed = i % block == block - 1 ? balance * shortest_edge_ : balance;
+    if (i == 0) allowed += wire::mount_round_off(p.left.translational_stiffness, length_);
+    if (i == block * rod_->mesh().edges()) allowed += wire::mount_round_off(p.right.translational_stiffness, length_);
     error = std::max(error, std::abs(system.band_residual[i]) / allowed);
   }
   const bool open = !pin.pressed;

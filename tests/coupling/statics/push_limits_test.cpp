@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace snare::coupling {
 namespace {
@@ -52,6 +53,81 @@ TEST(PushLimits, StopsBetweenPoints) {
   const PushCurve curve = solve_push(thread(1e-4, 147.5 * mm, 12.0 * mm), options);
   EXPECT_EQ(curve.report.termination, numerics::Termination::interrupted);
   EXPECT_EQ(asked, 4);
+}
+
+/// Forces of a push [N]; none after a failure, which is reported.
+std::vector<double> forces_of(const PushProblem& test, int elements = 128) {
+  const PushCurve curve = solve_push(test, mesh(elements));
+  EXPECT_TRUE(curve.report.usable()) << curve.report.message;
+  std::vector<double> forces;
+  for (const PushPoint& p : curve.points) forces.push_back(p.force);
+  return forces;
+}
+
+// The difference to rigid mounts falls as the compliance, and from 1e11 N/m on the last places of the right mount's coordinate carry
+// more than a millinewton.
+TEST(PushLimits, StiffMountsGiveTheRigidAnswer) {
+  for (const wire::MountKind kind : {wire::MountKind::clamped, wire::MountKind::pinned}) {
+    for (const double tilt : {0.0, 0.1}) {
+      PushProblem test = test::declared_wire(65.0 * mm, 6.0 * mm);
+      test.mount.kind = kind;
+      test.pusher.tilt = tilt;
+      test.travel = test::travel_to(3.0 * mm, 3);
+      const std::vector<double> rigid = forces_of(test);
+      ASSERT_EQ(rigid.size(), 4u);
+      double before = 0.0;
+      for (const double stiffness : {1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e18}) {
+        test.mount.translational_stiffness = stiffness;
+        const std::vector<double> forces = forces_of(test);
+        ASSERT_EQ(forces.size(), 4u) << stiffness;
+        const double difference = (rigid[3] - forces[3]) / rigid[3];
+        // Newton's tolerance and the coordinates' round-off: 1e-8 of forces that are differences of larger ones.
+        if (stiffness > 1e8 && stiffness < 1e16)
+          EXPECT_NEAR(difference, 0.1 * before, 0.05 * 0.1 * before + 1e-8) << stiffness;
+        if (stiffness > 1e16) EXPECT_NEAR(difference, 0.0, 1e-8);
+        before = difference;
+      }
+      test.mount.translational_stiffness.reset();
+      if (kind == wire::MountKind::pinned) continue;
+      for (const double stiffness : {1e9, 1e12, 1e15, 1e18}) {
+        test.mount.rotational_stiffness = stiffness;
+        EXPECT_NEAR(forces_of(test)[3], rigid[3], 1e-8 * rigid[3]) << stiffness;
+      }
+    }
+  }
+}
+
+// Metal that does not yield in the push is elastic metal, however its section is made up of fibres.
+TEST(PushLimits, HighYieldStressGivesTheElasticAnswer) {
+  struct Case {
+    wire::MountKind kind;
+    double diameter, length, span, position, friction, to;
+    int elements;
+  };
+  using enum wire::MountKind;
+  for (const Case& c :
+       {Case{clamped, 1.5, 180.0, 175.0, 65.0, 0.0, 2.0, 128}, Case{pinned, 0.5, 105.0, 100.0, 48.2, 0.0, 4.0, 128},
+        Case{pinned, 1.5, 180.0, 175.0, 78.8, 0.0, 0.5, 512}, Case{clamped, 0.5, 251.0, 250.0, 90.6, 0.2, 2.0, 128},
+        Case{pinned, 0.3, 178.0, 175.0, 138.6, 0.0, 4.0, 128}}) {
+    PushProblem test = test::declared_wire(c.position * mm, 0.0);
+    test.mount.kind = c.kind;
+    test.mount.span = c.span * mm;
+    test.wire.bending_stiffness_override.reset();
+    test.wire.axial_stiffness_override.reset();
+    test.wire.diameter = c.diameter * mm;
+    test.wire.length = c.length * mm;
+    test.pusher.friction = c.friction;
+    test.travel = test::travel_to(c.to * mm, 4);
+    const std::vector<double> elastic = forces_of(test, c.elements);
+    for (const double stress : {1e11, 1e13, 1e15}) {
+      test.wire.yielding = wire::Yielding{stress, 0.02};
+      const std::vector<double> forces = forces_of(test, c.elements);
+      ASSERT_EQ(forces.size(), elastic.size()) << c.diameter << " " << stress;
+      // Newton's tolerance and round-off: forces are differences of tensions that are larger.
+      for (std::size_t i = 0; i < forces.size(); ++i)
+        EXPECT_NEAR(forces[i], elastic[i], 1e-6 * elastic.back()) << c.diameter << " " << stress;
+    }
+  }
 }
 
 }  // namespace
