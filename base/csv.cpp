@@ -1,6 +1,7 @@
 #include "base/csv.hpp"
 
 #include "base/byte_order_mark.hpp"
+#include "base/csv_header.hpp"
 #include "base/errors.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -66,18 +68,11 @@ std::string_view without_comment(std::string_view line) noexcept {
   return line;
 }
 
-/// The cell that starts at line[at]; moves `at` behind its comma, or to npos behind the last cell.
-std::string_view next_cell(std::string_view line, std::size_t& at) noexcept {
-  std::size_t end = at;
-  bool quoted = false;
-  for (; end < line.size(); ++end) {
-    if (line[end] == '"') quoted = !quoted;
-    if (line[end] == ',' && !quoted) break;
-  }
-  std::string_view cell = trimmed(line.substr(at, end - at));
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
-  at = end < line.size() ? end + 1 : std::string_view::npos;
-  return cell;
+/// Whether a number with one comma may have it between thousands: 1,234 but not 0,123, 12,5 or 1234,5.
+bool may_group_thousands(std::string_view number) noexcept {
+  if (!number.empty() && (number.front() == '-' || number.front() == '+')) number.remove_prefix(1);
+  const std::size_t comma = number.find(',');
+  return comma >= 1 && comma <= 3 && number.front() != '0' && number.size() - comma == 4;
 }
 
 /// Takes the lines of one file, one after the other.
@@ -99,10 +94,10 @@ class CsvParser {
     if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
     if (!known_ascii && !check_utf8(text)) return;
     text = without_comment(text);
-    if (trimmed(text).empty()) return;
-    if (!has_header_)
-      header(text);
-    else
+    if (trimmed(text).empty() || text == "\x1A") return;  // the latter ends files of DOS
+    if (!header_)
+      seek_header(text);
+    else if (!std::exchange(below_header_, false) || !units(text))
       data(text);
   }
 
@@ -123,8 +118,11 @@ class CsvParser {
   }
 
   [[nodiscard]] CsvTable finish() {
-    if (problems_.empty() && !has_header_) fail(0, "", "", "is empty, must have a header that names the columns");
+    if (problems_.empty() && !header_) report_missing_header();
     if (problems_.empty() && table_.rows == 0) fail(0, "", "", "has a header but no rows");
+    if (problems_.empty() && grouped_ && !comma_is_decimal_)
+      fail(grouped_->line, grouped_->key, grouped_->value,
+           "may have its comma before decimals or between thousands: must have a decimal point");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(table_);
   }
@@ -144,61 +142,92 @@ class CsvParser {
   bool check_utf8(std::string_view text) {
     const std::size_t at = find_invalid_utf8(text);
     if (at == std::string_view::npos) return true;
-    fail(line_, "", "", fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[at])));
-    if (!has_header_) stopped_ = true;
+    const bool two_bytes = line_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"));
+    fail(line_, "", "",
+         two_bytes
+             ? "is UTF-16, must be UTF-8: save it as CSV UTF-8"
+             : fmt::format("byte 0x{:02x} is not UTF-8: save the file as UTF-8", static_cast<unsigned char>(text[at])));
+    if (!header_) stopped_ = true;
     return false;
   }
 
-  void header(std::string_view text) {
-    has_header_ = true;
-    std::vector<std::string> names;
-    for (std::size_t at = 0; at != std::string_view::npos;) names.emplace_back(next_cell(text, at));
+  void seek_header(std::string_view text) {
+    if (first_lines_.empty() && !separator_) {
+      separator_ = declared_separator(trimmed(text));
+      if (separator_) return;
+    }
+    header_ = header_of(text, separator_, columns_);
+    if (header_) return take_header();
+    first_lines_.emplace_back(line_, text);
+    if (holds_numbers(text) || first_lines_.size() == csv_header_limit) report_missing_header();
+  }
+
+  void report_missing_header() {
+    if (first_lines_.empty()) return fail(0, "", "", "is empty, must have a header that names the columns");
+    for (InputProblem& problem : missing_columns(name_, first_lines_, separator_, columns_))
+      problems_.push_back(std::move(problem));
+    stopped_ = true;  // what follows cannot be told apart
+  }
+
+  void take_header() {
+    std::vector<std::string>& names = header_->names;
+    while (names.size() > 1 && names.back().empty()) names.pop_back();
     slots_.assign(names.size(), unused);
     for (std::size_t slot = 0; slot < columns_.size(); ++slot) {
       const std::string& wanted = columns_[slot].name;
       const auto first = std::find(names.begin(), names.end(), wanted);
-      if (first == names.end()) {
-        if (columns_[slot].presence == CsvColumn::Presence::required) missing_column(wanted, names);
-        continue;
-      }
+      if (first == names.end()) continue;
       if (std::find(first + 1, names.end(), wanted) != names.end())
         fail(line_, wanted, "", "the column is there twice");
+      if (const auto unit = unit_in_name(wanted))
+        if (auto problem = unit_problem(columns_[slot], *unit)) fail(line_, wanted, "", std::move(*problem));
       same_[slot] = std::exchange(slots_[static_cast<std::size_t>(first - names.begin())], slot);
     }
     stopped_ = stopped_ || !problems_.empty();  // what follows cannot be told apart
   }
 
-  void missing_column(const std::string& wanted, const std::vector<std::string>& names) {
-    std::string hint;
-    double number = 0.0;
-    const std::string& first = names.front();
-    if (names.size() == 1 && first.find_first_of(";\t\r") != std::string::npos)
-      hint = first.find('\r') != std::string::npos ? "; lines must end in LF or CRLF"
-                                                   : "; columns must be separated by commas";
-    else if (std::from_chars(first.data(), first.data() + first.size(), number).ec == std::errc())
-      hint = "; the first line that is not a comment must name the columns";
-    fail(line_, wanted, "", "no such column" + hint);
+  /// Whether the line below the header has units in the place of numbers; they are compared with what is asked.
+  bool units(std::string_view text) {
+    const std::vector<std::string> cells = cells_of(text, header_->separator);
+    if (cells.size() < slots_.size()) return false;
+    bool any = false;
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (slots_[i] == unused) continue;
+      if (!cells[i].empty() && !unit_of(cells[i])) return false;
+      any = any || !cells[i].empty();
+    }
+    if (!any) return false;
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      for (std::size_t slot = slots_[i]; slot != unused && !cells[i].empty(); slot = same_[slot])
+        if (auto problem = unit_problem(columns_[slot], *unit_of(cells[i])))
+          fail(line_, columns_[slot].name, "", std::move(*problem));
+    }
+    stopped_ = stopped_ || !problems_.empty();
+    return true;
   }
 
   void data(std::string_view text) {
-    const bool plain = text.find('"') == std::string_view::npos;
+    const char separator = header_->separator;
+    const bool plain = separator != ' ' && text.find('"') == std::string_view::npos;
     const std::size_t problems_before = problems_.size();
-    std::size_t cells = 0;
+    std::size_t cells = 0, filled = 0;  // how many there are; how many up to the last that is not empty
     for (std::size_t at = 0; at != std::string_view::npos; ++cells) {
       std::string_view cell;
       if (plain) {
-        const std::size_t comma = text.find(',', at);
-        cell = trimmed(text.substr(at, comma == std::string_view::npos ? comma : comma - at));
-        at = comma == std::string_view::npos ? comma : comma + 1;
+        const std::size_t end = text.find(separator, at);
+        cell = trimmed(text.substr(at, end == std::string_view::npos ? end : end - at));
+        at = end == std::string_view::npos ? end : end + 1;
       } else {
-        cell = next_cell(text, at);
+        cell = next_cell(text, separator, at);
       }
+      if (!cell.empty()) filled = cells + 1;
       if (cells >= slots_.size()) continue;
       for (std::size_t slot = slots_[cells]; slot != unused; slot = same_[slot]) number(cell, slot);
     }
-    if (cells != slots_.size()) {
+    if (filled == 0 || filled > slots_.size() || cells < slots_.size()) {
       problems_.resize(problems_before);  // the cells were taken for the wrong columns
       stopped_ = false;
+      if (filled == 0) return;
       fail(line_, "", "", fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
     }
     if (problems_.size() != problems_before) return;
@@ -207,9 +236,37 @@ class CsvParser {
     ++table_.rows;
   }
 
+  /// The digits with a decimal point, of a cell that has a comma; empty, after its report, where it cannot be read.
+  std::string_view with_point(std::string_view cell, const CsvColumn& column) {
+    const bool other =
+        cell.find('.') != std::string_view::npos || cell.find(',', cell.find(',') + 1) != std::string_view::npos;
+    if (other || point_seen_) {
+      fail(line_, column.name, shown(cell),
+           other ? "must be a number without separators between thousands"
+                 : "has a comma, numbers before it a decimal point: must have a decimal point and no other separator");
+      return {};
+    }
+    if (!may_group_thousands(cell))
+      comma_is_decimal_ = true;
+    else if (!grouped_)
+      grouped_ = {name_, line_, column.name, shown(cell), ""};
+    digits_ = cell;
+    digits_[cell.find(',')] = '.';
+    return digits_;
+  }
+
   void number(std::string_view cell, std::size_t slot) {
     const CsvColumn& column = columns_[slot];
     std::string_view digits = cell;
+    if (cell.find(',') != std::string_view::npos) {
+      digits = with_point(cell, column);
+      if (digits.empty()) return;
+    } else if (cell.find('.') != std::string_view::npos) {
+      if (comma_is_decimal_ || grouped_)
+        return fail(line_, column.name, shown(cell),
+                    "has a point, numbers before it a decimal comma: must have a comma");
+      point_seen_ = true;
+    }
     if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     double value = 0.0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -236,23 +293,41 @@ class CsvParser {
   std::vector<double> row_;
   CsvTable table_;
   std::vector<InputProblem> problems_;
+  CsvLines first_lines_;           // while the header is sought
+  std::optional<char> separator_;  // that the file declares
+  std::optional<CsvHeader> header_;
+  std::optional<InputProblem> grouped_;  // first number whose comma may stand between thousands
+  std::string digits_;                   // of a number with a decimal comma
   int line_ = 0;
-  bool has_header_ = false;
+  bool below_header_ = true;
+  bool point_seen_ = false;
+  bool comma_is_decimal_ = false;
   bool stopped_ = false;
 };
 
-/// Feeds the complete lines of `text`; returns how many bytes they had.
-std::size_t feed_lines(CsvParser& parser, std::string_view text) {
+/// Feeds the complete lines of `text`, which end in CR, LF or both; `last`: what follows the last of them is a line as well. Returns
+/// how many bytes they had.
+std::size_t feed_lines(CsvParser& parser, std::string_view text, bool last) {
   const bool ascii = is_ascii(text);
   std::size_t at = 0;
-  while (!parser.stopped()) {
-    const std::size_t end = text.find('\n', at);
-    if (end == std::string_view::npos) break;
+  while (!parser.stopped() && at < text.size()) {
+    std::size_t end = text.find('\n', at);
+    std::size_t next = end + 1;
+    const std::string_view line = text.substr(at, end == std::string_view::npos ? end : end - at);
+    const std::size_t carriage = line.find('\r');
+    // At the end of the buffer it may belong to a line feed that is still to come.
+    if (carriage < line.size() - 1 || (carriage < line.size() && end == std::string_view::npos && last)) {
+      end = at + carriage;
+      next = end + 1;
+    } else if (end == std::string_view::npos) {
+      if (!last) break;
+      end = next = text.size();
+    }
     if (end - at > csv_line_limit)
       parser.too_long();
     else
       parser.line(text.substr(at, end - at), ascii);
-    at = end + 1;
+    at = next;
   }
   return at;
 }
@@ -269,7 +344,8 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn
     const std::size_t count = read_bytes(file.handle.get(), buffer.data() + held, chunk_size, path);
     const std::string_view text(buffer.data(), held + count);
     const bool first = consumed == 0;
-    const std::size_t used = feed_lines(parser, text);
+    const bool last = count < chunk_size;
+    const std::size_t used = feed_lines(parser, text, last);
     consumed += used;
     held = text.size() - used;
     if (parser.stopped()) break;
@@ -277,10 +353,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn
       parser.too_long();
       break;
     }
-    if (count < chunk_size) {  // the last line may lack its line feed
-      if (held > 0) parser.line(text.substr(used), false);
-      break;
-    }
+    if (last) break;
     if (first && used > 0)  // rows are about equally long: one allocation instead of twenty
       parser.reserve(static_cast<std::size_t>(1.05 * static_cast<double>(parser.rows()) *
                                               static_cast<double>(file.size) / static_cast<double>(used)));
@@ -291,13 +364,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn
 
 CsvTable parse_csv(const std::string& name, std::string_view text, const std::vector<CsvColumn>& columns) {
   CsvParser parser(name, columns);
-  const std::string_view rest = text.substr(feed_lines(parser, text));
-  if (!parser.stopped() && !rest.empty()) {
-    if (rest.size() > csv_line_limit)
-      parser.too_long();
-    else
-      parser.line(rest, false);
-  }
+  static_cast<void>(feed_lines(parser, text, true));
   return parser.finish();
 }
 

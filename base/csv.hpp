@@ -1,7 +1,7 @@
 #pragma once
 
+#include "base/csv_column.hpp"
 #include "base/files.hpp"
-#include "base/range.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -13,18 +13,6 @@
 
 namespace snare::base {
 
-/// A column that is looked for in a CSV file, and what its cells may be.
-struct CsvColumn {
-  enum class Presence { required, optional };
-  enum class Order { any, non_decreasing };
-
-  std::string name;  ///< as in the header
-  Presence presence = Presence::required;
-  Range range = Range::finite();  ///< in the file's unit
-  double unit = 1.0;              ///< SI units in one unit of the file, 1e-3 for mm
-  Order order = Order::any;
-};
-
 /// The columns that were asked for, in the order in which they were asked for, in SI units.
 struct CsvTable {
   std::vector<std::vector<double>> columns;  ///< a column that is optional and absent is empty
@@ -33,12 +21,13 @@ struct CsvTable {
 
 /// Reads the asked columns of a CSV file of any length in one pass and with a buffer of about 1 MiB.
 ///
-/// The first line that is neither blank nor a comment names the columns. Cells are separated by commas, with
-/// blanks or tabs around them if one likes, and may stand in double quotes (no line breaks inside). `#`
-/// starts a comment, on its own line or behind the cells. Blank lines, a byte order mark and CRLF are
-/// accepted; the text must be UTF-8. Columns that nobody asked for are not looked at; one may be asked for several
-/// times. Numbers are decimal, with a point, finite. Throws InputError (file, line, column, text, what is allowed) with at most
-/// csv_problem_limit problems.
+/// The first line that names all required columns is the header; lines above it (titles of a testing machine, "sep=;") are
+/// passed over. Cells are separated by commas, semicolons, tabs or blanks, as the header is; they may have blanks around them
+/// and stand in double quotes (no line breaks inside). The line below the header may give units. `#` starts a comment, on its own
+/// line or after the cells. Blank lines, rows of empty cells, empty cells after the last column, a byte order mark and line ends of CR,
+/// LF or CRLF are accepted; the text must be UTF-8. Columns that nobody asked for are not looked at; one may be asked for several
+/// times. Numbers are finite, with a decimal point, or all with a decimal comma that cannot be taken for a separator of
+/// thousands. Throws InputError (file, line, column, text, what is allowed) with at most csv_problem_limit problems.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 
 /// The same from text in memory; `name` stands for the file in messages.

@@ -1,6 +1,7 @@
 #include "identification/fitting/experiment.hpp"
 
 #include "base/csv.hpp"
+#include "base/files.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "identification/fitting/parameter_set.hpp"
@@ -111,14 +112,85 @@ QuadraticLaw read_law(const TomlTable& table) {
   return law;
 }
 
-/// Reads the CSV file of a series. What is wrong inside it is reported at its line; what is wrong with it as
-/// a whole, at the key that names it.
-std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& series,
-                                      const std::filesystem::path& folder) {
-  const std::vector<CsvColumn> columns{
+constexpr double largest_scale = 1e12;
+
+/// Entries of a table whose keys the user chose; null where there is none. node: of the table above it.
+const std::vector<base::TomlEntry>* entries_of(const base::TomlNode* node, const char* key) {
+  const base::TomlNode* found = node == nullptr ? nullptr : node->find(key);
+  return found != nullptr && found->kind == base::TomlNode::Kind::table ? &found->entries : nullptr;
+}
+
+/// Puts the names that `columns = { "CSV column" = "force_N" }` gives to the columns that are looked for.
+void rename_columns(const TomlTable& series, const base::TomlNode* node, std::vector<CsvColumn>& columns) {
+  if (!series.has("columns")) return;
+  const auto* entries = entries_of(node, "columns");
+  if (entries == nullptr || entries->empty()) {
+    series.fail("columns", "must be a table of columns and what they are: { \"Load\" = \"force_N\" }");
+    return;
+  }
+  const TomlTable named = series.table("columns");
+  std::set<std::string> taken;
+  for (const base::TomlEntry& entry : *entries) {
+    const std::string meaning = named.text(entry.key);
+    if (meaning.empty()) continue;  // reported
+    const auto is = [](const std::string& name) { return [&name](const CsvColumn& c) { return c.meaning == name; }; };
+    const auto found = std::ranges::find_if(columns, is(meaning));
+    if (found == columns.end()) {
+      const bool turned = std::ranges::any_of(columns, is(entry.key));
+      named.fail(entry.key, turned
+                                ? fmt::format("stands the wrong way round: {{ \"{}\" = \"{}\" }}", meaning, entry.key)
+                                : "must be \"displacement_mm\", \"force_N\" or \"time_s\"");
+    } else if (!taken.insert(meaning).second) {
+      named.fail(entry.key, fmt::format("another column is {} already", meaning));
+    } else {
+      found->name = entry.key;
+      found->presence = CsvColumn::Presence::required;
+    }
+  }
+}
+
+/// Factors of `scale = { "CSV column" = 1000.0 }`, from the file's unit to that of the column's meaning; negative ones turn the sign.
+void scale_columns(const TomlTable& series, const base::TomlNode* node, std::vector<CsvColumn>& columns) {
+  if (!series.has("scale")) return;
+  const auto* entries = entries_of(node, "scale");
+  if (entries == nullptr || entries->empty()) {
+    series.fail("scale", "must be a table of columns and factors: { \"Load\" = 1000.0 }");
+    return;
+  }
+  const TomlTable factors = series.table("scale");
+  for (const base::TomlEntry& entry : *entries) {
+    const double factor = factors.number(entry.key, Range::from(-largest_scale, largest_scale));
+    const auto found = std::ranges::find(columns, entry.key, &CsvColumn::name);
+    if (found == columns.end()) {
+      factors.fail(entry.key, fmt::format("must be a column that is read: {}, {} or {}", columns[0].name,
+                                          columns[1].name, columns[2].name));
+    } else if (!(std::abs(factor) >= 1.0 / largest_scale) || (factor < 0.0 && found->meaning == "time_s")) {
+      if (std::isfinite(factor)) factors.fail(entry.key, found->meaning == "time_s" ? "must be > 0" : "must not be 0");
+    } else {
+      found->scaled = true;
+      found->unit *= factor;
+      found->range = Range::from(found->range.low / std::abs(factor), found->range.high / std::abs(factor));
+    }
+  }
+}
+
+/// Columns of the readings of a push, under the names and with the factors of the series.
+std::vector<CsvColumn> columns_of_readings(const TomlTable& series, const base::TomlNode* node) {
+  std::vector<CsvColumn> columns{
       {"displacement_mm", CsvColumn::Presence::required, Range::from(-largest_travel, largest_travel), mm},
       {"force_N", CsvColumn::Presence::required, Range::from(-largest_force, largest_force)},
       {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0, CsvColumn::Order::non_decreasing}};
+  for (CsvColumn& column : columns) column.meaning = column.name;
+  rename_columns(series, node, columns);
+  scale_columns(series, node, columns);
+  return columns;
+}
+
+/// Reads the CSV file of a series. What is wrong inside it is reported at its line; what is wrong with it as
+/// a whole, at the key that names it.
+std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& series, const base::TomlNode* node,
+                                      const std::filesystem::path& folder) {
+  const std::vector<CsvColumn> columns = columns_of_readings(series, node);
   const std::string name = series.text("file");
   if (name.empty()) {
     series.fail("file", "must be the name of a CSV file");
@@ -167,6 +239,8 @@ Source read_source(const TomlTable& table) {
   }
   if (first == nullptr) table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
   if (source == Source::file && table.has("points")) table.fail("points", "cannot stand beside file");
+  for (const char* key : {"columns", "scale"})
+    if (source != Source::file && table.has(key)) table.fail(key, "only with file");
   return source;
 }
 
@@ -185,8 +259,8 @@ std::string read_name(const TomlTable& table) {
   return name;
 }
 
-Series read_series(TomlDocument& document, const TomlTable& table, const scenario::PushTables& base,
-                   const std::filesystem::path& folder) {
+Series read_series(TomlDocument& document, const TomlTable& table, const base::TomlNode* node,
+                   const scenario::PushTables& base, const std::filesystem::path& folder) {
   const scenario::PushTables tables = over(scenario::push_tables(table), base);
   Series series;
   series.name = read_name(table);
@@ -213,7 +287,7 @@ Series read_series(TomlDocument& document, const TomlTable& table, const scenari
       break;
     }
     case Source::file:
-      series.readings = read_readings(document, table, folder);
+      series.readings = read_readings(document, table, node, folder);
       if (series.readings) series.test.travel = series.readings->displacement;
       break;
   }
@@ -273,7 +347,9 @@ void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys, 
   }
 }
 
-Experiment read_document(TomlDocument& document, const std::filesystem::path& file, const ParameterSet& parameters) {
+/// root_node: the tree of the document, for tables whose keys the user chose.
+Experiment read_document(TomlDocument& document, const base::TomlNode& root_node, const std::filesystem::path& file,
+                         const ParameterSet& parameters) {
   const TomlTable root = document.root();
   base::require_schema(root, schema);
 
@@ -285,9 +361,11 @@ Experiment read_document(TomlDocument& document, const std::filesystem::path& fi
 
   const scenario::PushTables base = scenario::push_tables(root);
   const std::vector<TomlTable> tables = root.tables("series");
+  const base::TomlNode* list = root_node.find("series");
   std::vector<std::string> names;
-  for (const TomlTable& table : tables) {
-    experiment.series.push_back(read_series(document, table, base, file.parent_path()));
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const base::TomlNode* node = list != nullptr && k < list->items.size() ? &list->items[k] : nullptr;
+    experiment.series.push_back(read_series(document, tables[k], node, base, file.parent_path()));
     names.push_back(experiment.series.back().name);
   }
   check_names(experiment.series, tables);
@@ -329,14 +407,16 @@ double QuadraticLaw::scatter() const {
 
 Experiment read_experiment(const std::filesystem::path& file, const ParameterSet& parameters,
                            const std::vector<Override>& overrides) {
-  TomlDocument document(file, overrides);
-  return read_document(document, file, parameters);
+  return parse_experiment(file, base::read_text(file, TomlDocument::size_limit), parameters, overrides);
 }
 
 Experiment parse_experiment(const std::filesystem::path& file, std::string_view text, const ParameterSet& parameters,
                             const std::vector<Override>& overrides) {
-  TomlDocument document(file.string(), text, overrides);
-  return read_document(document, file, parameters);
+  base::TomlNode root = base::parse_toml(file.string(), text);
+  TomlDocument document(file.string(), root, overrides);
+  std::vector<InputProblem> reported;  // by the document
+  for (const Override& one : overrides) base::apply_override(root, one, reported);
+  return read_document(document, root, file, parameters);
 }
 
 }  // namespace snare::identification

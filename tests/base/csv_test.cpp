@@ -86,6 +86,19 @@ INSTANTIATE_TEST_SUITE_P(
         Accepted{"other order", "force_N,displacement_mm\n-0.5,0.1\n2500,180\n"},
         Accepted{"other columns", "id,displacement_mm,note,force_N\na,0.1,nan,-0.5\n,180,,2500\n"},
         Accepted{"quotes", "\"displacement_mm\",\"force_N\",\"a, # b\"\n0.1,-0.5,\"c, d\"\n\"180\",2500,# e\n"},
+        Accepted{"semicolons and decimal commas", "displacement_mm;force_N\n0,1;-0,5\n180;2500,0\n"},
+        Accepted{"decimal commas in quotes", "displacement_mm,force_N\n\"0,1\",\"-0,5\"\n\"180\",\"2500\"\n"},
+        Accepted{"tabs", "displacement_mm\tforce_N\n0.1\t-0.5\n180\t2500\n"},
+        Accepted{"blanks", "displacement_mm  force_N\n 0.1 -0.5\n180\t2500 \n"},
+        Accepted{"a declared separator", "sep=;\r\nforce_N;displacement_mm\r\n-0.5;0.1\r\n2500;180\r\n"},
+        Accepted{"line ends of CR", "displacement_mm,force_N\r0.1,-0.5\r180,2500\r"},
+        Accepted{"mixed line ends", "displacement_mm,force_N\r0.1,-0.5\r\n180,2500\n"},
+        Accepted{"titles above the header",
+                 "Test 7\n\"Operator\",\"N. N.\"\ndisplacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
+        Accepted{"units below the header", "displacement_mm,force_N\n(mm),[N]\n0.1,-0.5\n180,2500\n"},
+        Accepted{"empty cells at the end", "displacement_mm,force_N\n0.1,-0.5,\n180,2500,,\n,\n,,\n"},
+        Accepted{"an empty name at the end", "displacement_mm,force_N,\n0.1,-0.5\n180,2500,\n"},
+        Accepted{"the end of a file of DOS", "displacement_mm,force_N\r\n0.1,-0.5\r\n180,2500\r\n\x1A"},
         Accepted{"forms of numbers", "displacement_mm,force_N\n1e-1,-.5\n+1.8E+2,2500.\n"}));
 
 TEST(Csv, OptionalColumnIsEmptyWhenAbsentAndReadWhenPresent) {
@@ -111,17 +124,12 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"", "m.csv: is empty, must have a header that names the columns"},
         Wrong{"\xEF\xBB\xBF\n# only a comment\n\n", "m.csv: is empty, must have a header that names the columns"},
         Wrong{"displacement_mm,force_N\n", "m.csv: has a header but no rows"},
-        Wrong{"# a\ndisplacement_mm,force\n1,2\n", "m.csv:2: force_N, no such column"},
+        Wrong{
+            "# a\ndisplacement_mm,force\n1,2\n",
+            "m.csv:2: force_N, no such column; the file has \"displacement_mm\", \"force\"; the nearest is \"force\""},
         Wrong{"1.0,2.0\n3.0,4.0\n",
               "m.csv:1: displacement_mm, no such column; the first line that is not a comment must name the columns\n"
               "m.csv:1: force_N, no such column; the first line that is not a comment must name the columns"},
-        Wrong{"displacement_mm;force_N\n1;2\n",
-              "m.csv:1: displacement_mm, no such column; columns must be separated by commas\n"
-              "m.csv:1: force_N, no such column; columns must be separated by commas"},
-        Wrong{"displacement_mm,force_N\r1,2\r", "m.csv:1: force_N, no such column"},
-        Wrong{"displacement_mm\r0.1\r",
-              "m.csv:1: displacement_mm, no such column; lines must end in LF or CRLF\n"
-              "m.csv:1: force_N, no such column; lines must end in LF or CRLF"},
         Wrong{"displacement_mm,force_N,force_N\n1,2,3\n", "m.csv:1: force_N, the column is there twice"},
         Wrong{"displacement_mm,force_N\n1,2\n1,two\n", "m.csv:3: force_N = two, must be a number"},
         Wrong{"displacement_mm,force_N\n1,0x10\n", "m.csv:2: force_N = 0x10, must be a number"},
@@ -136,15 +144,26 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"displacement_mm,force_N\n1,2\n1\n", "m.csv:3: the row has 1 cells, must have 2 as the header"},
         Wrong{"displacement_mm,force_N\n0,1,2,3\n", "m.csv:2: the row has 4 cells, must have 2 as the header"},
         Wrong{"displacement_mm,force_N\n0,1,two\n", "m.csv:2: the row has 3 cells, must have 2 as the header"},
-        Wrong{"displacement_mm,force_N\n1,2,\n", "m.csv:2: the row has 3 cells, must have 2 as the header"},
+        Wrong{"displacement_mm;force_N\n1,234;2,500\n9,123;7,100\n",
+              "m.csv:2: displacement_mm = 1,234, may have its comma before decimals or between thousands: must have a "
+              "decimal "
+              "point"},
+        Wrong{"displacement_mm;force_N\n0,5;2.5\n",
+              "m.csv:2: force_N = 2.5, has a point, numbers before it a decimal comma: must have a comma"},
+        Wrong{
+            "displacement_mm,force_N\n0.5,\"2,5\"\n",
+            "m.csv:2: force_N = 2,5, has a comma, numbers before it a decimal point: must have a decimal point and no "
+            "other separator"},
+        Wrong{"displacement_mm,force_N\n0.5,\"2,410.0\"\n",
+              "m.csv:2: force_N = 2,410.0, must be a number without separators between thousands"},
         Wrong{"displacement_mm,force_N,time_s\n1,2,0.5\n1,2,0.4\n",
               "m.csv:3: time_s = 0.4, must be >= 0.5, the value of the row before"},
-        Wrong{"displacement_mm,force_N\n1,\xFF\n", "m.csv:2: byte 0xff is not UTF-8"},
-        Wrong{"displacement_mm,force_N\n1,2 # \xC3(\n", "m.csv:2: byte 0xc3 is not UTF-8"},
+        Wrong{"displacement_mm,force_N\n1,\xFF\n", "m.csv:2: byte 0xff is not UTF-8: save the file as UTF-8"},
+        Wrong{"displacement_mm,force_N\n1,2 # \xC3(\n", "m.csv:2: byte 0xc3 is not UTF-8: save the file as UTF-8"},
         Wrong{std::string("\xFF\xFE"
                           "d\0i\0s\0\n\0",
                           10),
-              "m.csv:1: byte 0xff is not UTF-8"},
+              "m.csv:1: is UTF-16, must be UTF-8: save it as CSV UTF-8"},
         Wrong{"displacement_mm,force_N\n\none,two\n1,2\n3,nan\n",
               "m.csv:3: displacement_mm = one, must be a number\n"
               "m.csv:3: force_N = two, must be a number\n"
@@ -152,6 +171,46 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"displacement_mm,force_N\n1,xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\n",
               "m.csv:2: force_N = xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx..., must be a number"},
         Wrong{std::string(csv_line_limit + 1, ' '), "m.csv:1: the line has more than 1048576 bytes"}));
+
+/// Columns that the file which names this one may rename and scale.
+std::vector<CsvColumn> renamed(const std::string& displacement, const std::string& force, double scale) {
+  std::vector<CsvColumn> asked{{displacement}, {force}};
+  asked[0].meaning = "displacement_mm";
+  asked[1].meaning = "force_N";
+  asked[1].unit = scale;
+  asked[1].scaled = scale != 1.0;
+  return asked;
+}
+
+TEST(Csv, ExportsOfMachinesAreReadByTheirNames) {
+  const std::string bluehill =
+      "\"Results Table 1\"\n\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(kN)\"\n\"0.0\",\"0.3\",\"0.0241\"\n";
+  const CsvTable table = parse_csv("m.csv", bluehill, renamed("Extension", "Load", 1000.0));
+  EXPECT_EQ(table.columns[0], std::vector<double>{0.3});
+  EXPECT_DOUBLE_EQ(table.columns[1][0], 24.1);
+  // Without the scale the unit below the header is not that of a force in N.
+  EXPECT_EQ(test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("Extension", "Load", 1.0)); }),
+            "m.csv:3: Load, is in kN, not in that of force_N: write scale = { \"Load\" = 1000 }");
+  EXPECT_EQ(test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("Load", "Extension", 1.0)); }),
+            "m.csv:3: Extension, is in mm, must be in a unit like that of force_N\n"
+            "m.csv:3: Load, is in kN, must be in a unit like that of displacement_mm");
+  EXPECT_EQ(test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("displacement_mm", "force_N", 1.0)); }),
+            "m.csv:2: displacement_mm, no such column; the file has \"Time\", \"Extension\", \"Load\"; if it is "
+            "\"Extension\", "
+            "write columns = { \"Extension\" = \"displacement_mm\" }\n"
+            "m.csv:2: force_N, no such column; the file has \"Time\", \"Extension\", \"Load\"; if it is \"Load\", "
+            "write columns = { "
+            "\"Load\" = \"force_N\" }, scale = { \"Load\" = 1000 }");
+  EXPECT_EQ(test::refusal([&] {
+              return parse_csv("m.csv", "displacement_m,Force_N\n1,2\n", renamed("displacement_mm", "force_N", 1.0));
+            }),
+            "m.csv:1: displacement_mm, no such column; the file has \"displacement_m\", \"Force_N\"; if it is "
+            "\"displacement_m\", "
+            "write columns = { \"displacement_m\" = \"displacement_mm\" }, scale = { \"displacement_m\" = 1000 }\n"
+            "m.csv:1: force_N, no such column; the file has \"displacement_m\", \"Force_N\"; if it is \"Force_N\", "
+            "write columns = { "
+            "\"Force_N\" = \"force_N\" }");
+}
 
 TEST(Csv, ListsTheFirstProblemsOnly) {
   std::string text = "displacement_mm,force_N\n";

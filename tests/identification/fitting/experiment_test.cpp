@@ -7,6 +7,7 @@
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -241,6 +242,38 @@ TEST_F(ExperimentFiles, ReadingsAreReadInTheOrderInWhichTheyWereTaken) {
   EXPECT_EQ(series.test.travel, series.readings->displacement);
 }
 
+// Exports of testing machines: names, units and the sign of a load cell that counts compression negative.
+TEST_F(ExperimentFiles, ColumnsAreNamedAndScaledByTheSeries) {
+  write_text(path("s40.csv"), "Standardweg;Standardkraft;Zeit\nmm;kN;s\n0,0;-0,001;0\n1,5;-0,025;1\n0,5;-0,0125;2\n");
+  const auto read = [&](const std::string& columns, const std::string& scale) {
+    return read_experiment(path("x.toml"), parameters(),
+                           {{"series[s40].columns", columns}, {"series[s40].scale", scale}});
+  };
+  const std::string names = "{ Standardweg = \"displacement_mm\", Standardkraft = \"force_N\", Zeit = \"time_s\" }";
+  const Series series = read(names, "{ Standardkraft = -1000.0 }").series[0];
+  ASSERT_TRUE(series.readings.has_value());
+  EXPECT_EQ(series.readings->displacement, (std::vector<double>{0.0, 0.0015, 0.0005}));
+  EXPECT_EQ(series.readings->force, (std::vector<double>{1.0, 25.0, 12.5}));
+  EXPECT_EQ(series.readings->time, (std::vector<double>{0.0, 1.0, 2.0}));
+  const auto said = [&](const std::string& columns, const std::string& scale) {
+    return message({{"series[s40].columns", columns}, {"series[s40].scale", scale}});
+  };
+  EXPECT_EQ(message({{"series[s40].columns", names}}),
+            "s40.csv:2: Standardkraft, is in kN, not in that of force_N: write scale = { \"Standardkraft\" = 1000 }");
+  EXPECT_THAT(said("{ force_N = \"Standardkraft\" }", "{ force_N = 2.0 }"),
+              testing::HasSubstr("stands the wrong way round: { \"Standardkraft\" = \"force_N\" }"));
+  EXPECT_THAT(said("{ Standardkraft = \"force_kN\" }", "{ force_N = 2.0 }"),
+              testing::HasSubstr("must be \"displacement_mm\", \"force_N\" or \"time_s\""));
+  EXPECT_THAT(said("{ Standardkraft = \"force_N\", Zeit = \"force_N\" }", "{ Zeit = 2.0 }"),
+              testing::HasSubstr("another column is force_N already"));
+  EXPECT_THAT(said(names, "{ Standardkraft = 0.0 }"), testing::HasSubstr("must not be 0"));
+  EXPECT_THAT(said(names, "{ Zeit = -1.0 }"), testing::HasSubstr("must be > 0"));
+  EXPECT_THAT(said(names, "{ Kraft = 1000.0 }"),
+              testing::HasSubstr("must be a column that is read: Standardweg, Standardkraft or Zeit"));
+  EXPECT_THAT(said("3", "{ Zeit = 2.0 }"), testing::HasSubstr("must be a table of columns and what they are"));
+  EXPECT_THAT(message({{"series[s65].scale", "{ force_N = 2.0 }"}}), testing::HasSubstr("only with file"));
+}
+
 TEST_F(ExperimentFiles, WrongReadingsHaveTheirMessage) {
   const std::string header = "displacement_mm,force_N\n";
   EXPECT_EQ(message(), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: no such file");
@@ -251,14 +284,16 @@ TEST_F(ExperimentFiles, WrongReadingsHaveTheirMessage) {
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has 2 rows, must have at least 3");
   EXPECT_EQ(message_of_csv(header + "1,0\n1,1\n1,2\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: displacement_mm is the same in every row");
-  EXPECT_EQ(message_of_csv("displacement_mm\n1\n2\n3\n"), "s40.csv:1: force_N, no such column");
+  EXPECT_EQ(message_of_csv("displacement_mm\n1\n2\n3\n"),
+            "s40.csv:1: force_N, no such column; the file has \"displacement_mm\"; name it: columns = { \"COLUMN\" = "
+            "\"force_N\" }");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,one\n2,2\n"), "s40.csv:3: force_N = one, must be a number");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,NaN\n2,2\n"), "s40.csv:3: force_N = NaN, must be a finite number");
   EXPECT_EQ(message_of_csv(header + "0,0\n1001,1\n2,2\n"),
             "s40.csv:3: displacement_mm = 1001, must be >= -1000 and <= 1000");
   EXPECT_EQ(message_of_csv("time_s," + header + "0,0,0\n2,1,1\n1,2,2\n"),
             "s40.csv:4: time_s = 1, must be >= 2, the value of the row before");
-  EXPECT_EQ(message_of_csv(header + "0,0\n\xFE,1\n2,2\n"), "s40.csv:3: byte 0xfe is not UTF-8");
+  EXPECT_EQ(message_of_csv(header + "0,0\n\xFE,1\n2,2\n"), "s40.csv:3: byte 0xfe is not UTF-8: save the file as UTF-8");
   EXPECT_EQ(message({{"series[s40].file", "gone.csv"}}), "--set: series[s40].file = gone.csv, gone.csv: no such file");
   std::filesystem::remove(path("s40.csv"));
   std::filesystem::create_directory(path("s40.csv"));
