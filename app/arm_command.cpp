@@ -93,11 +93,14 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
          {"motor_inertia_kg_m2", joint.motor_inertia},
          {"stiffness_first_Nm_rad", joint.spring.stiffness(0)},
          {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
+         {"coulomb_Nm", joint.friction.coulomb},
+         {"viscous_Nms_rad", joint.friction.viscous},
          {"drive", drive_modes[static_cast<std::size_t>(arm.drives[static_cast<std::size_t>(k)].mode)]}});
   }
   const std::vector<multibody::Drive> locked(arm.drives.size(), multibody::Drive::locked());
   std::vector<multibody::Drive> limp = arm.drives;
   scenario::hold(scenario::Hold::limp, angles, arm.arm, limp);
+  result["warnings"] = arm.warnings;
   result["frequencies_locked_Hz"] = frequencies(arm, q, locked);
   result["frequencies_driven_Hz"] = frequencies(arm, q, arm.drives);
   result["frequencies_limp_Hz"] = frequencies(arm, q, limp);
@@ -119,15 +122,13 @@ std::string listed(const nlohmann::json& values) {
 }
 
 /// What a robot description says by itself; stiffness and drives, and so the frequencies, are in an arm file.
-ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& options) {
+ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const multibody::RobotDescription robot = multibody::read_urdf(file);
   double mass = 0.0;
   for (const multibody::RobotLink& link : robot.links) mass += link.inertia.mass;
-  nlohmann::json result{{"schema", "snare-arm-show/1"},
-                        {"title", robot.name},
-                        {"mass_kg", mass},
-                        {"root", robot.root},
-                        {"joints", nlohmann::json::array()}};
+  nlohmann::json result{
+      {"schema", "snare-arm-show/1"}, {"title", robot.name},        {"mass_kg", mass},
+      {"root", robot.root},           {"warnings", robot.warnings}, {"joints", nlohmann::json::array()}};
   for (std::size_t k = 0; k < robot.joints.size(); ++k) {
     const multibody::RobotJoint& joint = robot.joints[k];
     result["joints"].push_back({{"joint", joint.name},
@@ -137,6 +138,7 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
                                 {"length_m", joint.X_PJ.p.norm()},
                                 {"link_mass_kg", robot.links[k + 1].inertia.mass}});
   }
+  for (const std::string& warning : robot.warnings) console.warn(warning);
   if (options.json) {
     print(result.dump(1) + "\n");
     return ExitStatus::done;
@@ -166,7 +168,7 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
     if (!pose.empty()) throw base::InputError({"", 0, "--pose", pose, "only with an arm file (TOML)"});
     if (!overrides.empty())
       throw base::InputError({"", 0, "--set", overrides.front().key, "only with an arm file (TOML)"});
-    return show_robot(file, options);
+    return show_robot(file, options, console);
   }
   const multibody::ArmDescription arm = multibody::read_arm(file, overrides);
   const Eigen::VectorXd angles = angles_of(pose, arm);
@@ -174,6 +176,7 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
   const nlohmann::json result = describe(arm, angles);
   console.end_progress();
   begin_writing();
+  for (const std::string& warning : arm.warnings) console.warn(warning);
   if (options.json) {
     print(result.dump(1) + "\n");
     return ExitStatus::done;
@@ -191,6 +194,12 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
                         joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
                         first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
                         joint["drive"].get<std::string>());
+  }
+  for (const nlohmann::json& joint : result["joints"]) {
+    const double dry = joint["coulomb_Nm"], viscous = joint["viscous_Nms_rad"];
+    if (dry > 0.0 || viscous > 0.0)
+      text += fmt::format("friction of {}: dry {:.4g} N m, viscous {:.4g} N m s/rad\n",
+                          joint["joint"].get<std::string>(), dry, viscous);
   }
   text += fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {

@@ -3,8 +3,13 @@
 #include "base/files.hpp"
 
 #include <console_bridge/console.h>
+#include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -77,6 +82,10 @@ RobotJoint to_joint(const urdf::Joint* from) {
     joint.effort = from->limits->effort;
     joint.speed = from->limits->velocity;
   }
+  if (from->dynamics) {
+    joint.damping = from->dynamics->damping;
+    joint.friction = from->dynamics->friction;
+  }
   return joint;
 }
 
@@ -115,6 +124,49 @@ std::vector<InputProblem> massless_ends(const std::string& file, const RobotDesc
   return problems;
 }
 
+/// The farthest that a centre of mass can be from the root: offsets along the branches, and of the masses in their links [m].
+double largest_reach(const RobotDescription& robot) {
+  std::map<std::string, double> at{{robot.root, 0.0}};
+  double reach = 0.0;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (i > 0) at[robot.links[i].name] = at[robot.joints[i - 1].parent] + robot.joints[i - 1].X_PJ.p.norm();
+    const SpatialInertia& inertia = robot.links[i].inertia;
+    reach = std::max(reach, at[robot.links[i].name] + (inertia.mass > 0.0 ? inertia.centre().norm() : 0.0));
+  }
+  return reach;
+}
+
+/// Numbers that are legal and more likely in another unit.
+std::vector<std::string> doubts(const RobotDescription& robot) {
+  std::vector<std::string> found;
+  const bool moves = std::ranges::any_of(
+      robot.joints, [](const RobotJoint& joint) { return joint.kind && *joint.kind != JointKind::free; });
+  const double reach = moves ? largest_reach(robot) : 0.0;  // a body alone has none
+  for (std::size_t i = 1; i < robot.links.size() && reach > 0.0; ++i) {
+    const RobotLink& link = robot.links[i];
+    if (!(link.inertia.mass > 0.0)) continue;
+    const Eigen::Vector3d moments =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia.about_own_centre()).eigenvalues();
+    const double gyration = std::sqrt(moments[2] / link.inertia.mass);
+    if (gyration <= reach) continue;
+    found.push_back(
+        fmt::format("link {}: its radius of gyration of {:.4g} m is larger than the robot's reach of {:.4g} m: is the "
+                    "inertia in kg mm2? URDF is in kg m2",
+                    link.name, gyration, reach));
+  }
+  constexpr double turn = 2.0 * EIGEN_PI;
+  for (const RobotJoint& joint : robot.joints) {
+    if (joint.kind != JointKind::revolute) continue;
+    const double lowest = std::isfinite(joint.lower) ? joint.lower : 0.0;
+    const double highest = std::isfinite(joint.upper) ? joint.upper : 0.0;
+    if (lowest >= -turn - 1e-3 && highest <= turn + 1e-3) continue;  // 1e-3: 6.283 is written as 6.2832
+    found.push_back(fmt::format(
+        "joint {}: its limits of {:.6g} to {:.6g} rad are more than a turn: are they in degrees? URDF is in radians",
+        joint.name, joint.lower, joint.upper));
+  }
+  return found;
+}
+
 }  // namespace
 
 RobotDescription parse_urdf(const std::string& file, const std::string& text) {
@@ -130,6 +182,7 @@ RobotDescription parse_urdf(const std::string& file, const std::string& text) {
   append(*model, *model->getRoot(), robot);
   problems = massless_ends(file, robot);
   if (!problems.empty()) throw InputError(std::move(problems));
+  robot.warnings = doubts(robot);
   return robot;
 }
 

@@ -28,6 +28,8 @@ struct RobotJoint {
   double upper = std::numeric_limits<double>::infinity();
   double effort = std::numeric_limits<double>::infinity();  ///< [N m, N]
   double speed = std::numeric_limits<double>::infinity();   ///< [rad/s, m/s]
+  double damping = 0.0;                                     ///< of <dynamics> [N m s/rad, N s/m], >= 0
+  double friction = 0.0;                                    ///< of <dynamics>, dry [N m, N], >= 0
 };
 
 /// A tree of links as told by a URDF file.
@@ -36,6 +38,8 @@ struct RobotDescription {
   std::string name, root;
   std::vector<RobotLink> links;    ///< parents before children, the root first
   std::vector<RobotJoint> joints;  ///< joint i carries link i + 1
+  /// About numbers that are legal and more likely in another unit: moments of inertia beyond the robot's size, limits beyond a turn.
+  std::vector<std::string> warnings = {};
 };
 
 /// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names, numbers,

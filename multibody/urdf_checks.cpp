@@ -55,6 +55,10 @@ class Checker {
           "must be a <robot> element");
       return std::move(problems_);
     }
+    if (const int line = line_of_macro(*robot); line > 0) {
+      add(line, "", "", "is raw xacro: run `xacro FILE.xacro > FILE.urdf` and name that file");
+      return std::move(problems_);
+    }
     static_cast<void>(name_of(*robot, "robot"));
     for (const TiXmlElement* e = robot->FirstChildElement("link"); e != nullptr; e = e->NextSiblingElement("link"))
       link(*e);
@@ -125,6 +129,17 @@ class Checker {
       }
     }
     return true;
+  }
+
+  /// Line of the first element or expression that xacro has still to work out; 0 where there is none.
+  static int line_of_macro(const TiXmlElement& e) {
+    if (e.ValueStr().starts_with("xacro:")) return e.Row();
+    for (const TiXmlAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next())
+      if (a->ValueStr().find("${") != std::string::npos || a->ValueStr().find("$(") != std::string::npos)
+        return e.Row();
+    for (const TiXmlElement* child = e.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+      if (const int line = line_of_macro(*child); line > 0) return line;
+    return 0;
   }
 
   std::string name_of(const TiXmlElement& e, const std::string& kind) {
@@ -271,6 +286,13 @@ class Checker {
       }
     }
     limits(e, key, type);
+    const TiXmlElement* dynamics = e.FirstChildElement("dynamics");
+    for (const char* attribute : {"damping", "friction"}) {
+      if (dynamics == nullptr || dynamics->Attribute(attribute) == nullptr) continue;
+      const std::vector<double> value = numbers(*dynamics, attribute, key + ".dynamics." + attribute, 1);
+      if (!value.empty() && !(value[0] >= 0.0))
+        add(dynamics->Row(), key + ".dynamics." + attribute, dynamics->Attribute(attribute), "must be >= 0");
+    }
   }
 
   void limits(const TiXmlElement& e, const std::string& key, const std::string& type) {

@@ -80,6 +80,7 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
   for (const FinishedMotion& run : finished) {
     const coupling::Motion& motion = run.asked.motion;
     const std::string of = finished.size() > 1 ? run.asked.name + ", " : "";
+    sentences.add("", run.asked.warnings);
     for (std::size_t k = 0; k < motion.wires.size(); ++k) {
       // Its diameter is known from what touches it.
       const auto touching = std::find_if(motion.contacts.begin(), motion.contacts.end(), [k](const auto& c) {

@@ -186,6 +186,8 @@ void read_arms(Composition& c) {
     }
     const Eigen::VectorXd angles = read_pose(table, "pose", "angles_deg", *described);
     c.input += described->input;
+    for (const std::string& warning : described->warnings)
+      c.warnings.push_back(fmt::format("arm {}: {}", name, warning));
     arm.arm = described->arm;
     arm.drives = described->drives;
     hold(how, angles, arm.arm, arm.drives);

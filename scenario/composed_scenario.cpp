@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -79,13 +80,30 @@ void read_wires(Composition& c) {
   }
 }
 
+/// Adds a warning where a mesh is so small or so large that its unit is more likely the other one.
+void doubt_size(Composition& c, const std::string& name, const std::string& unit, const coupling::ContactShape& shape) {
+  constexpr double smallest = 0.5 * base::mm,
+                   largest = 500.0;  // a body that a wire of a millimetre holds, and one of this world [m]
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Eigen::Matrix3Xd& line : shape.drawing()) {
+    low = low.cwiseMin(line.rowwise().minCoeff());
+    high = high.cwiseMax(line.rowwise().maxCoeff());
+  }
+  const double size = (high - low).maxCoeff();
+  if (unit == "mm" && size < smallest)
+    c.warnings.push_back(fmt::format(
+        "shape {}: its mesh is only {:.3g} mm large: is the file in metres (unit = \"m\")?", name, size / base::mm));
+  if (unit == "m" && size > largest)
+    c.warnings.push_back(
+        fmt::format("shape {}: its mesh is {:.3g} m large: is the file in millimetres (unit = \"mm\")?", name, size));
+}
+
 void read_shapes(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("shapes")) {
     const std::string name = c.shape_names.take(table);
     const coupling::MotionContact shape = read_contact_shape(table, c.folder, c.input);
     const char* key = table.has("body") ? "body" : "frame";
     if (table.has("body") && table.has("frame")) table.fail("frame", "cannot stand beside body, which means the same");
-    static_cast<void>(table.text(key));
     const std::optional<PlacedFrame> frame = c.placement.frame(table, key);
     const double mass = table.number_or("mass_kg", light, Range::above(0.0, 1e7));
     const std::vector<int> on = wires_met(table, c.wire_names, c.wires.size());
@@ -93,6 +111,7 @@ void read_shapes(Composition& c) {
     c.add_shape(name, shape, *frame, mass, on);
     const PlacedShape placed{table, {frame->carrier, frame->X_WF * shape.X_BS}, shape.shape};
     c.shapes.try_emplace(name, placed);
+    if (shape.shape && table.has("unit")) doubt_size(c, name, table.text("unit"), *shape.shape);
     set_shaft(c, name, placed, shape.friction, on);
     if (shape.shape) c.drawn.push_back({name, placed.on.carrier, placed.on.X_WF, shape.shape->drawing()});
   }
@@ -328,6 +347,7 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.law_models.assign(c.law_models.begin(), c.law_models.end());
   motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
+  run.warnings = std::move(c.warnings);
   if (motions.output.modes) {
     const int unknowns = coupling::unknowns_of(run.motion, run.options);
     if (unknowns > coupling::most_unknowns_of_modes) {

@@ -55,6 +55,7 @@ struct Composition {
   std::vector<std::string> model_keys = {};  ///< of the wires
   std::set<std::string> law_models = {};     ///< of which a wire has the numbers
   std::vector<DrawnLines> drawn = {};
+  std::vector<std::string> warnings = {};  ///< about what is read as it stands and likely meant otherwise
 
   /// The joint under a key, reported when there is none.
   [[nodiscard]] const MotorJoint* joint(const base::TomlTable& table, std::string_view key) const;

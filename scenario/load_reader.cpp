@@ -1,6 +1,7 @@
 #include "scenario/load_reader.hpp"
 
 #include "base/csv.hpp"
+#include "base/decimal.hpp"
 #include "base/files.hpp"
 #include "base/index.hpp"
 #include "scenario/motion_reader.hpp"
@@ -36,11 +37,14 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
   const double begin = table.number_or("begin_s", 0.0, Range::from(0.0, 1e6));
   const double duration = table.number_or("duration_s", std::max(run - begin, 1e-9), durations);
   const double ramp = table.number_or("ramp_s", 0.0, Range::from(0.0, 1e6));
-  if (2.0 * ramp > duration) table.fail("ramp_s", "must be at most half of duration_s");
+  const bool lasts = !table.has("duration_s") && !table.has("shape");  // to the end: nothing leads down
+  if ((lasts ? 1.0 : 2.0) * ramp > duration)
+    table.fail("ramp_s", lasts ? "must end before the run" : "must be at most half of duration_s");
   const int count = table.integer_or("pulses", 1, 1, 100000);
   double every = duration;
   if (count > 1) every = table.number("every_s", durations);
-  if (every < duration) table.fail("every_s", "must be at least duration_s");
+  if (count > 1 && lasts) table.fail("duration_s", "must be given for several pulses");
+  if (base::exceeds(duration, every, {run, begin})) table.fail("every_s", "must be at least duration_s");
   static constexpr base::Choice<bool> shapes[] = {{"flat", false}, {"half_sine", true}};
   if (table.has("shape")) load.half_sines = table.choice("shape", shapes).value_or(false);
   if (load.half_sines && table.has("ramp_s")) table.fail("ramp_s", "cannot stand beside shape = \"half_sine\"");
@@ -54,8 +58,8 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
     const double from = begin + k * every, to = from + duration;
     if (k > 0 || ramp > 0.0) add(load, from, none, none);
     add(load, from + ramp, force, moment);
-    add(load, to - ramp, force, moment);
-    if (k + 1 < count || ramp > 0.0) add(load, to, none, none);
+    add(load, lasts ? to : to - ramp, force, moment);
+    if (!lasts && (k + 1 < count || ramp > 0.0)) add(load, to, none, none);
   }
 }
 

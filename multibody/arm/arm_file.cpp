@@ -1,5 +1,6 @@
 #include "multibody/arm/arm_file.hpp"
 
+#include "base/decimal.hpp"
 #include "base/index.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
@@ -46,14 +47,19 @@ void know(const TomlTable& table, std::initializer_list<std::string_view> keys) 
   for (const std::string_view key : keys) static_cast<void>(table.has(key));
 }
 
+void take_warnings(const RobotDescription& robot, const std::string& file, ArmDescription& description) {
+  for (const std::string& warning : robot.warnings) description.warnings.push_back(file + ": " + warning);
+}
+
 /// A URDF file named by a key; nothing after a problem, which goes to the document.
 std::optional<RobotDescription> robot_of(TomlDocument& document, const TomlTable& table,
-                                         const std::filesystem::path& folder, std::string& input) {
+                                         const std::filesystem::path& folder, ArmDescription& description) {
   const std::string name = table.text("urdf");
   if (name.empty()) return std::nullopt;
   try {
     const RobotDescription robot = read_urdf(folder / name);
-    input += robot.text;
+    description.input += robot.text;
+    take_warnings(robot, name, description);
     return robot;
   } catch (const InputError& error) {
     for (const base::InputProblem& problem : error.problems()) document.add(problem);
@@ -146,12 +152,13 @@ double motor_inertia_of(const TomlTable& table) {
   return ratio * ratio * table.number("rotor_inertia_kg_m2", positive);
 }
 
-JointFriction friction_of(const TomlTable& table) {
+/// Friction of a motor; what the table does not give is that of the URDF's <dynamics>.
+JointFriction friction_of(const TomlTable& table, const RobotJoint& joint) {
   JointFriction law;
-  law.coulomb = table.number_or("coulomb_Nm", 0.0, not_negative);
+  law.coulomb = table.number_or("coulomb_Nm", joint.friction, not_negative);
   law.breakaway = table.number_or("breakaway_Nm", law.coulomb, not_negative);
   law.stribeck_velocity = table.number_or("stribeck_velocity_rad_s", 1e-3, positive);
-  law.viscous = table.number_or("viscous_Nms_rad", 0.0, not_negative);
+  law.viscous = table.number_or("viscous_Nms_rad", joint.damping, not_negative);
   law.quadratic = table.number_or("quadratic_Nms2_rad2", 0.0, not_negative);
   law.viscous_asymmetry = table.number_or("viscous_asymmetry_Nms_rad", 0.0, any_torque);
   if (std::abs(law.viscous_asymmetry) > law.viscous)
@@ -180,7 +187,8 @@ void change_links(const TomlTable& links, RobotDescription& robot) {
     if (own.has("inertia_kg_m2")) {
       const auto i = own.numbers("inertia_kg_m2", 3, 3, positive);
       if (i.size() == 3) {
-        if (2.0 * std::max({i[0], i[1], i[2]}) > i[0] + i[1] + i[2])
+        const double largest = std::max({i[0], i[1], i[2]});
+        if (base::exceeds(largest, i[0] + i[1] + i[2] - largest))
           own.fail("inertia_kg_m2", "must not have a moment larger than the two others together");
         inertia = Eigen::Vector3d(i[0], i[1], i[2]).asDiagonal();
       }
@@ -231,7 +239,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable root = document.root();
   base::require_schema(root, "snare-arm/1");
   description.title = root.text("title");
-  description.source = root.text("source");
+  description.source = root.text_or("source", "");
   Tree& tree = description.arm.tree;
   if (root.has("gravity_m_s2")) {
     const auto g = root.numbers("gravity_m_s2", 3, 3, Range::from(-1e6, 1e6));
@@ -246,7 +254,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     const auto kind = base.choice("kind", base_kinds);
     const RootJoint joint = kind == BaseKind::free ? RootJoint::free : RootJoint::fixed;
     if (base.has("urdf")) {
-      const auto robot = robot_of(document, base, folder, description.input);
+      const auto robot = robot_of(document, base, folder, description);
       if (robot && put(base, tree, 0, joint, *robot)) mount = frame_of(base, "frame", tree);
       if (!robot) static_cast<void>(base.text("frame"));
     } else {
@@ -257,6 +265,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const std::string urdf = root.text("urdf");
   if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
   std::optional<RobotDescription> robot = read_urdf(folder / urdf);
+  take_warnings(*robot, urdf, description);
   change_links(root.table("link"), *robot);
   const std::vector<Flexure> flexures = bend_links(root.table("link"), *robot);
   description.input += robot->text + document.canonical();
@@ -265,7 +274,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;
   }
   for (const TomlTable& load : root.tables("payload")) {
-    const auto carried = robot_of(document, load, folder, description.input);
+    const auto carried = robot_of(document, load, folder, description);
     const int frame = whole ? frame_of(load, "on", tree) : (static_cast<void>(load.text("on")), -1);
     if (carried && frame >= 0) static_cast<void>(put(load, tree, frame, RootJoint::fixed, *carried));
   }
@@ -292,7 +301,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
       elastic.body = tree.frame(tree.find_frame(joint.child)).body;
       elastic.motor_inertia = motor_inertia_of(own);
       if (const auto law = law_of(own)) elastic.spring = *law;
-      elastic.friction = friction_of(own);
+      elastic.friction = friction_of(own, joint);
       elastic.back_drive = own.number_or("back_drive_Nm", 0.0, not_negative);
       description.drives.push_back(drive_of(own));
       description.arm.joints.push_back(elastic);

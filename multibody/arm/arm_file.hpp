@@ -28,8 +28,9 @@ struct ArmDescription {
       joints;  ///< the moving joints: of the first elastic joints, behind which those of bending links come
   std::vector<Drive> drives;  ///< of all elastic joints, at rest, held where they are
   std::vector<ArmPose> poses;
-  int tip = 0;            ///< frame
-  double arm_mass = 0.0;  ///< of the arm's own URDF [kg]
+  int tip = 0;                             ///< frame
+  double arm_mass = 0.0;                   ///< of the arm's own URDF [kg]
+  std::vector<std::string> warnings = {};  ///< see RobotDescription, of all files that it names
 
   /// Angles of the moving joints with those of the flexures, which are zero, behind them [rad].
   [[nodiscard]] Eigen::VectorXd with_flexures(const Eigen::VectorXd& angles) const;

@@ -75,6 +75,13 @@ TEST(EndlessUrdf, IsRefused) {
 }
 
 const WrongFile wrong_urdfs[] = {
+    {"<link name=\"tip\"/>", "<link name=\"tip\"/>\n  <xacro:property name=\"mass\" value=\"2.0\"/>",
+     "x.urdf:18: is raw xacro: run `xacro FILE.xacro > FILE.urdf` and name that file"},
+    {"<mass value=\"10\"/>", "<mass value=\"${mass}\"/>",
+     "x.urdf:7: is raw xacro: run `xacro FILE.xacro > FILE.urdf` and name that file"},
+    {"velocity=\"1\"/>", "velocity=\"1\"/><dynamics damping=\"-1\" friction=\"much\"/>",
+     "x.urdf:22: joint[shoulder].dynamics.damping = -1, must be >= 0\n"
+     "x.urdf:22: joint[shoulder].dynamics.friction = \"much\", must be a number"},
     {"<?xml version=\"1.0\"?>\n<robot name=\"two_links\">", "<robot name=\"two_links\"",
      "x.urdf:2: is no XML: Error reading Attributes"},
     {"</robot>", "", "x.urdf:36: is no XML: Error reading end tag"},

@@ -1,8 +1,14 @@
 #include "multibody/arm/arm_file.hpp"
+#include "tests/multibody/valid_arm.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
 namespace snare {
 
@@ -27,6 +33,42 @@ TEST(ArmFile, ShippedArmsHaveTheirPublishedSums) {
   EXPECT_NEAR(station.arm.tree.mass(), 400000.0 + 1505.32, 0.01);
   const auto loaded = shipped("jemrms_with_payload.toml");
   EXPECT_NEAR(loaded.arm.tree.mass(), 1280.0, 1e-9);
+}
+
+TEST(ArmFile, DynamicsOfTheUrdfAreFrictionWhereTheFileHasNone) {
+  const auto folder = std::filesystem::temp_directory_path() / ("snare_arm_dynamics_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "two_links.urdf") << test::edited(
+      test::valid_urdf, "velocity=\"1\"/>", "velocity=\"1\"/><dynamics damping=\"0.7\" friction=\"3.5\"/>");
+  const multibody::ArmDescription of_urdf = multibody::parse_arm(folder / "x.toml", test::valid_arm);
+  EXPECT_EQ(of_urdf.arm.joints[0].friction.viscous, 0.7);
+  EXPECT_EQ(of_urdf.arm.joints[0].friction.coulomb, 3.5);
+  EXPECT_EQ(of_urdf.arm.joints[0].friction.breakaway, 3.5);
+  EXPECT_EQ(of_urdf.arm.joints[1].friction.viscous, 0.0);
+  const multibody::ArmDescription of_file = multibody::parse_arm(
+      folder / "x.toml", test::edited(test::valid_arm, "[every_joint]\n", "[every_joint]\ncoulomb_Nm = 0.5\n"));
+  EXPECT_EQ(of_file.arm.joints[0].friction.viscous, 0.7);
+  EXPECT_EQ(of_file.arm.joints[0].friction.coulomb, 0.5);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ArmFile, NumbersLikelyInAnotherUnitAreDoubted) {
+  const auto warnings = [](const char* from, const char* to) {
+    return multibody::parse_urdf("x.urdf", test::edited(test::valid_urdf, from, to)).warnings;
+  };
+  EXPECT_THAT(multibody::parse_urdf("x.urdf", test::valid_urdf).warnings, testing::IsEmpty());
+  EXPECT_THAT(warnings("lower=\"-3\" upper=\"3\"", "lower=\"-180\" upper=\"180\""),
+              testing::ElementsAre("joint shoulder: its limits of -180 to 180 rad are more than a turn: are they in "
+                                   "degrees? URDF is in radians"));
+  EXPECT_THAT(warnings("lower=\"-3\" upper=\"3\"", "lower=\"-6.2832\" upper=\"6.2832\""), testing::IsEmpty());
+  // sqrt(9e5 / 10) = 300 m on an arm of 1.7 m.
+  EXPECT_THAT(
+      warnings("ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\" iyz=\"0\" izz=\"0.9\"",
+               "ixx=\"1e5\" ixy=\"0\" ixz=\"0\" iyy=\"9e5\" iyz=\"0\" izz=\"9e5\""),
+      testing::ElementsAre("link upper: its radius of gyration of 300 m is larger than the robot's reach of 1.7 "
+                           "m: is the inertia in kg mm2? URDF is in kg m2"));
+  for (const char* file : {"ssrms_like.toml", "jemrms_like.toml", "ssrms_on_station.toml", "jemrms_with_payload.toml"})
+    EXPECT_THAT(shipped(file).warnings, testing::IsEmpty()) << file;
 }
 
 TEST(ArmFile, TheHeavySsrmsHasTheMassAndLengthOfHonda) {
