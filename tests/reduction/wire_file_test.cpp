@@ -40,6 +40,13 @@ positions_mm = [0.1]
   EXPECT_THAT(said, HasSubstr("laws.positions_mm[1] = 0.1, must be >= 1.75 and <= 173.25"));
 }
 
+// 0.49 mm is what is left of the length in decimal numbers, and not in binary.
+TEST(WireFile, RangesMayEndAtTheSlackOfTheWire) {
+  EXPECT_EQ(small_wire("[ranges]\nslack_mm = [0.49, 1.0]\n").cases.size(), 1u);
+  EXPECT_EQ(small_wire("[ranges]\nslack_mm = [0.1, 0.49]\n").cases.size(), 1u);
+  EXPECT_EQ(small_wire("[ranges]\nslack_mm = [0.49]\n").cases.size(), 1u);
+}
+
 TEST(WireFile, CombinesListedValues) {
   const WireFile file = small_wire("[ranges]\nradius_mm = [3.0, 6.0]\nfriction = [0.0, 0.1, 0.2]\n");
   ASSERT_EQ(file.cases.size(), 6u);

@@ -171,6 +171,21 @@ class Compositions : public test::FolderFixture {
 
 class SlowCompositions : public Compositions {};
 
+// The fixed mounts stand at first_wire_deg + 360 (k - 1)/n about the axis, and only the turning ones go the other way.
+TEST_F(Compositions, WiresOfASnareAreCountedTheSameWhicheverWayItCloses) {
+  const WireMotions left = read({}), right = read({"snares[snare].turns=\"right\""});
+  for (std::size_t k = 1; k <= 3; ++k) {
+    const Eigen::Matrix3Xd& a = left.runs.front().motion.wires[k].positions;
+    const Eigen::Matrix3Xd& b = right.runs.front().motion.wires[k].positions;
+    EXPECT_NEAR((a.col(0) - b.col(0)).norm(), 0.0, 1e-12);  // rounding on metres
+    EXPECT_GT((a.rightCols<1>() - b.rightCols<1>()).norm(), 0.1);
+  }
+}
+
+TEST_F(Compositions, ShapesWithoutAFrameStandOnTheWorld) {
+  EXPECT_NO_THROW(static_cast<void>(read({}, with("name = \"pin\"\nframe = \"shaft\"\n", "name = \"pin\"\n"))));
+}
+
 TEST_F(Compositions, PutEverythingWhereItBelongs) {
   const WireMotions all = read({});
   const coupling::Motion& m = all.runs.front().motion;
