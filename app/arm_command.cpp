@@ -2,6 +2,7 @@
 
 #include "app/experiment_input.hpp"
 #include "app/interruption.hpp"
+#include "base/one_line.hpp"
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "multibody/arm/arm_file.hpp"
@@ -181,10 +182,11 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
     print(result.dump(1) + "\n");
     return ExitStatus::done;
   }
-  std::string text = fmt::format(
-      "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n", arm.title,
-      result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(), result["reach_m"].get<double>(),
-      result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(), result["tip_m"][2].get<double>());
+  std::string text =
+      fmt::format("{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
+                  base::visible(arm.title), result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
+                  result["reach_m"].get<double>(), result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(),
+                  result["tip_m"][2].get<double>());
   text += fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
                       "motor [kg m2]", "stiffness [N m/rad]", "drive");
   for (const nlohmann::json& joint : result["joints"]) {

@@ -2,6 +2,7 @@
 
 #include "app/interruption.hpp"
 #include "base/files.hpp"
+#include "base/one_line.hpp"
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -31,16 +32,17 @@ void Console::say(const std::string& text) {
   if (quiet_) return;
   end_progress();
   const std::scoped_lock lock(mutex_);
-  fmt::print(stderr, "{}\n", text);
+  fmt::print(stderr, "{}\n", base::visible_lines(text));
 }
 
 void Console::complain(const std::string& text) {
   end_progress();
   const std::scoped_lock lock(mutex_);
-  fmt::print(stderr, "{}\n", text);
+  fmt::print(stderr, "{}\n", base::visible_lines(text));
 }
 
-void Console::progress(const std::string& text) {
+void Console::progress(const std::string& stage) {
+  const std::string text = base::visible(stage);
   set_stage(text);
   if (quiet_) return;
   const std::scoped_lock lock(mutex_);

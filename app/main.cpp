@@ -4,6 +4,7 @@
 #include "app/new_command.hpp"
 #include "app/result_folder.hpp"
 #include "base/errors.hpp"
+#include "base/one_line.hpp"
 #include "base/parallel.hpp"
 #include "base/toml_reader.hpp"
 
@@ -13,7 +14,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <iterator>
 #include <new>
 #include <sstream>
@@ -210,8 +210,9 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return static_cast<int>(ExitStatus::wrong_input);
   } catch (const CLI::ParseError& error) {
-    std::ostringstream out;
-    const int code = app.exit(error, out, std::cerr);
+    std::ostringstream out, complaint;
+    const int code = app.exit(error, out, complaint);
+    fmt::print(stderr, "{}", snare::base::visible_lines(complaint.str()));
     snare::app::print(out.str());
     return code == 0 ? 0 : static_cast<int>(ExitStatus::wrong_input);
   }
@@ -225,7 +226,8 @@ int run(int argc, char** argv) {
     status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     Parsed& p = parsed[k];
-    p.options.command = std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + p.file.string());
+    p.options.command =
+        std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + snare::base::shell_word(p.file.string()));
     if (p.command->parsed())
       status = guarded(p.options, verbs[k].schema, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
@@ -238,7 +240,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", snare::base::visible_lines(error.what()));
     return static_cast<int>(ExitStatus::failure);
   }
 }

@@ -3,6 +3,7 @@
 #include "app/commands.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "base/one_line.hpp"
 
 #include <fmt/format.h>
 
@@ -79,8 +80,8 @@ ExitStatus run_new(const std::string& what, const CommonOptions& options, Consol
     throw;
   }
   for (const auto& [path, text] : files) console.say(path.string());
-  console.say(fmt::format("next: snare {} {} --out {}", set->verb, files.front().first.string(),
-                          (options.out / "out").string()));
+  console.say(fmt::format("next: snare {} {} --out {}", set->verb, base::shell_word(files.front().first.string()),
+                          base::shell_word((options.out / "out").string())));
   return ExitStatus::done;
 }
 

@@ -3,6 +3,8 @@
 #include "base/byte_order_mark.hpp"
 #include "base/csv_header.hpp"
 #include "base/errors.hpp"
+#include "base/files.hpp"
+#include "base/one_line.hpp"
 
 #include <fmt/format.h>
 
@@ -42,18 +44,9 @@ bool is_ascii(std::string_view text) noexcept {
 
 /// A cell as it is shown in a message: shortened, control characters visible.
 std::string shown(std::string_view cell) {
-  std::string text;
-  for (const char c : cell.substr(0, shown_cell)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20u || byte == 0x7Fu)
-      text += fmt::format("\\x{:02x}", byte);
-    else
-      text += c;
-  }
-  if (cell.size() <= shown_cell) return text;
-  const std::size_t cut = find_invalid_utf8(text);  // the cut may have split a character
-  if (cut != std::string::npos) text.resize(cut);
-  return text + "...";
+  if (cell.size() <= shown_cell) return visible(cell);
+  const std::string_view cut = cell.substr(0, shown_cell);
+  return visible(cut.substr(0, find_invalid_utf8(cut))) + "...";  // the cut may have split a character
 }
 
 /// Removes a comment that no quotes enclose.
@@ -388,7 +381,7 @@ void append_text(std::string& to, std::string_view text) {
 CsvWriter::CsvWriter(const std::filesystem::path& path, std::vector<std::string> columns,
                      const std::vector<std::string>& comments)
     : path_(path), columns_(std::move(columns)), file_(path) {
-  for (const std::string& comment : comments) buffer_ += "# " + comment + '\n';
+  for (const std::string& comment : comments) buffer_ += "# " + one_line(comment) + '\n';
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     if (i > 0) buffer_ += ',';
     append_text(buffer_, columns_[i]);

@@ -1,5 +1,7 @@
 #include "base/errors.hpp"
 
+#include "base/one_line.hpp"
+
 #include <fmt/format.h>
 
 #include <utility>
@@ -26,7 +28,7 @@ std::string InputProblem::message() const {
   if (!key.empty() && !value.empty()) text += fmt::format(" = {}", value);
   if (!key.empty() && !requirement.empty()) text += ", ";
   text += requirement;
-  return text;
+  return visible(text);  // it may go to a terminal
 }
 
 InputError::InputError(std::vector<InputProblem> problems)

@@ -2,6 +2,7 @@
 
 #include "base/archive.hpp"
 #include "base/errors.hpp"
+#include "base/one_line.hpp"
 #include "base/toml_reader.hpp"
 #include "results/version.hpp"
 
@@ -134,9 +135,9 @@ study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::
 }
 
 std::string SweepStudy::command_of(const std::vector<double>& values) const {
-  std::string command = fmt::format("snare {} {}", runner_.verb(), runner_.file().string());
+  std::string command = fmt::format("snare {} {}", runner_.verb(), base::shell_word(runner_.file().string()));
   for (const base::Override& change : overrides_of(values))
-    command += fmt::format(" --set '{}={}'", change.key, change.value);
+    command += " --set " + base::shell_word(change.key + "=" + change.value);
   return command;
 }
 

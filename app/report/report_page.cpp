@@ -2,6 +2,7 @@
 
 #include "app/report/plot_data.hpp"
 #include "app/report/report_assets.hpp"
+#include "base/one_line.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -232,13 +233,10 @@ std::string format_significant(double value, int digits) {
 }
 
 std::string escape_html(std::string_view text) {
-  // nlohmann's writer repairs what is not UTF-8; parsing it back gives the repaired text.
-  const std::string valid =
-      json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
   static const std::map<char, std::string> entities{
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string safe;
-  for (const char c : valid) {
+  for (const char c : base::one_line(text)) {
     const auto entity = entities.find(c);
     safe += entity == entities.end() ? std::string(1, c) : entity->second;
   }
