@@ -52,5 +52,5 @@ PYBIND11_MODULE(_core, module) {
 
   snare::python::add_laws(module);
   snare::python::add_verbs(module);
-  py::module_::import("atexit").attr("register")(py::cpp_function(&snare::python::wait_for_left_work));
+  py::module_::import("atexit").attr("register")(py::cpp_function(&snare::python::end_work));
 }

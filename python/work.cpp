@@ -1,8 +1,11 @@
 #include "python/work.hpp"
 
 #include "base/parallel.hpp"
+#include "python/gil.hpp"
 
 #include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -30,11 +33,28 @@ struct Work {
   std::exception_ptr failure;
   std::optional<std::string> stage;  // not told yet
   std::atomic<bool> stop{false};
+  pid_t process = ::getpid();
 };
 
-std::vector<std::shared_ptr<Work>>& left_work() {
-  static auto* all = new std::vector<std::shared_ptr<Work>>;  // outlives every thread
-  return *all;
+/// Work that has not ended, of this process and of those that it was forked from. Outlives every thread.
+struct OpenWork {
+  std::mutex mutex;
+  std::vector<std::shared_ptr<Work>> all;
+};
+
+OpenWork& open_work() {
+  static auto* open = new OpenWork;
+  return *open;
+}
+
+void begin(const std::shared_ptr<Work>& work) {
+  const std::scoped_lock lock(open_work().mutex);
+  open_work().all.push_back(work);
+}
+
+void finish(const std::shared_ptr<Work>& work) {
+  const std::scoped_lock lock(open_work().mutex);
+  std::erase(open_work().all, work);
 }
 
 void run(Work& work, const std::function<void(const results::Watch&)>& body, int threads) {
@@ -67,7 +87,7 @@ void ask_python(Work& work, const py::object& progress) {
     const std::scoped_lock lock(work.mutex);
     stage = std::exchange(work.stage, std::nullopt);
   }
-  const py::gil_scoped_acquire gil;
+  const WithGil gil;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (stage && !progress.is_none()) progress(*stage);
 }
@@ -79,8 +99,9 @@ void do_work(const std::function<void(const results::Watch&)>& body, int threads
   if (threads < 0 || threads > most_threads)
     throw std::invalid_argument(fmt::format("threads = {}, must be from 0 to {}", threads, most_threads));
   const auto work = std::make_shared<Work>();
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   std::thread thread([work, body, threads] { run(*work, body, threads); });
+  begin(work);
   try {
     while (!wait(*work, glance_s)) ask_python(*work, progress);
     ask_python(*work, progress);
@@ -88,21 +109,30 @@ void do_work(const std::function<void(const results::Watch&)>& body, int threads
     work->stop = true;
     if (wait(*work, patience_s)) {
       thread.join();
+      finish(work);
     } else {
       thread.detach();
-      const py::gil_scoped_acquire gil;
-      left_work().push_back(work);
     }
     throw;
   }
   thread.join();
+  finish(work);
   if (work->failure) std::rethrow_exception(work->failure);
 }
 
-void wait_for_left_work() {
+void end_work() {
   constexpr double patience = 5.0;  // [s]
+  std::vector<std::shared_ptr<Work>> open;
+  {
+    const std::scoped_lock lock(open_work().mutex);
+    open = open_work().all;
+  }
+  for (const std::shared_ptr<Work>& work : open) work->stop = true;
+  close_work(patience);
   const py::gil_scoped_release release;
-  for (const std::shared_ptr<Work>& work : left_work()) static_cast<void>(wait(*work, patience));
+  for (const std::shared_ptr<Work>& work : open) {
+    if (work->process == ::getpid()) static_cast<void>(wait(*work, patience));
+  }
 }
 
 }  // namespace snare::python

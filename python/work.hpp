@@ -21,8 +21,8 @@ void do_work(const std::function<void(const results::Watch&)>& work, int threads
 inline constexpr double glance_s = 0.05;
 inline constexpr double patience_s = 0.6;
 
-/// Waits for work that was left, some seconds at most: before the interpreter takes down what it uses.
-void wait_for_left_work();
+/// Ends the work of daemon threads and waits for what was left, some seconds at most: before the interpreter takes down what they use.
+void end_work();
 
 /// The result of `make`, done as work. `make` is copied into the work, and must hold all that it reads.
 template <class Make>
