@@ -62,7 +62,7 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
   base::write_text(out / "law.py", reduction::python_module(one, title));
   base::write_text(out / "law.mo", reduction::modelica_package(one, title, name));
   base::write_text(out / "law_mujoco.xml", reduction::mujoco_snippet(one, title));
-  base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title));
+  base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title).text);
   base::write_text(out / "law_simulink.csv", reduction::lookup_table(one).csv);
 }
 

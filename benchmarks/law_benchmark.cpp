@@ -27,7 +27,9 @@ int main(int count, char** arguments) try {
   std::vector<double> force(points);
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t i = 0; i < points; ++i)
-    force[i] = law.force(*law.loading, d[i], d[points + i], d[2 * points + i], snare::coupling::Outside::refuse);
+    force[i] = snare::scenario::DistilledLaw::force(*law.loading, d[i], d[points + i], d[2 * points + i],
+                                                    snare::coupling::Outside::refuse)
+                   .force;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print("{{\"seconds\": {}, \"sum_N\": {}}}\n", seconds, std::accumulate(force.begin(), force.end(), 0.0));
 } catch (const std::exception& problem) {

@@ -1,5 +1,6 @@
 #include "python/convert.hpp"
 
+#include <pybind11/stl/filesystem.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -55,6 +56,13 @@ py::object to_python(const json& document) {
     default:
       return py::none();
   }
+}
+
+std::filesystem::path path_of(const py::object& given, const char* name) {
+  if (py::isinstance<py::str>(given) || py::isinstance<py::bytes>(given) || py::hasattr(given, "__fspath__"))
+    return given.cast<std::filesystem::path>();
+  throw py::type_error(std::string(name) + " = " + std::string(py::repr(given)) +
+                       ", must be the path of a file: text or os.PathLike");
 }
 
 py::array_t<double> to_array(std::vector<double> numbers) {

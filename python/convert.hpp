@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <nlohmann/json_fwd.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace snare::python {
 /// A document as Python has it: objects are dictionaries, arrays of numbers alone NumPy arrays (of whole numbers where all are),
 /// other arrays lists, null None.
 [[nodiscard]] pybind11::object to_python(const nlohmann::json& document);
+
+/// The path that a text or an os.PathLike names. Throws TypeError for anything else, naming the argument.
+[[nodiscard]] std::filesystem::path path_of(const pybind11::object& given, const char* name);
 
 /// A NumPy array that takes the numbers over without a copy.
 [[nodiscard]] pybind11::array_t<double> to_array(std::vector<double> numbers);

@@ -79,17 +79,19 @@ coupling::LawValue FittedLaw::at(double travel, coupling::Outside outside) const
     throw std::domain_error(fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
                                         1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
   }
-  result.force = form->force(values, travel);
-  result.stiffness = form->stiffness(values, travel);
+  const coupling::RangedLaw law = ranged();
+  result.force = law.force(travel);
+  result.stiffness = law.stiffness(travel);
   return result;
 }
 
 double FittedLaw::energy(double travel) const {
-  return travel <= 0.0 ? 0.0 : form->energy(values, travel);
+  return travel <= 0.0 ? 0.0 : ranged().energy(travel);
 }
 
 LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law) {
   LawError e;
+  const coupling::RangedLaw ranged = law.ranged();
   Interval force, stiffness, energy;
   bool first = true;
   const auto widen = [&](Interval& range, double x) {
@@ -100,9 +102,9 @@ LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::si
   double sum_e = 0.0;
   for (const std::size_t i : at) {
     const double d = curve.knots()[i];
-    const double off_f = std::abs(law.form->force(law.values, d) - curve.value(d));
-    const double off_k = std::abs(law.form->stiffness(law.values, d) - curve.slope(d));
-    const double off_e = std::abs(law.form->energy(law.values, d) - curve.integral(d));
+    const double off_f = std::abs(ranged.force(d) - curve.value(d));
+    const double off_k = std::abs(ranged.stiffness(d) - curve.slope(d));
+    const double off_e = std::abs(ranged.energy(d) - curve.integral(d));
     widen(force, curve.value(d));
     widen(stiffness, curve.slope(d));
     widen(energy, curve.integral(d));

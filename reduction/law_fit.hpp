@@ -2,6 +2,7 @@
 
 #include "coupling/contact/force_table.hpp"
 #include "coupling/contact/law_form.hpp"
+#include "coupling/contact/ranged_law.hpp"
 #include "numerics/cubic_spline.hpp"
 #include "reduction/wire_file.hpp"
 
@@ -33,9 +34,12 @@ struct FittedLaw {
   LawError error;
   bool converged = false;
 
-  /// At a travel [m]. Throws std::domain_error beyond the range with coupling::Outside::refuse. No contact (travel < 0): no force.
+  /// The law with its range: never negative, linear beyond.
+  [[nodiscard]] coupling::RangedLaw ranged() const { return {form->with(values), range.high}; }
+  /// Force and stiffness at a travel [m]. Without contact (travel < 0) both are 0. Beyond the range it throws std::domain_error or
+  /// continues linearly.
   [[nodiscard]] coupling::LawValue at(double travel, coupling::Outside outside) const;
-  [[nodiscard]] double energy(double travel) const;  ///< [J]
+  [[nodiscard]] double energy(double travel) const;  ///< integral of the force from first touch [J]
 };
 
 /// Least squares of a form through points (travel ascending, >= 0) by Levenberg and Marquardt from the best guess. The

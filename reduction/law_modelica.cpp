@@ -1,43 +1,37 @@
+#include "reduction/export_text.hpp"
 #include "reduction/law_export.hpp"
-#include "reduction/law_simulators.hpp"
+
+#include "base/one_line.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 namespace snare::reduction {
 
 namespace {
 
-std::string array(std::string_view name, const std::vector<double>& values) {
-  std::string text = fmt::format("  constant Real {}[{}] = {{", name, values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    // A number without a point is an Integer, which Modelica takes for a Real.
-    text += fmt::format("{}{}", i == 0 ? "" : i % 8 == 0 ? ",\n    " : ", ", values[i]);
-  }
-  return text + "};\n";
+std::string array(const char* name, const std::vector<double>& values) {
+  // A number without a point is an Integer, which Modelica takes for a Real.
+  return fmt::format("  constant Real {}[{}] = {{{}}};\n", name, values.size(), number_list(values, 8, ",\n    "));
 }
 
-/// What stands in quotes.
-std::string in_quotes(std::string_view text) {
+/// A text as a Modelica string.
+std::string in_quotes(const std::string& text) {
   std::string safe;
-  for (const char c : text) {
+  for (const char c : base::one_line(text)) {
     if (c == '"' || c == '\\') safe += '\\';
-    safe += c == '\n' ? ' ' : c;
+    safe += c;
   }
   return '"' + safe + '"';
 }
 
+// Every call has one result, and functions that are called for it assign and branch alone where they can: some readers know no more.
 constexpr const char* helpers = R"(
-  function pow "Power, as C writes it"
+  function pow "Power of a number that is not negative, as C writes it"
     input Real x;
     input Real y;
     output Real z;
   algorithm
-    z := x ^ y;
+    z := max(0.0, x) ^ y;
   end pow;
 
   function fabs "Magnitude, as C writes it"
@@ -47,36 +41,85 @@ constexpr const char* helpers = R"(
     z := abs(x);
   end fabs;
 
-  function basis "Cell of x among knots, and the cubic Hermite functions there"
+  function find_cell "Lower knot of the cell of x; of the first or last cell beyond the knots"
     input Real knots[:];
     input Real x;
     output Integer low;
-    output Integer high;
+  protected
+    Integer high;
+    Integer middle;
+  algorithm
+    low := 1;
+    high := size(knots, 1);
+    while high - low > 1 loop
+      middle := div(low + high, 2);
+      if x >= knots[middle] then
+        low := middle;
+      else
+        high := middle;
+      end if;
+    end while;
+  end find_cell;
+
+  function weights "Weights of value and slope at the lower and the upper knot of a cell: cubic, beyond the knots linear"
+    input Real knots[:];
+    input Integer low;
+    input Real x;
     output Real b[4];
   protected
-    Integer middle;
+    Integer n;
     Real h;
     Real t;
     Real u;
   algorithm
-    low := 1;
-    high := size(knots, 1);
+    n := size(knots, 1);
     b := {1.0, 0.0, 0.0, 0.0};
-    if high > 1 then
-      while high - low > 1 loop
-        middle := div(low + high, 2);
-        if x >= knots[middle] then
-          low := middle;
+    if n > 1 then
+      if x < knots[1] then
+        b := {1.0, x - knots[1], 0.0, 0.0};
+      else
+        if x > knots[n] then
+          b := {0.0, 0.0, 1.0, x - knots[n]};
         else
-          high := middle;
+          h := knots[low + 1] - knots[low];
+          t := (x - knots[low]) / h;
+          u := 1.0 - t;
+          b := {u * u * (1.0 + 2.0 * t), h * t * u * u, t * t * (1.0 + 2.0 * u), -h * u * t * t};
         end if;
-      end while;
-      h := knots[high] - knots[low];
-      t := (x - knots[low]) / h;
-      u := 1.0 - t;
-      b := {u * u * (1.0 + 2.0 * t), h * t * u * u, t * t * (1.0 + 2.0 * u), -h * u * t * t};
+      end if;
     end if;
-  end basis;
+  end weights;
+
+  function folded "Position over the span, from the nearer mount where left and right are alike"
+    input Real position;
+    output Real s;
+  algorithm
+    s := position / @span@;
+    if @mirror@ > 0 and s > 0.5 then
+      s := 1.0 - s;
+    end if;
+  end folded;
+
+  function in_range "Whether the force needs no continuation"
+    input Real d;
+    input Real position;
+    input Real slack;
+    output Boolean inside;
+  protected
+    Real s;
+    Real e;
+  algorithm
+    s := folded(position);
+    e := slack / @span@;
+    inside := d < 0.0 or d / @span@ <= @last@ + 1e-9 and s >= knots_position[1] - 1e-9 and s <= knots_position[@ns@] + 1e-9 and e >= knots_slack[1] - 1e-9 and e <= knots_slack[@ne@] + 1e-9;
+  end in_range;
+
+  function travel_in_range "The same of the simple laws, which know the travel alone"
+    input Real d;
+    output Boolean inside;
+  algorithm
+    inside := d / @span@ <= @last@ + 1e-9;
+  end travel_in_range;
 )";
 
 constexpr const char* of_table = R"(
@@ -86,103 +129,133 @@ constexpr const char* of_table = R"(
     input Real slack "Length less span [m]";
     output Real f "Force [N]";
   protected
+    Boolean inside;
+    Real x;
     Real s;
-    Real bd[4];
+    Real h;
+    Real t;
+    Real u;
+    Real top;
     Real bs[4];
     Real be[4];
-    Real along[4];
-    Integer k;
-    Integer k1;
-    Integer i[2];
-    Integer j[2];
+    Real ends[4];
+    Real control[4];
+    Integer i;
+    Integer j;
+    Integer first;
+    Integer last;
     Integer at;
   algorithm
     f := 0.0;
     if d >= 0.0 then
-      s := position / @span@;
-      if @mirror@ then
-        s := 1.0 - s;
+      x := d / @span@;
+      s := min(1.0, max(0.0, folded(position)));
+      i := find_cell(knots_position, s);
+      j := find_cell(knots_slack, slack / @span@);
+      last := find_cell(knots_travel, x);
+      bs := weights(knots_position, i, s);
+      be := weights(knots_slack, j, slack / @span@);
+      inside := in_range(0.0, position, slack);
+      first := last;
+      if not inside then
+        first := 1;
       end if;
-      (k, k1, bd) := basis(knots_travel, d / @span@);
-      (i[1], i[2], bs) := basis(knots_position, s);
-      (j[1], j[2], be) := basis(knots_slack, slack / @span@);
-      for c in 1:2 loop
-        for b in 1:2 loop
-          at := 8 * (k - 1 + @nd@ * (i[b] - 1 + @ns@ * (j[c] - 1)));
-          for p in 1:4 loop
-            along[p] := bd[1] * @nodes@[at + 2 * p - 1] + bd[2] * @nodes@[at + 2 * p] + bd[3] * @nodes@[at + 8 + 2 * p - 1] + bd[4] * @nodes@[at + 8 + 2 * p];
+      top := 0.0;
+      h := 1.0;
+      control := {0.0, 0.0, 0.0, 0.0};
+      for k in first:last loop
+        ends := {0.0, 0.0, 0.0, 0.0};
+        for c in 1:@corners_e@ loop
+          for b in 1:@corners_s@ loop
+            for n in 1:4 loop
+              at := 8 * (k - 1 + div(n - 1, 2) + @nd@ * (i + b - 2 + @ns@ * (j + c - 2))) + 1 + mod(n - 1, 2);
+              ends[n] := ends[n] + be[2 * c - 1] * (bs[2 * b - 1] * @nodes@[at] + bs[2 * b] * @nodes@[at + 2]) + be[2 * c] * (bs[2 * b - 1] * @nodes@[at + 4] + bs[2 * b] * @nodes@[at + 6]);
+            end for;
           end for;
-          f := f + be[2 * c - 1] * (bs[2 * b - 1] * along[1] + bs[2 * b] * along[2]) + be[2 * c] * (bs[2 * b - 1] * along[3] + bs[2 * b] * along[4]);
         end for;
+        h := knots_travel[k + 1] - knots_travel[k];
+        control := {ends[1], ends[1] + h / 3.0 * ends[2], ends[3] - h / 3.0 * ends[4], ends[3]};
+        if not inside then
+          for n in 1:4 loop
+            control[n] := max(top, control[n]);
+            top := control[n];
+          end for;
+        end if;
       end for;
-      f := @scale@ * f;
+      t := (x - knots_travel[last]) / h;
+      u := 1.0 - t;
+      if t > 1.0 then
+        f := control[4] + 3.0 * max(0.0, control[4] - control[3]) * (t - 1.0);
+      else
+        f := u * u * (u * control[1] + 3.0 * t * control[2]) + t * t * (3.0 * u * control[3] + t * control[4]);
+      end if;
+      f := @scale@ * max(0.0, f);
     end if;
   end @name@;
-)";
 
-constexpr const char* of_range = R"(
-  function in_range "Whether the table holds the place"
+  function @name@_or_stop "The same, which stops outside the range"
     input Real d;
     input Real position;
     input Real slack;
-    output Boolean inside;
-  protected
-    Real s;
+    output Real f;
   algorithm
-    s := position / @span@;
-    if @mirror@ then
-      s := 1.0 - s;
-    end if;
-    inside := d / @span@ <= knots_travel[@nd@] + 1e-9 and s >= knots_position[1] - 1e-9 and s <= knots_position[@ns@] + 1e-9 and slack / @span@ >= knots_slack[1] - 1e-9 and slack / @span@ <= knots_slack[@ne@] + 1e-9;
-  end in_range;
+    assert(in_range(d, position, slack), "outside the range of the law");
+    f := @name@(d, position, slack);
+  end @name@_or_stop;
 )";
 
-std::string filled(std::string text, const std::vector<std::pair<std::string_view, std::string>>& values) {
-  for (const auto& [key, value] : values) {
-    const std::string mark = fmt::format("@{}@", key);
-    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size()))
-      text.replace(at, mark.size(), value);
-  }
-  return text;
-}
+constexpr const char* simple = R"(
+  function @name@ "@words@"
+    input Real d "Travel from first touch [m]";
+    output Real f "Force [N]";
+  algorithm
+    f := 0.0;
+    if d > @end@ then
+      f := @end_force@ + @end_stiffness@ * (d - @end@);
+    else
+      if d >= 0.0 then
+        f := max(0.0, @expression@);
+      end if;
+    end if;
+  end @name@;
+
+  function @name@_or_stop "The same, which stops outside the range"
+    input Real d;
+    output Real f;
+  algorithm
+    assert(travel_in_range(d), "outside the range of the law");
+    f := @name@(d);
+  end @name@_or_stop;
+)";
 
 }  // namespace
 
 std::string modelica_package(const DistilledCase& one, const std::string& title, const std::string& name) {
   const std::string package = name.empty() ? "snare_law" : name;
   const coupling::ForceTable& table = *one.table.loading;
-  const auto& axes = table.axes();
-  const std::vector<std::pair<std::string_view, std::string>> numbers{
-      {"span", fmt::format("{}", table.span())},          {"scale", fmt::format("{}", table.force_scale())},
-      {"mirror", table.mirrored() ? "s > 0.5" : "false"}, {"nd", fmt::format("{}", axes[0].size())},
-      {"ns", fmt::format("{}", axes[1].size())},          {"ne", fmt::format("{}", axes[2].size())}};
-  const auto evaluation = [&](std::string function, std::string words, std::string nodes) {
-    auto values = numbers;
-    values.insert(values.end(),
-                  {{"name", std::move(function)}, {"words", std::move(words)}, {"nodes", std::move(nodes)}});
+  Replacements numbers = table_numbers(table);
+  // An axis of one knot has one corner.
+  numbers.emplace_back("corners_s", table.axes()[1].size() > 1 ? "2" : "1");
+  numbers.emplace_back("corners_e", table.axes()[2].size() > 1 ? "2" : "1");
+  const auto evaluation = [&](const char* function, const char* words, const char* nodes) {
+    Replacements values = numbers;
+    values.insert(values.end(), {{"name", function}, {"words", words}, {"nodes", nodes}});
     return filled(of_table, values);
   };
-  std::string text = fmt::format(
-      "package {} {}\n", package,
-      in_quotes(fmt::format("{}: force of a snare wire on a pusher, distilled from the full wire by snare; SI units",
-                            title)));
-  text += array("knots_travel", axes[0]) + array("knots_position", axes[1]) + array("knots_slack", axes[2]) +
-          array("nodes", table.nodes());
+  std::string head;
+  for (const std::string& line : head_lines(one, title)) head += (head.empty() ? "" : "; ") + line;
+  std::string text = fmt::format("package {} {}\n", package, in_quotes(head));
+  text += array("knots_travel", table.axes()[0]) + array("knots_position", table.axes()[1]) +
+          array("knots_slack", table.axes()[2]) + array("nodes", table.nodes());
   if (one.table.unloading) text += array("nodes_unloading", one.table.unloading->nodes());
-  text += helpers + evaluation("force", "Of the table", "nodes");
+  text += filled(helpers, numbers) + evaluation("force", "Force of the table", "nodes");
   if (one.table.unloading)
     text += evaluation("force_unloading", "The way back from the end of the travel", "nodes_unloading");
-  text += filled(of_range, numbers);
   for (const DistilledPlace& place : one.places) {
-    for (const FittedLaw& law : place.laws) {
-      const std::string function = law.form->name() + "_" + position_name(place.position);
-      text += fmt::format(
-          "\n  function {0} {1}\n    input Real d \"Travel from first touch [m]\";\n    output Real f \"Force "
-          "[N]\";\n  algorithm\n    f := 0.0;\n    if d >= 0.0 then\n      f := {2};\n    end if;\n  end {0};\n",
-          function,
-          in_quotes(fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(), law.error.largest_force,
-                                law.error.force_range)),
-          law.form->expression(law.values, ""));
+    for (const ExportedLaw& law : exported_laws(place, "")) {
+      Replacements values = law.of_numbers;
+      values.insert(values.end(), {{"name", law.name}, {"words", law.words}});
+      text += filled(simple, values);
     }
   }
   return text + fmt::format("end {};\n", package);

@@ -1,11 +1,13 @@
 #include "results/law_json.hpp"
 
+#include "reduction/export_text.hpp"
 #include "reduction/law_simulators.hpp"
 #include "results/in_mm.hpp"
 #include "results/version.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace snare::results {
@@ -155,6 +157,34 @@ json map_json(const LawMap& map) {
       {"position_mm", in_mm(map.position)}, {"to_mm", in_mm(map.travel.back())}, {"within", map_share}, {"rows", rows}};
 }
 
+/// How far each export is off, and where it is not a continuation.
+json exports_json(const DistilledCase& one) {
+  const coupling::ForceTable& table = *one.table.loading;
+  json positions = json::array();
+  for (const Interval& part : covered_positions(table)) positions.push_back(interval_in_mm(part));
+  const json range{{"travel_mm", json::array({0.0, in_mm(table.axes()[0].back() * table.span())})},
+                   {"position_mm", positions}};
+  json result = json::object();
+  for (const char* language : {"c", "cpp", "modelica", "python"}) {
+    result[language] = {{"form", "the table itself"},
+                        {"against", "full wire"},
+                        {"largest_error_N", std::max(one.table.loading_error.bound, one.table.unloading_error.bound)}};
+  }
+  result["mujoco"] = {
+      {"form", "k0 d + k1 d^2 + k2 d^3"}, {"against", "full wire"}, {"largest_error_N", joint_errors(one)}};
+  result["simulink"] = {{"form", "linear in travel and position"},
+                        {"against", "table"},
+                        {"largest_error_N", lookup_table(one).largest_error},
+                        {"range", range}};
+  const AdamsSplines adams = adams_splines(one, "");
+  result["adams"] = {{"form", "cubic (AKISPL) or linear in the travel, linear in the position"},
+                     {"against", "table"},
+                     {"largest_error_N", adams.surface_error},
+                     {"curves_largest_error_N", adams.place_errors},
+                     {"range", range}};
+  return result;
+}
+
 json case_json(const DistilledCase& one) {
   json places = json::array();
   for (const DistilledPlace& place : one.places) places.push_back(place_json(place));
@@ -175,10 +205,7 @@ json case_json(const DistilledCase& one) {
           {"table", table_json(one.table)},
           {"positions", places},
           {"map", map_json(one.map)},
-          {"exports",
-           {{"mujoco", {{"form", "k0 d + k1 d^2 + k2 d^3"}, {"largest_error_N", joint_errors(one)}}},
-            {"simulink",
-             {{"form", "linear in travel and position"}, {"largest_error_N", lookup_table(one).largest_error}}}}}};
+          {"exports", exports_json(one)}};
 }
 
 }  // namespace
@@ -188,7 +215,7 @@ json law_json(const WireFile& file, const Distillation& distillation) {
               {"version", version()},
               {"title", file.title},
               {"source", file.source},
-              {"outside_the_range", "refused, or extrapolated and flagged, as the caller chooses"},
+              {"outside_the_range", "continued linearly and flagged, or refused, as the caller chooses"},
               {"cases", json::array()}};
   for (const DistilledCase& one : distillation.cases) result["cases"].push_back(case_json(one));
   return result;

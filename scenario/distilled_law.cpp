@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "base/units.hpp"
+#include "coupling/contact/ranged_law.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -103,21 +104,24 @@ coupling::ForceTable table_of(const Field& table, const Field& nodes) {
                                           table["force_scale_N"].positive(), table["mirrored"].boolean());
 }
 
-SimpleLaw simple_law(const Field& entry, const coupling::LawPlace& place) {
-  SimpleLaw one;
-  one.position = place.position;
-  one.name = entry["name"].text();
-  one.formula = entry["formula"].text();
-  one.travel = entry["travel_mm"].interval(mm);
-  one.largest_error = entry["error"]["largest_force_N"].number();
+coupling::LawFormPointer form_of(const std::string& name, const coupling::LawPlace& place) {
   const std::vector<coupling::LawFormPointer> forms = coupling::law_forms(place);
-  const auto form = std::ranges::find_if(forms, [&](const auto& f) { return f->name() == one.name; });
-  if (form == forms.end()) entry["name"].fail("must be the name of a law that this version knows");
-  one.parameters = (*form)->parameters();
-  for (const coupling::LawParameter& p : one.parameters)
-    one.values.push_back(entry["parameters"][p.name.c_str()]["value"].number());
-  one.law =
-      (*form)->with(Eigen::Map<const Eigen::VectorXd>(one.values.data(), static_cast<Eigen::Index>(one.values.size())));
+  const auto form = std::ranges::find_if(forms, [&](const auto& f) { return f->name() == name; });
+  return form == forms.end() ? nullptr : *form;
+}
+
+SimpleLaw read_simple_law(const Field& entry, const coupling::LawPlace& place) {
+  const std::string name = entry["name"].text();
+  const coupling::LawFormPointer form = form_of(name, place);
+  if (form == nullptr) entry["name"].fail("must be the name of a law that this version knows");
+  const std::array<double, 2> travel = entry["travel_mm"].interval(mm);
+  if (!(travel[1] > 0.0)) entry["travel_mm"].fail("must end above 0");
+  std::vector<double> values;
+  for (const coupling::LawParameter& p : form->parameters())
+    values.push_back(entry["parameters"][p.name.c_str()]["value"].number());
+  SimpleLaw one = make_simple_law(name, place, std::move(values), travel);
+  one.formula = entry["formula"].text();
+  one.largest_error = entry["error"]["largest_force_N"].number();
   return one;
 }
 
@@ -144,7 +148,7 @@ DistilledLaw law_of(const Field& entry, const std::string& title) {
               wire["radius_mm"].number() * mm};
   for (const Field& at : entry["positions"].items()) {
     place.position = at["position_mm"].number() * mm;
-    for (const Field& one : at["laws"].items()) law.simple.push_back(simple_law(one, place));
+    for (const Field& one : at["laws"].items()) law.simple.push_back(read_simple_law(one, place));
   }
   return law;
 }
@@ -156,36 +160,56 @@ void check_finite(double d, double s, double e) {
 
 }  // namespace
 
-bool DistilledLaw::in_range(double d, double s, double e) const noexcept {
-  const double margin = 1e-9 * loading->span();
-  const auto within = [margin](double x, const std::array<double, 2>& range) {
-    return x >= range[0] - margin && x <= range[1] + margin;
-  };
-  const auto& axes = loading->axes();
-  const double span = loading->span();
-  const double near = loading->mirrored() ? std::min(s, span - s) : s;
-  return within(d, {axes[0].front() * span, axes[0].back() * span}) &&
-         within(near, {axes[1].front() * span, axes[1].back() * span}) &&
-         within(e, {axes[2].front() * span, axes[2].back() * span});
+std::vector<coupling::LawParameter> parameters_of_law(const std::string& name) {
+  const coupling::LawFormPointer form = form_of(name, {1.0, 0.5, 1.0, 1.0});
+  return form == nullptr ? std::vector<coupling::LawParameter>() : form->parameters();
 }
 
-double DistilledLaw::force(const coupling::ForceTable& table, double d, double s, double e,
-                           coupling::Outside outside) const {
+SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& place, std::vector<double> values,
+                          std::array<double, 2> travel) {
+  const coupling::LawFormPointer form = form_of(name, place);
+  SimpleLaw one;
+  one.position = place.position;
+  one.place = place;
+  one.name = name;
+  one.formula = form->formula();
+  one.parameters = form->parameters();
+  one.values = std::move(values);
+  one.travel = travel;
+  one.law = std::make_shared<const coupling::RangedLaw>(
+      form->with(Eigen::Map<const Eigen::VectorXd>(one.values.data(), static_cast<Eigen::Index>(one.values.size()))),
+      travel[1]);
+  return one;
+}
+
+bool DistilledLaw::in_range(double d, double s, double e) const noexcept {
+  const double span = loading->span();
+  const double margin = 1e-9 * span;
+  const auto within = [&](double x, const std::vector<double>& knots) {
+    return x >= knots.front() * span - margin && x <= knots.back() * span + margin;
+  };
+  const auto& axes = loading->axes();
+  const double near = loading->mirrored() ? std::min(s, span - s) : s;
+  return d < 0.0 || (within(d, axes[0]) && within(near, axes[1]) && within(e, axes[2]));
+}
+
+coupling::LawValue DistilledLaw::at(const coupling::ForceTable& table, double d, double s, double e,
+                                    coupling::Outside outside) {
   check_finite(d, s, e);
+  return table.at(d, s, e, outside);
+}
+
+ContinuedForce DistilledLaw::force(const coupling::ForceTable& table, double d, double s, double e,
+                                   coupling::Outside outside) {
   const auto& axes = table.axes();
   const double span = table.span();
   const double near = table.mirrored() && s > 0.5 * span ? span - s : s;
   const auto inside = [span](double x, const std::vector<double>& knots) {
     return x >= knots.front() * span && x <= knots.back() * span;
   };
-  if (inside(d, axes[0]) && inside(near, axes[1]) && inside(e, axes[2])) return table.force(d, s, e);
-  return table.at(d, s, e, outside).force;
-}
-
-double DistilledLaw::stiffness(const coupling::ForceTable& table, double d, double s, double e,
-                               coupling::Outside outside) const {
-  check_finite(d, s, e);
-  return table.at(d, s, e, outside).stiffness;
+  if (inside(d, axes[0]) && inside(near, axes[1]) && inside(e, axes[2])) return {table.force(d, s, e), false};
+  const coupling::LawValue value = at(table, d, s, e, outside);
+  return {value.force, value.extrapolated};
 }
 
 std::vector<DistilledLaw> read_law_file(const std::filesystem::path& file) {

@@ -15,14 +15,22 @@ namespace snare::scenario {
 
 /// A simple law of law.json at one position, with its numbers.
 struct SimpleLaw {
-  double position = 0.0;  ///< s [m]
+  double position = 0.0;     ///< s [m]
+  coupling::LawPlace place;  ///< of the wire
   std::string name, formula;
   std::vector<coupling::LawParameter> parameters;
   std::vector<double> values;      ///< in SI, one a parameter
   std::array<double, 2> travel{};  ///< from, to: where it was fitted [m]
   double largest_error = 0.0;      ///< against the full wire over these travels [N]
-  coupling::SpringLawPointer law;
+  coupling::SpringLawPointer law;  ///< never negative, linear beyond these travels
 };
+
+/// The law of this name at a place with numbers in the order of its form's parameters, over the travels up to `end` [m]; its name must be
+/// known, and the numbers as many as its parameters.
+[[nodiscard]] SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& place,
+                                        std::vector<double> values, std::array<double, 2> travel);
+/// The parameters of the law of this name; none where no law has it.
+[[nodiscard]] std::vector<coupling::LawParameter> parameters_of_law(const std::string& name);
 
 /// The wire of which a law was distilled, and what pushed it. SI units.
 struct DistilledWire {
@@ -30,6 +38,12 @@ struct DistilledWire {
   double axial_stiffness = 0.0;    ///< EA [N]
   double span = 0.0;               ///< [m]
   double radius = 0.0;             ///< of the pusher [m]
+};
+
+/// A force [N], and whether it is the continuation of a law outside its range.
+struct ContinuedForce {
+  double force = 0.0;
+  bool extrapolated = false;
 };
 
 /// What a law.json says of one wire, ready to be evaluated. Lengths in m, forces in N.
@@ -44,15 +58,16 @@ struct DistilledLaw {
   std::vector<SimpleLaw> simple;
   DistilledWire wire;
 
-  /// Whether the range of the table has travel d, position s and slack e [m]; slack counts as met to 1e-9 of the span.
+  /// Whether the force at travel d, position s and slack e [m] needs no continuation: within the range of the table, to 1e-9 of the span, or
+  /// without contact (d < 0).
   [[nodiscard]] bool in_range(double d, double s, double e) const noexcept;
-  /// Force [N] at travel d, position s and slack e [m] of `table`, one of the two above; no contact (d < 0): 0. The same number
-  /// as ForceTable::at gives, in half the time. Throws std::domain_error as that does, and for a number that is not finite.
-  [[nodiscard]] double force(const coupling::ForceTable& table, double d, double s, double e,
-                             coupling::Outside outside) const;
-  /// dF/dd [N/m], likewise.
-  [[nodiscard]] double stiffness(const coupling::ForceTable& table, double d, double s, double e,
-                                 coupling::Outside outside) const;
+  /// Force and stiffness at travel d, position s and slack e [m] of `table`, one of the two above: ForceTable::at. Throws
+  /// std::domain_error as that does, and for a number that is not finite.
+  [[nodiscard]] static coupling::LawValue at(const coupling::ForceTable& table, double d, double s, double e,
+                                             coupling::Outside outside);
+  /// The same force [N] in half the time.
+  [[nodiscard]] static ContinuedForce force(const coupling::ForceTable& table, double d, double s, double e,
+                                            coupling::Outside outside);
 };
 
 /// Reads a law.json: one law a case. Throws base::InputError for a file that is none, naming the field.

@@ -41,6 +41,57 @@ std::array<double, 4> bernstein(const double* v, double h) {
   return {v[0], v[0] + h / 3.0 * v[1], v[2] - h / 3.0 * v[3], v[2]};
 }
 
+using Index = std::array<std::size_t, 3>;
+using Bases = std::array<Basis, 3>;
+
+/// Value and slope along the travel at the knots k and k + 1, at the position and slack of a cell. Each is a sum over the corners (b, c),
+///   V_e (V_s f + M_s f_s) + M_e (V_s f_e + M_s f_se);   V and M weigh the value and the slope at a corner.
+std::array<double, 4> ends(const ForceTable::Axes& axes, const std::vector<double>& nodes, std::size_t k,
+                           const Index& index, const Bases& basis) noexcept {
+  std::array<double, 4> total{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    const std::size_t j = c == 0 ? index[2] : upper(axes[2], index[2]);
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::size_t i = b == 0 ? index[1] : upper(axes[1], index[1]);
+      const double vs = basis[1][2 * b];
+      const double ms = basis[1][2 * b + 1];
+      const double ve = basis[2][2 * c];
+      const double me = basis[2][2 * c + 1];
+      const double* at = &nodes[ForceTable::numbers_a_node * (k + axes[0].size() * (i + axes[1].size() * j))];
+      for (std::size_t n = 0; n < 4; ++n) {
+        const double* x = at + ForceTable::numbers_a_node * (n / 2) + n % 2;
+        total[n] += ve * (vs * x[value] + ms * x[by_s]) + me * (vs * x[by_e] + ms * x[by_se]);
+      }
+    }
+  }
+  return total;
+}
+
+/// The continuation beyond the positions or slacks, at the travel x, in the dimensionless groups. A cubic whose Bernstein coefficients do not
+/// fall does not fall. Those of the linear continuation are therefore raised to the largest one before them, from 0 at first touch; where
+/// the continuation rises by itself nothing changes.
+LawValue rising(const ForceTable::Axes& axes, const std::vector<double>& nodes, double x, const Index& index,
+                const Bases& basis) noexcept {
+  const std::vector<double>& knots = axes[0];
+  std::array<double, 4> c{};
+  double top = 0.0;
+  std::size_t k = 0;
+  for (;; ++k) {
+    c = bernstein(ends(axes, nodes, k, index, basis).data(), knots[k + 1] - knots[k]);
+    for (double& one : c) one = top = std::max(top, one);
+    if (x < knots[k + 1] || k + 2 == knots.size()) break;
+  }
+  const double h = knots[k + 1] - knots[k];
+  const double t = (x - knots[k]) / h;
+  if (t > 1.0) {
+    const double stiffness = 3.0 * (c[3] - c[2]) / h;
+    return {c[3] + stiffness * (x - knots[k + 1]), stiffness, true};
+  }
+  const double u = 1.0 - t;
+  return {u * u * u * c[0] + 3.0 * u * u * t * c[1] + 3.0 * u * t * t * c[2] + t * t * t * c[3],
+          3.0 * (u * u * (c[1] - c[0]) + 2.0 * u * t * (c[2] - c[1]) + t * t * (c[3] - c[2])) / h, true};
+}
+
 }  // namespace
 
 ForceTable::ForceTable(Axes axes, double span, double force_scale, bool mirrored)
@@ -129,28 +180,10 @@ ForceTable::Cell ForceTable::locate(const std::array<double, 3>& x) const noexce
   return cell;
 }
 
-// F = sum over the corners (b, c) of position and slack of  V_e (V_s f + M_s f_s) + M_e (V_s f_e + M_s f_se),
-// f and its derivatives along the travel by cubics; V and M weigh the value and the slope at a corner.
 double ForceTable::sum(const Cell& cell) const noexcept {
+  const std::array<double, 4> end = ends(axes_, nodes_, cell.index[0], cell.index, cell.basis);
   const Basis& bd = cell.basis[0];
-  double total = 0.0;
-  for (std::size_t c = 0; c < 2; ++c) {
-    const std::size_t j = c == 0 ? cell.index[2] : upper(axes_[2], cell.index[2]);
-    for (std::size_t b = 0; b < 2; ++b) {
-      const std::size_t i = b == 0 ? cell.index[1] : upper(axes_[1], cell.index[1]);
-      const double* low = &nodes_[node(cell.index[0], i, j)];
-      const double* high = low + numbers_a_node;
-      const auto along = [&](Slot x) {
-        return bd[0] * low[x] + bd[1] * low[x + by_d] + bd[2] * high[x] + bd[3] * high[x + by_d];
-      };
-      const double vs = cell.basis[1][2 * b];
-      const double ms = cell.basis[1][2 * b + 1];
-      const double ve = cell.basis[2][2 * c];
-      const double me = cell.basis[2][2 * c + 1];
-      total += ve * (vs * along(value) + ms * along(by_s)) + me * (vs * along(by_e) + ms * along(by_se));
-    }
-  }
-  return total;
+  return bd[0] * end[0] + bd[1] * end[1] + bd[2] * end[2] + bd[3] * end[3];
 }
 
 double ForceTable::derivative(const std::array<double, 3>& x, std::size_t axis) const noexcept {
@@ -164,31 +197,49 @@ double ForceTable::derivative(const std::array<double, 3>& x, std::size_t axis) 
 
 double ForceTable::force(double travel, double position, double slack) const noexcept {
   if (travel < 0.0) return 0.0;
-  return force_scale_ * sum(locate(reduced(travel, position, slack)));
+  return std::max(0.0, force_scale_ * sum(locate(reduced(travel, position, slack))));
 }
 
+// Outside the range the force continues linearly in each of the three: along the travel with the stiffness of its end, along the position up
+// to the mounts and constant beyond them. A continued force is never negative and never falls along the travel: where it would, it keeps its
+// largest value so far.                                                                                              theory.md (R.12)
 LawValue ForceTable::at(double travel, double position, double slack, Outside outside) const {
-  LawValue result;
-  if (travel < 0.0) return result;
-  const std::array<double, 3> x = reduced(travel, position, slack);
-  std::array<double, 3> inside = x;
+  if (travel < 0.0) return {};
+  std::array<double, 3> x = reduced(travel, position, slack);
+  std::array<double, 3> nearest = x;
+  std::array<bool, 3> beyond{};
   for (std::size_t a = 0; a < 3; ++a) {
     // A fixed value may be met to the last digits only.
     const double margin = 1e-9 * std::max(1.0, std::abs(axes_[a].back()));
-    inside[a] = std::clamp(x[a], axes_[a].front(), axes_[a].back());
-    if (std::abs(inside[a] - x[a]) <= margin) continue;
-    if (outside == Outside::refuse) {
+    nearest[a] = std::clamp(x[a], axes_[a].front(), axes_[a].back());
+    beyond[a] = !(std::abs(nearest[a] - x[a]) <= margin);
+    if (!beyond[a]) x[a] = nearest[a];
+    if (beyond[a] && outside == Outside::refuse) {
       constexpr std::array<const char*, 3> names{"travel", "position", "slack"};
-      throw std::domain_error(fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm",
-                                          names[a], 1e3 * x[a] * span_, 1e3 * axes_[a].front() * span_,
-                                          1e3 * axes_[a].back() * span_));
+      throw std::domain_error(fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm{}",
+                                          names[a], 1e3 * std::array{travel, position, slack}[a],
+                                          1e3 * axes_[a].front() * span_, 1e3 * axes_[a].back() * span_,
+                                          a == 1 && mirrored_ ? " and its mirror image" : ""));
     }
-    result.extrapolated = true;
   }
-  result.force = sum(locate(inside));
-  result.stiffness = derivative(inside, 0);
-  if (result.extrapolated) {
-    for (std::size_t a = 0; a < 3; ++a) result.force += derivative(inside, a) * (x[a] - inside[a]);
+  x[1] = std::clamp(x[1], std::min(0.0, nearest[1]), std::max(1.0, nearest[1]));  // between the mounts
+  Cell cell = locate(nearest);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (x[a] == nearest[a] || axes_[a].size() == 1) continue;
+    const double low = axes_[a][cell.index[a]];
+    const double h = axes_[a][cell.index[a] + 1] - low;
+    const Basis slope = hermite_slope((nearest[a] - low) / h, h);
+    for (std::size_t n = 0; n < 4; ++n) cell.basis[a][n] += (x[a] - nearest[a]) * slope[n];
+  }
+  LawValue result;
+  if (beyond[1] || beyond[2]) {
+    result = rising(axes_, nodes_, x[0], cell.index, cell.basis);
+  } else {
+    result.force = sum(cell);
+    result.stiffness = derivative(nearest, 0);
+    result.extrapolated = beyond[0];
+    if (beyond[0] && result.stiffness < 0.0) result = {sum(locate(nearest)), 0.0, true};
+    if (result.force < 0.0) result = {0.0, 0.0, beyond[0]};
   }
   result.force *= force_scale_;
   result.stiffness *= force_scale_ / span_;

@@ -17,9 +17,9 @@ and return SI units. The formats of all files: docs/README.md of the project.
 Long work leaves other threads of Python running, and an interrupt (Ctrl-C) ends it within a second.
 """
 
-from snare._core import InputError, Law, SimpleLaw, __version__
+from snare._core import InputError, Law, OutsideRange, SimpleLaw, __version__
 from snare._results import load
 from snare._verbs import SolverError, compare, distil, fit, push, simulate, sweep, trace
 
-__all__ = ["InputError", "Law", "SimpleLaw", "SolverError", "__version__", "compare", "distil", "fit", "load", "push",
-           "simulate", "sweep", "trace"]
+__all__ = ["InputError", "Law", "OutsideRange", "SimpleLaw", "SolverError", "__version__", "compare", "distil", "fit", "load",
+           "push", "simulate", "sweep", "trace"]

@@ -102,6 +102,8 @@ def load(path: Union[str, os.PathLike]) -> Result:
     units, documents in the units that their names end in. Raises FileNotFoundError where there is nothing of the kind, ValueError where a
     file is none of these.
     """
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"path = {path!r}, must be the path of a file or folder: text or os.PathLike")
     path = pathlib.Path(path)
     if path.is_dir():
         result: Result = {}

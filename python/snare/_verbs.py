@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import sys
 from typing import Any, Callable, List, Mapping, Optional, Tuple, Union
@@ -64,6 +65,22 @@ def _watcher(progress: Progress) -> Optional[Callable[[str], Any]]:
     return progress
 
 
+def _path(given: Any, name: str) -> File:
+    if not isinstance(given, (str, os.PathLike)):
+        raise TypeError(f"{name} = {given!r}, must be the path of a file: text or os.PathLike")
+    return given
+
+
+def _call(verb: Callable[..., Any], file: File, name: str, set: Optional[Mapping[str, Any]], threads: int,
+          progress: Progress, *more: Any) -> Any:
+    """A verb of the compiled part, with arguments of the kinds that it takes. name: of the argument ``file``."""
+    if isinstance(threads, bool) or not hasattr(threads, "__index__"):
+        raise TypeError(f"threads = {threads!r}, must be a whole number")
+    if not 0 <= operator.index(threads) <= 1024:
+        raise ValueError(f"threads = {threads}, must be from 0 to 1024")
+    return verb(_path(file, name), _pairs(set), operator.index(threads), _watcher(progress), *more)
+
+
 def _with_curves(answer: Tuple[Optional[Result], Any]) -> Result:
     """The document with its curves; raises where there is none."""
     document, curves = answer
@@ -86,7 +103,7 @@ def push(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: 
     readings.
     Raises InputError for a wrong file, SolverError where a curve did not reach its end; its ``result`` has what was reached.
     """
-    result = _with_curves(_core.push(experiment, _pairs(set), threads, _watcher(progress)))
+    result = _with_curves(_call(_core.push, experiment, "experiment", set, threads, progress))
     stopped = [f"series {one['series']}: {one['stopped']}" for one in result["series"] if one["stopped"]]
     if stopped:
         raise SolverError("\n".join(stopped), result)
@@ -103,7 +120,7 @@ def fit(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: i
     ``base`` and ``final`` in the sensor's ``unit``.
     Raises InputError, and SolverError where the model cannot be fitted.
     """
-    return _with_curves(_core.fit(experiment, _pairs(set), threads, _watcher(progress)))
+    return _with_curves(_call(_core.fit, experiment, "experiment", set, threads, progress))
 
 
 def trace(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
@@ -114,7 +131,7 @@ def trace(experiment: File, *, set: Optional[Mapping[str, Any]] = None, threads:
     ``base`` and ``final`` (``rmse_N``, ``parameters``), ``next_experiment``, ...
     Raises InputError, and SolverError where the base model cannot be fitted.
     """
-    return _with_curves(_core.trace(experiment, _pairs(set), threads, _watcher(progress)))
+    return _with_curves(_call(_core.trace, experiment, "experiment", set, threads, progress))
 
 
 def distil(wire: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0,
@@ -125,7 +142,7 @@ def distil(wire: File, *, set: Optional[Mapping[str, Any]] = None, threads: int 
     Returns law.json (docs/law_json.md) with ``laws``, a list of Law, one a case.
     Raises InputError, and SolverError where a curve of the full wire could not be computed.
     """
-    document, laws = _core.distil(wire, _pairs(set), threads, _watcher(progress))
+    document, laws = _call(_core.distil, wire, "wire", set, threads, progress)
     if document is None:
         raise SolverError(laws)
     document["laws"] = laws
@@ -141,7 +158,7 @@ def simulate(scenario: File, *, set: Optional[Mapping[str, Any]] = None, threads
     scenario runs several), and ``telemetry`` where there are sensors: NaN at times at which one does not read.
     Raises InputError, and SolverError where a run did not reach its end; its ``result`` has what was reached.
     """
-    document, history, telemetry = _core.simulate(scenario, _pairs(set), threads, _watcher(progress))
+    document, history, telemetry = _call(_core.simulate, scenario, "scenario", set, threads, progress)
     document["history"] = table(history)
     if telemetry:
         document["telemetry"] = table(telemetry)
@@ -170,7 +187,7 @@ def compare(case: File, *, set: Optional[Mapping[str, Any]] = None, threads: int
     Returns compare.json (docs/law_json.md), with a list: ``cases`` of pushes, ``models`` of a scenario; numbers are in the units that
     their names end in. Raises InputError; what a model could not do stands in the result.
     """
-    return _core.compare(case, _pairs(set), threads, _watcher(progress))
+    return _call(_core.compare, case, "case", set, threads, progress)
 
 
 def sweep(study: File, *, set: Optional[Mapping[str, Any]] = None, threads: int = 0, progress: Progress = None,
@@ -186,6 +203,6 @@ def sweep(study: File, *, set: Optional[Mapping[str, Any]] = None, threads: int 
     histories.h5 in ``out``, where the sweep keeps histories and every case was run.
     Raises InputError; a case that has no result stands in ``table`` with its reason.
     """
-    summary, cases = _core.sweep(study, _pairs(set), threads, _watcher(progress), "" if out is None else out)
+    summary, cases = _call(_core.sweep, study, "study", set, threads, progress, "" if out is None else _path(out, "out"))
     summary["table"] = cases
     return summary

@@ -1,10 +1,14 @@
 """Laws in Python: the numbers of the file, NumPy's shapes, and what is outside the range."""
 
+import copy
 import importlib.util
 import json
+import multiprocessing
 import pathlib
+import pickle
 import tempfile
 import unittest
+import warnings
 
 import setting
 import snare
@@ -65,7 +69,8 @@ class Laws(unittest.TestCase):
         self.assertEqual(grid[1, 2], law.force(2e-3, 0.06))
         line = np.linspace(0, 4e-3, 9)
         np.testing.assert_array_equal(law.force(line[::2], 0.04), law.force(line, 0.04)[::2])  # strides
-        self.assertEqual(law.force(1, 0.04, outside="extrapolate"), law.force(1.0, 0.04, outside="extrapolate"))
+        with self.assertWarns(snare.OutsideRange):
+            self.assertEqual(law.force(1, 0.04), law.force(1.0, 0.04))
         with self.assertRaises(ValueError):
             law.force([1e-3, 2e-3], [0.04, 0.05, 0.06])
 
@@ -77,10 +82,11 @@ class Laws(unittest.TestCase):
         law = self.law
         beyond = 1.1 * law.travel[1]
         with self.assertRaisesRegex(ValueError, "point 1: travel of 4.4 mm is outside the range"):
-            law.force([1e-3, beyond], 0.04)
+            law.force([1e-3, beyond], 0.04, outside="refuse")
         end = law.travel[1]
         straight = law.force(end, 0.04) + law.stiffness(end, 0.04) * (beyond - end)
-        self.assertAlmostEqual(law.force(beyond, 0.04, outside="extrapolate"), straight, delta=1e-9)
+        with self.assertWarns(snare.OutsideRange):
+            self.assertAlmostEqual(law.force(beyond, 0.04), straight, delta=1e-9)
         self.assertEqual(list(law.in_range([1e-3, beyond], 0.04)), [True, False])
         with self.assertRaises(ValueError):
             law.force(1e-3, 0.04, outside="maybe")
@@ -122,6 +128,68 @@ class Laws(unittest.TestCase):
         odd["d"] = d
         for other in (np.asfortranarray(d), fixed, d.astype(">f8"), d.astype(object), odd["d"], d[::-1, ::-1][::-1, ::-1]):
             np.testing.assert_array_equal(law.force(other, 0.04), force)
+
+    def test_masks_stay_masks(self):
+        law, simple = self.law, self.law.simple[0]
+        d = np.ma.array([1e-3, np.nan, 2e-3, 1e9], mask=[False, True, False, True])
+        for force, plain in ((law.force(d, 0.04), law.force([1e-3, 2e-3], 0.04)), (simple.force(d), simple.force([1e-3, 2e-3]))):
+            self.assertIsInstance(force, np.ma.MaskedArray)
+            np.testing.assert_array_equal(np.ma.getmaskarray(force), d.mask)
+            np.testing.assert_array_equal(force.compressed(), plain)
+        s = np.ma.array([[0.04], [0.05]], mask=[[False], [True]])
+        grid = law.force(np.array([1e-3, 2e-3, 3e-3]), s)
+        np.testing.assert_array_equal(np.ma.getmaskarray(grid), [[False] * 3, [True] * 3])
+        self.assertIs(law.force(np.ma.masked, 0.04), np.ma.masked)
+        self.assertIsInstance(law.force(np.ma.array([1e-3]), 0.04), np.ma.MaskedArray)
+        self.assertFalse(np.ma.isMaskedArray(law.force(np.array([1e-3]), 0.04)))
+        np.testing.assert_array_equal(np.ma.getmaskarray(law.in_range(d, 0.04)), d.mask)
+
+    def test_laws_are_pickled_and_copied_to_the_last_bit(self):
+        random = np.random.default_rng(3)
+        d, s, e = random.uniform(-1e-3, 8e-3, 100), random.uniform(0.0, self.law.span, 100), random.uniform(0.0, 1e-3, 100)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", snare.OutsideRange)
+            for other in [pickle.loads(pickle.dumps(self.law, protocol)) for protocol in range(2, 6)] + [copy.deepcopy(self.law)]:
+                self.assertEqual(repr(other), repr(self.law))
+                np.testing.assert_array_equal(other.force(d, s, e), self.law.force(d, s, e))
+                for one, simple in zip(other.simple, self.law.simple, strict=True):
+                    self.assertEqual((one.name, one.position, one.formula, one.parameters, one.travel, one.largest_error),
+                                     (simple.name, simple.position, simple.formula, simple.parameters, simple.travel, simple.largest_error))
+                    np.testing.assert_array_equal(one.energy(d), simple.energy(d))
+            with multiprocessing.get_context("spawn").Pool(1) as pool:
+                np.testing.assert_array_equal(pool.apply(self.law.force, (d, s, e)), self.law.force(d, s, e))
+        rebuild, (state,) = self.law.__reduce__()
+        for broken in (state[:-1], (99, *state[1:]), (*state[:2], state[2][:-1], *state[3:]), ()):
+            with self.assertRaisesRegex(ValueError, "no state of a law"):
+                rebuild(broken)
+
+    def test_what_new_alone_has_made_is_refused(self):
+        for kind in (snare.Law, snare.SimpleLaw):
+            empty = kind.__new__(kind)
+            members = [name for name in dir(kind) if not name.startswith("_")] + ["__repr__", "__reduce__"]
+            self.assertGreater(len(members), 8)
+            for name in members:
+                with self.assertRaisesRegex(TypeError, "made by __new__"):
+                    member = getattr(empty, name)
+                    member(*[1e-3, 0.04][:2 if kind is snare.Law else 1] if not name.startswith("_") else ())
+        with self.assertRaises(TypeError):
+            snare.SimpleLaw()
+
+    def test_arguments_of_a_wrong_kind_are_named(self):
+        law, simple = self.law, self.law.simple[0]
+        for call, message in (
+                (lambda: snare.Law({"a": 1}), "file = {'a': 1}, must be the path of a file"),
+                (lambda: snare.Law(self.out / "law.json", case="0"), "case = '0', must be a whole number"),
+                (lambda: law.force(1e-3, 0.04, outside=1), "outside = 1, must be 'extrapolate' or 'refuse'"),
+                (lambda: simple.force(1e-3, outside=None), "outside = None, must be 'extrapolate' or 'refuse'"),
+                (lambda: law.force(1e-3, 0.04, unloading="no"), "unloading = 'no', must be True or False"),
+                (lambda: snare.push({"wire": 1}), "experiment = {'wire': 1}, must be the path of a file"),
+                (lambda: snare.sweep(3), "study = 3, must be the path of a file"),
+                (lambda: snare.sweep("x.toml", out=3), "out = 3, must be the path of a file"),
+                (lambda: snare.load([]), "path = \\[\\], must be the path of a file"),
+                (lambda: snare.distil("x.toml", threads="2"), "threads = '2', must be a whole number")):
+            with self.assertRaisesRegex(TypeError, message):
+                call()
 
     def test_simple_laws_have_the_numbers_of_the_file(self):
         place = json.loads((self.out / "law.json").read_text())["cases"][0]["positions"][0]

@@ -33,7 +33,9 @@ def statement(line: str) -> tuple[int, str, int]:
         return 0, f"while {expression(match[1])}:", 1
     if match := re.fullmatch(r"for (\w+) in (\w+):(\w+) loop", line):
         return 0, f"for {match[1]} in range({match[2]}, {match[3]} + 1):", 1
-    if match := re.fullmatch(r"(.*) := (.*);", line):
+    if match := re.fullmatch(r'assert\((.*), (".*")\);', line):
+        return 0, f"assert {expression(match[1])}, {match[2]}", 0
+    if match := re.fullmatch(r"(\w+(?:\[[^\]]*\])?) := (.*);", line):
         return 0, f"{match[1]} = {expression(match[2])}", 0
     raise SyntaxError(line)
 
@@ -60,7 +62,7 @@ def load(text: str) -> dict:
     opening = re.match(r"package (\w+) ", text)
     if not opening or not text.endswith(f"end {opening[1]};\n"):
         raise SyntaxError("a package ends as it begins")
-    names = {"Array": Array, "abs": abs, "sqrt": lambda x: x**0.5, "div": lambda a, b: int(a // b),
+    names = {"Array": Array, "abs": abs, "sqrt": lambda x: x**0.5, "div": lambda a, b: int(a // b), "mod": lambda a, b: a % b,
              "size": lambda array, _: len(array)}
     for name, count, values in re.findall(r"  constant Real (\w+)\[(\d+)\] = \{([^}]*)\};", text):
         numbers = Array(float(v) for v in values.split(","))
