@@ -1,5 +1,6 @@
 #include "base/csv.hpp"
 
+#include "base/blanks.hpp"
 #include "base/byte_order_mark.hpp"
 #include "base/csv_header.hpp"
 #include "base/errors.hpp"
@@ -25,16 +26,6 @@ namespace {
 
 constexpr std::size_t chunk_size = 1u << 20u;  // bytes read at a time
 constexpr std::size_t shown_cell = 40;         // of an offending cell, in bytes
-
-bool is_blank(char c) noexcept {
-  return c == ' ' || c == '\t';
-}
-
-std::string_view trimmed(std::string_view text) noexcept {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 bool is_ascii(std::string_view text) noexcept {
   unsigned char bits = 0;

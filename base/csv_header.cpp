@@ -1,5 +1,6 @@
 #include "base/csv_header.hpp"
 
+#include "base/blanks.hpp"
 #include "base/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -18,16 +19,6 @@ namespace {
 
 constexpr std::array separators{',', ';', '\t', ' '};
 constexpr std::size_t most_shown = 12;  // columns in a message
-
-bool is_blank(char c) noexcept {
-  return c == ' ' || c == '\t';
-}
-
-std::string_view trimmed(std::string_view text) noexcept {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 bool is_required(const CsvColumn& column) {
   return column.presence == CsvColumn::Presence::required;

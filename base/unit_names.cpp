@@ -1,5 +1,6 @@
 #include "base/unit_names.hpp"
 
+#include "base/blanks.hpp"
 #include "base/units.hpp"
 
 #include <algorithm>
@@ -43,12 +44,6 @@ constexpr NamedUnit units[] = {
     {Quantity::angle, 1.0, "rad"},
     {Quantity::angle, degree, "deg"},
 };
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
 
 /// Where the unit of a name begins, with what sets it off; npos where there is none.
 std::size_t unit_begin(std::string_view name) {
