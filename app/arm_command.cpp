@@ -138,7 +138,7 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
                                 {"link_mass_kg", robot.links[k + 1].inertia.mass}});
   }
   if (options.json) {
-    print(result.dump(1) + "\n");
+    print_result(result);
     return ExitStatus::done;
   }
   std::string text = fmt::format(
@@ -175,7 +175,7 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
   console.end_progress();
   begin_writing();
   if (options.json) {
-    print(result.dump(1) + "\n");
+    print_result(result);
     return ExitStatus::done;
   }
   std::string text = fmt::format(

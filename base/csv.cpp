@@ -2,6 +2,7 @@
 
 #include "base/byte_order_mark.hpp"
 #include "base/errors.hpp"
+#include "base/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -260,6 +261,8 @@ std::size_t feed_lines(CsvParser& parser, std::string_view text) {
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns) {
+  if (current_inputs())
+    return parse_csv(path.string(), read_text(path, std::numeric_limits<std::size_t>::max()), columns);
   const InputFile file = open_input(path);
   CsvParser parser(path.string(), columns);
   std::string buffer(csv_line_limit + chunk_size, '\0');  // a started line and the next chunk

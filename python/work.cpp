@@ -1,5 +1,6 @@
 #include "python/work.hpp"
 
+#include "base/inputs.hpp"
 #include "base/parallel.hpp"
 
 #include <fmt/format.h>
@@ -80,7 +81,10 @@ void do_work(const std::function<void(const results::Watch&)>& body, int threads
     throw std::invalid_argument(fmt::format("threads = {}, must be from 0 to {}", threads, most_threads));
   const auto work = std::make_shared<Work>();
   const py::gil_scoped_release release;
-  std::thread thread([work, body, threads] { run(*work, body, threads); });
+  std::thread thread([work, body, threads, inputs = base::current_inputs()] {
+    const base::InputScope scope(inputs);
+    run(*work, body, threads);
+  });
   try {
     while (!wait(*work, glance_s)) ask_python(*work, progress);
     ask_python(*work, progress);
