@@ -141,7 +141,7 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
   }
   for (const std::string& warning : robot.warnings) console.warn(warning);
   if (options.json) {
-    print(result.dump(1) + "\n");
+    print_result(result);
     return ExitStatus::done;
   }
   std::string text = fmt::format(
@@ -179,7 +179,7 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
   begin_writing();
   for (const std::string& warning : arm.warnings) console.warn(warning);
   if (options.json) {
-    print(result.dump(1) + "\n");
+    print_result(result);
     return ExitStatus::done;
   }
   std::string text =

@@ -1,10 +1,11 @@
 #include "app/console.hpp"
 
 #include "app/interruption.hpp"
+#include "app/standard_streams.hpp"
 #include "base/files.hpp"
 #include "base/one_line.hpp"
+#include "results/inputs.hpp"
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
@@ -16,9 +17,13 @@
 namespace snare::app {
 
 void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result) {
-  const std::string text = result.dump(1) + "\n";
+  const std::string text = results::with_inputs(result).dump(1) + "\n";
   base::write_text(options.out / file, text);
   if (options.json) print(text);
+}
+
+void print_result(const nlohmann::json& result) {
+  print(results::with_inputs(result).dump(1) + "\n");
 }
 
 void print(const std::string& text) {
@@ -32,13 +37,13 @@ void Console::say(const std::string& text) {
   if (quiet_) return;
   end_progress();
   const std::scoped_lock lock(mutex_);
-  fmt::print(stderr, "{}\n", base::visible_lines(text));
+  tell(base::visible_lines(text) + "\n");
 }
 
 void Console::complain(const std::string& text) {
   end_progress();
   const std::scoped_lock lock(mutex_);
-  fmt::print(stderr, "{}\n", base::visible_lines(text));
+  tell(base::visible_lines(text) + "\n");
 }
 
 void Console::progress(const std::string& stage) {
@@ -50,19 +55,17 @@ void Console::progress(const std::string& stage) {
     const auto now = std::chrono::steady_clock::now();
     if (std::chrono::duration<double>(now - told_).count() < told_every_s) return;
     told_ = now;
-    fmt::print(stderr, "{}\n", text);
+    tell(text + "\n");
     return;
   }
-  fmt::print(stderr, "\r\033[K{}", text);
-  std::fflush(stderr);
+  tell("\r\033[K" + text);
   pending_ = true;
 }
 
 void Console::end_progress() {
   const std::scoped_lock lock(mutex_);
   if (!pending_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  tell("\r\033[K");
   pending_ = false;
 }
 

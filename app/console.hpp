@@ -54,6 +54,9 @@ class Console {
 /// verb writes.
 void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result);
 
+/// The same of a verb that writes it into no file.
+void print_result(const nlohmann::json& result);
+
 /// Text on standard output, down to where the system takes it. Throws std::system_error.
 void print(const std::string& text);
 

@@ -72,7 +72,9 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
 
-  const ResultFolder folder(options, {"law.json", "table.csv", "report.html", "distil.journal"});
+  const ResultFolder folder(
+      options, {"law.json", "table.csv", "report.html", "distil.journal", "law.hpp", "law.c", "law.h", "law.py",
+                "law.mo", "law_mujoco.xml", "law_adams.adm", "law_simulink.csv"});
   const std::filesystem::path journal = options.out / "distil.journal";
   std::atomic<bool> journalled = true;
   const KeepWhenInterrupted keeping(

@@ -1,9 +1,11 @@
 #include "app/interruption.hpp"
 
 #include "app/exit_status.hpp"
+#include "app/standard_streams.hpp"
 #include "base/files.hpp"
+#include "base/inputs.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <semaphore.h>
@@ -29,7 +31,8 @@ sem_t interrupt_came;  // sem_post is one of the few calls that a handler may ma
 extern "C" void on_signal(int number) {
   interrupt_flag.store(true);
   sem_post(&interrupt_came);
-  std::signal(number, SIG_DFL);  // a second one ends the process
+  // A second one ends the process, but for the limit of processor time, of which every further second is reported.
+  std::signal(number, number == SIGXCPU ? SIG_IGN : SIG_DFL);
 }
 
 /// What is left behind where work is left.
@@ -55,10 +58,11 @@ Work& work() {
   } catch (const std::exception& error) {
     kept = std::string("what was finished cannot be kept: ") + error.what();
   }
-  fmt::print(stderr, "{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage, kept);
+  tell(fmt::format("{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage, kept));
   if (!w.json_schema.empty()) {
     const nlohmann::json word{{"schema", w.json_schema}, {"interrupted", true}, {"stage", w.stage}, {"kept", kept}};
-    fmt::print("{}\n", word.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+    const std::string text = word.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    [[maybe_unused]] const std::size_t ignored = std::fwrite(text.data(), 1, text.size(), stdout);
   }
   std::fflush(nullptr);
   base::remove_unfinished_files();
@@ -66,7 +70,8 @@ Work& work() {
   ::_exit(static_cast<int>(ExitStatus::solver_stopped));
 }
 
-void wait_for_signals() {
+void wait_for_signals(const std::shared_ptr<base::Inputs>& inputs) {
+  const base::InputScope scope(inputs);  // what is kept names them
   while (sem_wait(&interrupt_came) != 0) {
   }
   Work& w = work();
@@ -86,9 +91,11 @@ bool interrupted() noexcept {
 void catch_interrupts(void (*before_end)() noexcept) {
   work().before_end = before_end;
   sem_init(&interrupt_came, 0, 0);
-  std::thread(wait_for_signals).detach();
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  std::thread(wait_for_signals, base::current_inputs()).detach();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
+    const auto before = std::signal(number, on_signal);
+    if (number == SIGHUP && before == SIG_IGN) std::signal(number, SIG_IGN);  // started by nohup
+  }
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }

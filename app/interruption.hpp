@@ -6,7 +6,7 @@
 
 namespace snare::app {
 
-/// SIGINT and SIGTERM are answered within a second.
+/// SIGINT, SIGTERM, SIGHUP (unless ignored from the start) and SIGXCPU are answered within a second.
 ///
 /// The first one sets a flag at which long work looks; it stops and the verb writes what it has. Work that does not come to a point
 /// where it looks within `patience_s` is left where it is: a thread that waits for nothing else writes what the verb has said is to

@@ -3,7 +3,9 @@
 #include "app/interruption.hpp"
 #include "app/new_command.hpp"
 #include "app/result_folder.hpp"
+#include "app/standard_streams.hpp"
 #include "base/errors.hpp"
+#include "base/inputs.hpp"
 #include "base/one_line.hpp"
 #include "base/parallel.hpp"
 #include "base/toml_reader.hpp"
@@ -15,6 +17,7 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -207,12 +210,12 @@ int run(int argc, char** argv) {
     check_words(app, argc, argv);
     app.parse(argc, argv);
   } catch (const snare::base::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    snare::app::tell(snare::base::visible_lines(error.what()) + "\n");
     return static_cast<int>(ExitStatus::wrong_input);
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, complaint;
     const int code = app.exit(error, out, complaint);
-    fmt::print(stderr, "{}", snare::base::visible_lines(complaint.str()));
+    snare::app::tell(snare::base::visible_lines(complaint.str()));
     snare::app::print(out.str());
     return code == 0 ? 0 : static_cast<int>(ExitStatus::wrong_input);
   }
@@ -237,10 +240,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  snare::app::open_standard_streams();
+  const snare::base::InputScope inputs(std::make_shared<snare::base::Inputs>());
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", snare::base::visible_lines(error.what()));
+    snare::app::tell(snare::base::visible_lines(error.what()) + "\n");
     return static_cast<int>(ExitStatus::failure);
   }
 }

@@ -3,6 +3,7 @@
 #include "app/commands.hpp"
 #include "base/archive.hpp"
 #include "base/files.hpp"
+#include "base/own_file.hpp"
 
 #include <fmt/format.h>
 
@@ -147,7 +148,7 @@ LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file, const
     return LoadedCheckpoint{std::nullopt, fmt::format("{}: {}; begins anew", file.string(), why)};
   };
   try {
-    const std::string text = base::read_text(file, std::numeric_limits<std::size_t>::max());
+    const std::string text = base::read_own(file, std::numeric_limits<std::size_t>::max());
     std::string_view rest = text;
     if (rest.substr(0, mark.size()) != mark) return refused("is no checkpoint of this program");
     rest.remove_prefix(mark.size());

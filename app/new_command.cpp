@@ -1,6 +1,7 @@
 #include "app/new_command.hpp"
 
 #include "app/commands.hpp"
+#include "app/result_folder.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "base/one_line.hpp"
@@ -58,6 +59,7 @@ ExitStatus run_new(const std::string& what, const CommonOptions& options, Consol
   if (set == sets.end())
     throw base::InputError({"", 0, "new", what, "must be \"capture\", \"experiment\" or \"wire\""});
   if (options.out.empty()) throw base::InputError({"", 0, "--out", "", "must name a folder"});
+  require_folder(options.out);
   // All or nothing: what is there stays as it is.
   std::vector<base::InputProblem> problems;
   std::vector<std::pair<fs::path, std::string>> files;

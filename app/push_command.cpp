@@ -41,7 +41,7 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
   }
   for (const std::string& warning : warnings) console.warn(warning);
   if (options.json) {
-    print(pushed.document.dump(1) + "\n");
+    print_result(pushed.document);
   } else {
     for (const nlohmann::json& series : pushed.document["series"]) {
       const nlohmann::json& misfit = series["misfit"];

@@ -1,6 +1,7 @@
 #include "app/result_folder.hpp"
 
 #include "base/errors.hpp"
+#include "base/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -88,9 +89,24 @@ void release(Held& h) {
 
 }  // namespace
 
+void require_folder(const fs::path& out) {
+  std::error_code code;
+  for (fs::path at = out; !at.empty(); at = at.parent_path()) {
+    if (fs::exists(at, code)) {
+      if (fs::is_directory(at, code)) return;
+      throw base::InputError({"", 0, "--out", out.string(), "must be a folder: " + at.string() + " is a file"});
+    }
+    if (at == at.parent_path()) return;
+  }
+}
+
 ResultFolder::ResultFolder(const CommonOptions& options, std::initializer_list<const char*> files) {
   const fs::path& out = options.out;
   if (out.empty()) throw base::InputError({"", 0, "--out", "''", "must name a folder; \".\" is the current one"});
+  require_folder(out);
+  if (const std::shared_ptr<base::Inputs> inputs = base::current_inputs()) {
+    for (const char* file : files) inputs->protect(out / file);
+  }
   Held& h = held();
   const std::scoped_lock guard(h.mutex);
   std::vector<fs::path> made;
@@ -104,7 +120,6 @@ ResultFolder::ResultFolder(const CommonOptions& options, std::initializer_list<c
   if (code) fail(code.value(), out, "cannot create the folder");
   h.made = std::move(made);
   try {
-    if (!fs::is_directory(out)) fail(ENOTDIR, out, "cannot be the folder of the results");
     for (const char* file : files) {
       if (fs::is_directory(out / file, code)) fail(EISDIR, out / file, "cannot be written");
     }

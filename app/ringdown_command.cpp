@@ -50,12 +50,27 @@ json series_json(const identification::RingDown& data, const RingDownFit& fit) {
           {"residual", {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
 }
 
+/// What must not be relied on, of the records and of what they give together.
+std::vector<std::string> warnings_of(const RingDownFile& file, const std::vector<RingDownFit>& fits,
+                                     const DampingSplit& split) {
+  std::vector<std::string> warnings;
+  for (std::size_t s = 0; s < fits.size(); ++s) {
+    const std::string& name = file.series[s].data.name;
+    if (!fits[s].report.usable())
+      warnings.push_back(fmt::format("{}: the fit did not converge {}", name, fits[s].report.message));
+    if (!fits[s].noise_only()) warnings.push_back(name + ": the residual has a pattern, so the errors are too small");
+  }
+  warnings.insert(warnings.end(), split.warnings.begin(), split.warnings.end());
+  return warnings;
+}
+
 json damping_json(const DampingSplit& split) {
   return {{"separated", split.separated},
           {"bending_time_s", estimate_json(split.bending_time)},
           {"mass_rate_1_s", estimate_json(split.mass_rate)},
           {"correlation", split.correlation},
           {"misfit_p", split.misfit_p},
+          {"misfit_dof", split.misfit_dof},
           {"statement", split.statement}};
 }
 
@@ -89,6 +104,8 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   }
   const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);
+  const std::vector<std::string> warnings = warnings_of(file, fits, split);
+  result["warnings"] = warnings;
   begin_writing();
   base::CsvWriter csv(options.out / "ringdown.csv", {"series", "time_s", "measured_mm", "fitted_mm"});
   for (std::size_t s = 0; s < fits.size(); ++s) {
@@ -99,7 +116,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
     }
   }
   csv.commit();
-  base::write_text(options.out / "report.html", ring_down_report_html(file, fits, split));
+  base::write_text(options.out / "report.html", ring_down_report_html(file, fits, split, warnings));
   write_result(options, "ringdown.json", result);
   if (options.json) return status;
   for (std::size_t s = 0; s < fits.size(); ++s) {
@@ -111,13 +128,12 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
     if (fits[s].friction)
       console.say(fmt::format("{}: friction takes {} mm of amplitude a second besides", file.series[s].data.name,
                               with_error(*fits[s].friction, per_mm)));
-    if (!fits[s].noise_only())
-      console.say(fmt::format("{}: what is left is no noise, so the errors are too small", file.series[s].data.name));
   }
   if (split.separated)
     console.say(fmt::format("bending_time_s = {}, mass_rate_1_s = {}", with_error(split.bending_time),
                             with_error(split.mass_rate)));
   console.say(split.statement);
+  for (const std::string& warning : warnings) console.say("warning: " + warning);
   console.say(fmt::format("wrote {0}/ringdown.json, ringdown.csv, report.html", options.out.string()));
   return status;
 }

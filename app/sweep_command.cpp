@@ -43,7 +43,7 @@ ExitStatus run_one_case(const SweepStudy& study, const CommonOptions& options, C
   } else {
     const std::filesystem::path file = options.out / "cases.journal";
     std::optional<std::string> line;
-    if (std::filesystem::exists(file)) line = Journal(file, study.identity(), 0).result(index);
+    if (std::filesystem::exists(file)) line = Journal(file, study.identity(), 0, Journal::Use::look).result(index);
     const auto record = line ? study::record_of(*line) : std::nullopt;
     if (!record) {
       throw base::InputError(
@@ -91,8 +91,11 @@ void tell(const SweepAnswers& answers, bool histories, const CommonOptions& opti
       console.say(fmt::format("{}: mean {:.5g}, from {:.5g} to {:.5g}", f.name, f.mean, f.least, f.most));
   }
   if (answers.subset) {
-    console.say(fmt::format("probability {:.3g}, coefficient of variation {:.2g}{}", answers.subset->probability,
-                            answers.subset->variation, answers.subset->reached ? "" : " (the event was not reached)"));
+    const SubsetAnswer& s = *answers.subset;
+    console.say(s.reached
+                    ? fmt::format("probability {:.3g}, 95 % interval {:.3g} to {:.3g}, coefficient of variation {:.2g}",
+                                  s.probability, s.interval.low, s.interval.high, s.variation)
+                    : fmt::format("the event was not reached: probability below {:.3g}", s.interval.high));
   }
   console.say(fmt::format("wrote {0}/cases.csv, summary.json, report.html{1}", options.out.string(),
                           histories ? ", histories.h5" : ""));
@@ -111,6 +114,8 @@ ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& optio
     console.say(fmt::format("goes on from {}: {} cases are there", file.string(), journal->finished()));
   std::optional<SweepHistories> histories;
   if (study.sweep().histories) histories.emplace(study, options.out);
+  if (histories && histories->damaged())
+    console.complain(fmt::format("{}: is damaged, its cases are run again", histories->file().string()));
   const KeepWhenInterrupted keeping(
       [&] {
         journal->flush();

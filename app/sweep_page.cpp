@@ -27,8 +27,9 @@ double share_of(std::uint64_t hits, std::uint64_t count) {
 }
 
 void shares(ReportPage& page, const SweepAnswers& answers) {
-  Table table{"Shares of the cases, with what 95 of 100 such studies would hold if the cases are drawn independently",
-              {"what"_text, "cases"_number, "hits"_number, "share"_number, "95 %"_number}};
+  Table table{
+      "Shares of the cases, with intervals that at least 95 of 100 studies of independent cases would have right",
+      {"what"_text, "cases"_number, "hits"_number, "share"_number, "95 %"_number}};
   const auto add = [&](const std::string& name, std::uint64_t hits, std::uint64_t count) {
     if (count == 0) return;
     table.rows.push_back(
@@ -85,20 +86,24 @@ void sensitivities(ReportPage& page, const SweepStudy& study, const SweepAnswers
   const auto& variables = study.sweep().design.variables();
   bool any = false;
   for (const FieldAnswer& field : answers.fields) {
-    if (!field.indices || field.indices->of.empty()) continue;
+    if (!field.indices) continue;
+    if (field.indices->of.empty()) {
+      page.paragraph(fmt::format("{}: no Sobol indices, since few rows differ ({:.3g} effective rows, must be 10)",
+                                 field.name, field.indices->effective_rows));
+      continue;
+    }
     if (!any) {
       page.heading("Which numbers matter");
       page.paragraph(
           "Sobol indices: the share of the variance that a variable causes by itself (first order), and with "
-          "all others (total). Intervals are 1.96 standard errors.");
+          "all others (total). Intervals of 95 %, from replicates of the design.");
     }
     any = true;
     Table table{field.name, {"variable"_code, "first order"_number, "+-"_number, "total"_number, "+-"_number}};
     for (std::size_t j = 0; j < field.indices->of.size(); ++j) {
       const study::SobolIndex& s = field.indices->of[j];
-      constexpr double width = 1.96;
-      table.rows.push_back({variables[j].name, format_number(s.first, 3), format_number(width * s.first_error, 2),
-                            format_number(s.total, 3), format_number(width * s.total_error, 2)});
+      table.rows.push_back({variables[j].name, format_number(s.first, 3), format_number(s.first_half, 2),
+                            format_number(s.total, 3), format_number(s.total_half, 2)});
     }
     page.table(table);
   }
@@ -143,10 +148,11 @@ void subset(ReportPage& page, const SweepAnswers& answers) {
   const SubsetAnswer& s = *answers.subset;
   page.heading("A rare event");
   page.callout(s.reached
-                   ? fmt::format("Probability {:.3g}, coefficient of variation {:.2g}.", s.probability, s.variation)
-                   : fmt::format("The event was not reached: its probability is below {:.3g}, or the levels were "
-                                 "too few.",
-                                 s.probability),
+                   ? fmt::format("Probability {:.3g}, 95 % interval {:.3g} to {:.3g}, coefficient of variation {:.2g}.",
+                                 s.probability, s.interval.low, s.interval.high, s.variation)
+                   : fmt::format("The event was not reached: its probability is below {:.3g} (in at least 95 of 100 "
+                                 "studies), or the levels were too few.",
+                                 s.interval.high),
                s.reached ? Tone::plain : Tone::bad);
   Table table{"", {"level"_number, "from a margin of"_number, "share that goes on"_number, "variation"_number}};
   for (std::size_t k = 0; k < s.levels.size(); ++k) {

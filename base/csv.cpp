@@ -5,6 +5,7 @@
 #include "base/csv_header.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "base/inputs.hpp"
 #include "base/one_line.hpp"
 
 #include <fmt/format.h>
@@ -319,6 +320,8 @@ std::size_t feed_lines(CsvParser& parser, std::string_view text, bool last) {
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns) {
+  if (current_inputs())
+    return parse_csv(path.string(), read_text(path, std::numeric_limits<std::size_t>::max()), columns);
   const InputFile file = open_input(path);
   CsvParser parser(path.string(), columns);
   std::string buffer(csv_line_limit + chunk_size, '\0');  // a started line and the next chunk

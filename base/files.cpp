@@ -1,17 +1,24 @@
 #include "base/files.hpp"
 
 #include "base/errors.hpp"
+#include "base/inputs.hpp"
 
 #include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cassert>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <mutex>
 #include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace snare::base {
 
@@ -62,6 +69,42 @@ Unfinished& unfinished() {
   return *all;
 }
 
+/// Process of a temporary name ".NAME.PROCESS-NUMBER.tmp"; 0: it is none.
+pid_t process_of(std::string_view name) {
+  constexpr std::string_view ending = ".tmp";
+  if (!name.starts_with('.') || !name.ends_with(ending)) return 0;
+  name.remove_suffix(ending.size());
+  const std::size_t dot = name.rfind('.');
+  const std::size_t dash = name.rfind('-');
+  if (dot == 0 || dash == std::string_view::npos || dash < dot) return 0;
+  pid_t process = 0;
+  const char* const end = name.data() + dash;
+  return std::from_chars(name.data() + dot + 1, end, process).ptr == end ? process : 0;
+}
+
+/// Removes what killed processes have left unfinished in a folder: their process is gone and nobody holds the file. Once a process
+/// and folder.
+void remove_abandoned_files(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> seen;
+  {
+    const std::scoped_lock lock(mutex);
+    if (!seen.insert(folder).second) return;
+  }
+  std::error_code code;
+  std::vector<std::filesystem::path> abandoned;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, code)) {
+    const pid_t process = process_of(entry.path().filename().string());
+    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) abandoned.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : abandoned) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
+    ::close(descriptor);
+  }
+}
+
 }  // namespace
 
 InputFile open_input(const std::filesystem::path& path) {
@@ -90,11 +133,15 @@ std::size_t read_bytes(std::FILE* file, char* to, std::size_t size, const std::f
 }
 
 std::string read_text(const std::filesystem::path& path, std::size_t limit) {
-  const InputFile file = open_input(path);
-  if (file.size > limit) refuse(path, fmt::format("has {} bytes, must have at most {}", file.size, limit));
-  std::string text(static_cast<std::size_t>(file.size), '\0');
-  text.resize(read_bytes(file.handle.get(), text.data(), text.size(), path));
-  return text;
+  const auto read = [&] {
+    const InputFile file = open_input(path);
+    if (file.size > limit) refuse(path, fmt::format("has {} bytes, must have at most {}", file.size, limit));
+    std::string text(static_cast<std::size_t>(file.size), '\0');
+    text.resize(read_bytes(file.handle.get(), text.data(), text.size(), path));
+    return text;
+  };
+  const std::shared_ptr<Inputs> inputs = current_inputs();
+  return inputs ? *inputs->text(path, limit, read) : read();
 }
 
 std::size_t find_invalid_utf8(std::string_view text) noexcept {
@@ -108,17 +155,22 @@ std::size_t find_invalid_utf8(std::string_view text) noexcept {
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};  // two files of one process never share a temporary name
+  if (const std::shared_ptr<Inputs> inputs = current_inputs()) inputs->protect(path_);
   std::error_code code;
   const std::filesystem::path folder = path_.parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, code);
   if (code) fail(code.value(), folder, "cannot create the folder");
+  remove_abandoned_files(folder);
   temporary_ = folder / fmt::format(".{}.{}-{}.tmp", path_.filename().string(), ::getpid(), counter++);
   {
     const std::scoped_lock lock(unfinished().mutex);
     unfinished().names.insert(temporary_.string());
   }
   handle_.reset(std::fopen(temporary_.c_str(), "wbx"));
-  if (handle_) return;
+  if (handle_) {
+    ::flock(::fileno(handle_.get()), LOCK_SH | LOCK_NB);  // says that somebody is writing it
+    return;
+  }
   const int error = errno;
   forget();
   fail(error, path_, "cannot be written");

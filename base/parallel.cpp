@@ -1,5 +1,7 @@
 #include "base/parallel.hpp"
 
+#include "base/inputs.hpp"
+
 #include <omp.h>
 
 #include <atomic>
@@ -13,9 +15,11 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t index)
   std::exception_ptr failure;
   std::size_t failed_at = std::numeric_limits<std::size_t>::max();
   const auto end = static_cast<std::ptrdiff_t>(count);
+  const std::shared_ptr<Inputs> inputs = current_inputs();
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < end; ++i) {
     if (failed) continue;
+    const InputScope scope(inputs);
     const auto index = static_cast<std::size_t>(i);
     try {
       body(index);

@@ -1,6 +1,7 @@
 #include "python/verbs.hpp"
 
 #include "base/files.hpp"
+#include "base/inputs.hpp"
 #include "base/toml_tree.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/motion_tracing/trace_records.hpp"
@@ -10,6 +11,7 @@
 #include "python/work.hpp"
 #include "reduction/distil.hpp"
 #include "results/curves.hpp"
+#include "results/inputs.hpp"
 #include "results/law_json.hpp"
 #include "results/motion_comparison.hpp"
 #include "results/motion_history.hpp"
@@ -58,6 +60,20 @@ std::vector<base::Override> overrides_of(const Pairs& pairs) {
   return overrides;
 }
 
+/// A document with the inputs of the call.
+py::object document_of(json document) {
+  return to_python(results::with_inputs(std::move(document)));
+}
+
+/// The function with inputs of its own: each is read once a call.
+template <class Result, class... Arguments>
+auto reading_once(Result (*function)(Arguments...)) {
+  return [function](Arguments... arguments) {
+    const base::InputScope scope(std::make_shared<base::Inputs>());
+    return function(arguments...);
+  };
+}
+
 std::shared_ptr<const identification::Experiment> experiment_of(const Path& file, const Pairs& set) {
   return std::make_shared<const identification::Experiment>(
       identification::read_experiment(file, identification::parameters(), overrides_of(set)));
@@ -69,7 +85,7 @@ py::tuple push(const Path& file, const Pairs& set, int threads, const py::object
       made([experiment](const results::Watch& watch) { return results::push(*experiment, watch); }, threads, progress);
   ColumnSink curves;
   results::give_curves(curves, experiment->series, pushed->predictions);
-  return py::make_tuple(to_python(pushed->document), curves.take());
+  return py::make_tuple(document_of(pushed->document), curves.take());
 }
 
 /// The document and the curves of a trace; None and why for one without a base fit.
@@ -97,7 +113,7 @@ py::tuple traced(const Path& file, const Pairs& set, int threads, const py::obje
   if (!trace.report.usable()) return py::make_tuple(py::none(), trace.report.message);
   ColumnSink curves;
   results::give_curves(curves, trace.series, trace.final_predictions, results::curve_columns(trace));
-  return py::make_tuple(to_python(result->document), curves.take());
+  return py::make_tuple(document_of(result->document), curves.take());
 }
 
 /// The same of records in time.
@@ -128,7 +144,7 @@ py::tuple traced_records(const Path& file, const Pairs& set, int threads, const 
   if (!trace.report.usable()) return py::make_tuple(py::none(), trace.report.message);
   ColumnSink curves;
   results::give_record_curves(curves, *records, trace);
-  return py::make_tuple(to_python(result->document), curves.take());
+  return py::make_tuple(document_of(result->document), curves.take());
 }
 
 py::tuple trace(const Path& file, const Pairs& set, int threads, const py::object& progress) {
@@ -156,7 +172,7 @@ py::tuple distil(const Path& file, const Pairs& set, int threads, const py::obje
   if (!distilled->report.usable()) return py::make_tuple(py::none(), distilled->report.message);
   json document = results::law_json(*wire, *distilled);
   document["warnings"] = results::wire_warnings(*wire);
-  return py::make_tuple(to_python(document), laws_of(document));
+  return py::make_tuple(document_of(document), laws_of(document));
 }
 
 py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
@@ -173,7 +189,7 @@ py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::ob
   document["warnings"] = results::motion_warnings(finished);
   results::give_history(history, run.asked.motion, run.samples);
   if (!motions.sensors.empty()) results::give_telemetry(telemetry, motions, run.samples);
-  return py::make_tuple(to_python(document), history.take(), telemetry.take());
+  return py::make_tuple(document_of(document), history.take(), telemetry.take());
 }
 
 std::string schema_of(const Path& file) {
@@ -211,8 +227,8 @@ json compared_motions(const Path& file, const Pairs& set, int threads, const py:
 
 py::object compare(const Path& file, const Pairs& set, int threads, const py::object& progress) {
   const bool motion = schema_of(file).starts_with("snare-scenario/");
-  return to_python(motion ? compared_motions(file, set, threads, progress)
-                          : compared_pushes(file, set, threads, progress));
+  return document_of(motion ? compared_motions(file, set, threads, progress)
+                            : compared_pushes(file, set, threads, progress));
 }
 
 /// The summary of a sweep, and a row a case. folder: where its journal is kept, empty: nowhere.
@@ -228,6 +244,8 @@ py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::objec
           throw std::system_error(errno, std::generic_category(), "cannot make " + name);
         path = name;
       } else {
+        if (std::filesystem::exists(path) && !std::filesystem::is_directory(path))
+          throw base::InputError({"", 0, "out", path.string(), "must be a folder, not a file"});
         std::filesystem::create_directories(path);
       }
     }
@@ -261,14 +279,15 @@ py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::objec
         return document;
       },
       threads, progress);
-  return py::make_tuple(to_python(*summary), cases->take());
+  return py::make_tuple(document_of(*summary), cases->take());
 }
 
 }  // namespace
 
 void add_verbs(py::module_& module) {
   const auto add = [&module](const char* name, auto function, const char* what) {
-    module.def(name, function, what, py::arg("file"), py::arg("set"), py::arg("threads"), py::arg("progress"));
+    module.def(name, reading_once(function), what, py::arg("file"), py::arg("set"), py::arg("threads"),
+               py::arg("progress"));
   };
   add("push", push, "Document of `snare push` and the columns of curves.csv.");
   add("fit", fit, "fit.json and the columns of curves.csv; None and a message where the base model cannot be fitted.");
@@ -276,8 +295,8 @@ void add_verbs(py::module_& module) {
   add("distil", distil, "law.json and its laws; None and a message where a curve could not be computed.");
   add("simulate", simulate, "summary.json and the columns of history.csv and telemetry.csv.");
   add("compare", compare, "compare.json.");
-  module.def("sweep", sweep, "summary.json and the columns of cases.csv.", py::arg("file"), py::arg("set"),
-             py::arg("threads"), py::arg("progress"), py::arg("folder"));
+  module.def("sweep", reading_once(sweep), "summary.json and the columns of cases.csv.", py::arg("file"),
+             py::arg("set"), py::arg("threads"), py::arg("progress"), py::arg("folder"));
 }
 
 }  // namespace snare::python

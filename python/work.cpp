@@ -1,5 +1,6 @@
 #include "python/work.hpp"
 
+#include "base/inputs.hpp"
 #include "base/parallel.hpp"
 #include "python/gil.hpp"
 
@@ -100,7 +101,10 @@ void do_work(const std::function<void(const results::Watch&)>& body, int threads
     throw std::invalid_argument(fmt::format("threads = {}, must be from 0 to {}", threads, most_threads));
   const auto work = std::make_shared<Work>();
   const WithoutGil released;
-  std::thread thread([work, body, threads] { run(*work, body, threads); });
+  std::thread thread([work, body, threads, inputs = base::current_inputs()] {
+    const base::InputScope scope(inputs);
+    run(*work, body, threads);
+  });
   begin(work);
   try {
     while (!wait(*work, glance_s)) ask_python(*work, progress);

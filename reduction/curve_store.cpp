@@ -1,6 +1,7 @@
 #include "reduction/curve_store.hpp"
 
 #include "base/archive.hpp"
+#include "base/own_file.hpp"
 #include "base/parallel.hpp"
 #include "coupling/statics/push_solver.hpp"
 
@@ -96,7 +97,7 @@ double CurveStore::folded(double position) const noexcept {
 }
 
 void CurveStore::read_journal() {
-  const std::string text = base::read_text(journal_, std::size_t{1} << 30u);
+  const std::string text = base::read_own(journal_, std::size_t{1} << 30u);
   std::string_view rest = text;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');

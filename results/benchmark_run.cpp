@@ -4,6 +4,7 @@
 #include "base/csv.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
+#include "base/own_file.hpp"
 #include "base/toml_reader.hpp"
 #include "results/history_table.hpp"
 #include "results/version.hpp"
@@ -63,7 +64,7 @@ std::string identity_of(const BenchmarkCase& c) {
 /// Of an archived history, byte by byte: what is said about it belongs to this one and to no other.
 std::string fingerprint_of(const std::filesystem::path& history) {
   constexpr std::size_t longest = std::size_t{1} << 30u;  // [byte]
-  return fmt::format("{:016x}", base::fingerprint(base::read_text(history, longest)));
+  return fmt::format("{:016x}", base::fingerprint(base::read_own(history, longest)));
 }
 
 /// The numbers of a column of a history; none where it has no such column.
@@ -256,7 +257,7 @@ BenchmarkReference read_reference(const BenchmarkFile& benchmark, const Benchmar
   BenchmarkReference reference;
   reference.tracks = read_tracks(csv, c);
   try {
-    const json j = json::parse(base::read_text(about, std::size_t{1} << 20u));
+    const json j = json::parse(base::read_own(about, std::size_t{1} << 20u));
     if (j.at("schema") != reference_schema)
       throw std::runtime_error(fmt::format("schema must be {}", reference_schema));
     if (j.at("history") != fingerprint_of(csv))

@@ -1,14 +1,20 @@
 #include "results/hdf5_file.hpp"
 
+#include "base/files.hpp"
+#include "base/sha256.hpp"
+
 #include <fmt/format.h>
 
 #include <dlfcn.h>
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 // Constants of the header first call the library, by symbols that a program must be linked with; it is open before they are used here.
 #undef H5CHECK
@@ -69,6 +75,7 @@ class Api {
   SNARE_HDF5(H5Pset_deflate);
   SNARE_HDF5(H5Pset_shuffle);
   SNARE_HDF5(H5Pset_istore_k);
+  SNARE_HDF5(H5Pset_userblock);
   SNARE_HDF5(H5Pset_obj_track_times);
   SNARE_HDF5(H5Pset_libver_bounds);
   SNARE_HDF5(H5Pset_file_locking);
@@ -251,10 +258,44 @@ void write_dataset(hid_t file, const std::string& path, std::size_t size, hid_t 
   dataset.close();
 }
 
+constexpr hsize_t seal_size = 512;  // the least block that HDF5 leaves to its users [byte]
+
+/// What the seal of a file must be: SHA-256 over its bytes after the seal, chained over chunks of a megabyte.
+std::string seal_of(const std::filesystem::path& file) {
+  constexpr std::size_t chunk_size = 1 << 20;
+  const base::InputFile opened = base::open_input(file);
+  if (std::fseek(opened.handle.get(), seal_size, SEEK_SET) != 0) return "";
+  std::string digest, chunk;
+  do {
+    chunk.resize(chunk_size);
+    chunk.resize(base::read_bytes(opened.handle.get(), chunk.data(), chunk_size, file));
+    digest = base::sha256(digest + chunk);
+  } while (chunk.size() == chunk_size);
+  return "snare seal sha256 " + digest + "\n";
+}
+
+/// Puts the seal into the bytes that HDF5 leaves to its users.
+void seal(const std::filesystem::path& file) {
+  const std::string text = seal_of(file);
+  const base::FileHandle opened(std::fopen(file.c_str(), "r+b"));
+  if (!opened || std::fwrite(text.data(), 1, text.size(), opened.get()) != text.size() ||
+      std::fflush(opened.get()) != 0)
+    throw std::system_error(errno, std::generic_category(), "its checksum");
+}
+
 }  // namespace
 
+bool is_whole_hdf5(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return false;
+  const std::string wanted = seal_of(file);
+  const base::InputFile opened = base::open_input(file);
+  std::string found(wanted.size(), '\0');
+  found.resize(base::read_bytes(opened.handle.get(), found.data(), found.size(), file));
+  return found == wanted;
+}
+
 struct Hdf5Writer::Library {
-  std::filesystem::path shown;
+  std::filesystem::path path, shown;
   std::unique_lock<std::mutex> held{library_mutex()};
   Quiet quiet;
   std::optional<Handle> file;
@@ -277,6 +318,7 @@ void require_hdf5() {
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::filesystem::path shown) {
   const Api& api = Api::get();
   library_ = std::make_unique<Library>();
+  library_->path = file;
   library_->shown = std::move(shown);
   library_->named([&] {
     const Handle access = properties("H5P_CLS_FILE_ACCESS_ID_g");
@@ -286,6 +328,7 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::filesystem::path 
     check(api.H5Pset_file_locking(access, 0, 1));
     const Handle made = timeless("H5P_CLS_FILE_CREATE_ID_g");
     check(api.H5Pset_istore_k(made, tree_of_chunks));
+    check(api.H5Pset_userblock(made, seal_size));
     library_->file.emplace(api.H5Fcreate(file.c_str(), H5F_ACC_TRUNC, made, access), api.H5Fclose);
     // Groups in it are of the kind that needs no room while they are small; every reader since 2008 knows them.
     check(api.H5Fset_libver_bounds(*library_->file, H5F_LIBVER_V18, H5F_LIBVER_V18));
@@ -334,6 +377,7 @@ void Hdf5Writer::close() {
   library_->named([&] {
     check(Api::get().H5Fflush(*library_->file, H5F_SCOPE_LOCAL));
     library_->file->close();
+    seal(library_->path);
   });
 }
 

@@ -367,7 +367,8 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
     return {{"cases", count},
             {"hits", hits},
             {"share", static_cast<double>(hits) / static_cast<double>(count)},
-            {"interval95", {interval.low, interval.high}}};
+            {"interval95", {interval.low, interval.high}},
+            {"interval_kind", "at least 95 % of independent cases"}};
   };
   const bool drawn =
       sweep.design.settings().kind != DesignKind::grid && sweep.design.settings().kind != DesignKind::file;
@@ -404,16 +405,15 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
     json& sobol = one["sobol"];
     sobol = {{"rows", field.indices->rows},
              {"dropped", field.indices->dropped},
+             {"effective_rows", field.indices->effective_rows},
              {"variance", field.indices->variance},
              {"variables", json::object()}};
     for (std::size_t j = 0; j < field.indices->of.size(); ++j) {
       const study::SobolIndex& s = field.indices->of[j];
-      constexpr double width = 1.96;
-      sobol["variables"][variables[j].name] = {
-          {"first", s.first},
-          {"first_interval95", {s.first - width * s.first_error, s.first + width * s.first_error}},
-          {"total", s.total},
-          {"total_interval95", {s.total - width * s.total_error, s.total + width * s.total_error}}};
+      sobol["variables"][variables[j].name] = {{"first", s.first},
+                                               {"first_interval95", {s.first - s.first_half, s.first + s.first_half}},
+                                               {"total", s.total},
+                                               {"total_interval95", {s.total - s.total_half, s.total + s.total_half}}};
     }
   }
   for (const LimitAnswer& limit : answers.limits) summary["limits"][limit.name] = probability(limit.hits, limit.count);
@@ -433,6 +433,7 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
                           {"reached", answers.subset->reached},
                           {"probability", answers.subset->probability},
                           {"coefficient_of_variation", answers.subset->variation},
+                          {"interval95", {answers.subset->interval.low, answers.subset->interval.high}},
                           {"levels", levels}};
   }
   return summary;

@@ -2,6 +2,7 @@
 
 #include "base/archive.hpp"
 #include "base/files.hpp"
+#include "base/own_file.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/sweep_answers.hpp"
 #include "results/version.hpp"
@@ -72,7 +73,11 @@ fs::path SweepHistories::part(std::uint64_t index) const {
 }
 
 bool SweepHistories::joined() const {
-  return fs::exists(file_) && text_attribute(file_, "identity") == study_.identity();
+  return is_whole_hdf5(file_) && text_attribute(file_, "identity") == study_.identity();
+}
+
+bool SweepHistories::damaged() const {
+  return fs::exists(file_) && !is_whole_hdf5(file_);
 }
 
 bool SweepHistories::has(std::uint64_t index) const {
@@ -102,7 +107,7 @@ History SweepHistories::read(std::uint64_t index) const {
   const fs::path file = part(index);
   History history;
   try {
-    const std::string all = base::read_text(file, std::numeric_limits<std::size_t>::max());
+    const std::string all = base::read_own(file, std::numeric_limits<std::size_t>::max());
     const std::string head = head_of(study_, index);
     std::uint64_t sum = 0;
     if (!all.starts_with(head) || all.size() < head.size() + sizeof sum) throw std::runtime_error("it is another's");

@@ -32,6 +32,9 @@ class SweepHistories {
   /// cannot be written or a history is missing; then the files stay, and the same sweep goes on.
   void join(const study::Journal& journal, std::uint64_t cases) const;
 
+  /// Whether histories.h5 is there and is not as it was written: its cases count as missing.
+  [[nodiscard]] bool damaged() const;
+
   /// histories.h5.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 

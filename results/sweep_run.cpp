@@ -204,7 +204,8 @@ SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepW
   end.partial = !run.subset(simulation);
   end.cases = simulation.told() + simulation.next().size();
   if (!end.partial)
-    end.subset = {simulation.probability(), simulation.variation(), simulation.reached(), simulation.levels()};
+    end.subset = {simulation.probability(), simulation.variation(), simulation.interval(), simulation.reached(),
+                  simulation.levels()};
   return end;
 }
 

@@ -70,8 +70,8 @@ SweepStudy::SweepStudy(const std::filesystem::path& file, const std::vector<base
     : sweep_(study::read_sweep_file(file, overrides)), runner_(sweep_.case_file, sweep_.verb, sweep_.file) {
   const std::vector<std::string> columns = check_some(sweep_, runner_);
   if (sweep_.histories) check_histories(sweep_, runner_, columns);
-  identity_ = fmt::format("{:016x} {} snare {}", base::fingerprint(sweep_.canonical),
-                          fmt::format("{:016x}", base::fingerprint(contents_of_files(sweep_.case_file))), version());
+  identity_ = fmt::format("{:016x} {:016x} designs {} snare {}", base::fingerprint(sweep_.canonical),
+                          base::fingerprint(contents_of_files(sweep_.case_file)), study::design_version, version());
 }
 
 std::uint64_t SweepStudy::count() const noexcept {

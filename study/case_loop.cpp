@@ -1,5 +1,7 @@
 #include "study/case_loop.hpp"
 
+#include "base/inputs.hpp"
+
 #include <omp.h>
 
 #include <chrono>
@@ -64,8 +66,10 @@ void Dispatcher::rethrow() const {
 }
 
 void run_cases(Dispatcher& dispatcher, int threads, const RunCase& run, Idle idle) {
+  const std::shared_ptr<base::Inputs> inputs = base::current_inputs();
 #pragma omp parallel num_threads(threads)
   {
+    const base::InputScope scope(inputs);
     const int worker = omp_get_thread_num();
     try {
       while (!dispatcher.ended()) {
@@ -93,8 +97,10 @@ std::vector<TimedResult> run_list(std::size_t count, int threads, const std::fun
                                   const std::function<bool()>& stop) {
   std::vector<TimedResult> results(count);
   std::atomic<std::size_t> next{0};
+  const std::shared_ptr<base::Inputs> inputs = base::current_inputs();
 #pragma omp parallel num_threads(threads)
   {
+    const base::InputScope scope(inputs);
     for (std::size_t k = next++; k < count && !stop(); k = next++) {
       const auto begin = Clock::now();
       std::string result;

@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "study/random_access.hpp"
+#include "study/sobol_indices.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -14,16 +15,21 @@
 
 namespace snare::study {
 
-/// Sobol's sequence with the numbers of Joe and Kuo, each dimension shifted by bits of its own drawn at random.
+/// Sobol's sequence with the numbers of Joe and Kuo, each dimension of each replicate shifted by bits of its own drawn at random.
 struct Design::Sequence {
-  Sequence(std::size_t dimensions, std::uint64_t seed) : engine(dimensions), shift(dimensions) {
-    for (std::size_t d = 0; d < dimensions; ++d)
-      shift[d] = static_cast<std::uint64_t>(hashed_uniform(seed, d, ~std::uint64_t{0}) * 0x1p64);
+  Sequence(std::size_t dimensions, std::uint64_t seed, std::uint64_t replicates) : engine(dimensions) {
+    for (std::uint64_t r = 0; r < replicates; ++r) {
+      shifts.emplace_back(dimensions);
+      for (std::size_t d = 0; d < dimensions; ++d)
+        shifts[r][d] = static_cast<std::uint64_t>(hashed_uniform(seed, r * dimensions + d, ~std::uint64_t{0}) * 0x1p64);
+    }
   }
 
+  /// Point `index` of all replicates, in turn.
   [[nodiscard]] std::vector<double> point(std::uint64_t index) const {
+    const std::vector<std::uint64_t>& shift = shifts[index % shifts.size()];
     boost::random::sobol at = engine;
-    at.discard(index * shift.size());
+    at.discard(index / shifts.size() * shift.size());
     std::vector<double> u(shift.size());
     for (std::size_t d = 0; d < u.size(); ++d) {
       const std::uint64_t bits = (static_cast<std::uint64_t>(at()) ^ shift[d]) >> 11u;
@@ -33,7 +39,7 @@ struct Design::Sequence {
   }
 
   boost::random::sobol engine;
-  std::vector<std::uint64_t> shift;
+  std::vector<std::vector<std::uint64_t>> shifts;
 };
 
 Design::Design(std::vector<Variable> variables, DesignSettings settings)
@@ -50,11 +56,11 @@ Design::Design(std::vector<Variable> variables, DesignSettings settings)
       break;
     case DesignKind::sobol:
       count_ = settings_.cases;
-      sequence_ = std::make_unique<Sequence>(n, settings_.seed);
+      sequence_ = std::make_unique<Sequence>(n, settings_.seed, 1);
       break;
     case DesignKind::sensitivity:
       count_ = settings_.cases * (n + 2);
-      sequence_ = std::make_unique<Sequence>(2 * n, settings_.seed);
+      sequence_ = std::make_unique<Sequence>(2 * n, settings_.seed, sobol_replicates);
       break;
     case DesignKind::file:
       count_ = settings_.table.front().size();

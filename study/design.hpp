@@ -27,7 +27,7 @@ enum class DesignKind {
   latin_hypercube,  ///< of n slices of equal probability every variable has one case in each
   sobol,            ///< Sobol's sequence, shifted at random
   file,             ///< a table of cases
-  sensitivity,  ///< Saltelli's: n times the rows A, B and A with a column of B                            theory.md (S.4)
+  sensitivity,  ///< n times the rows A, B and A with a column of B, in replicates                         theory.md (S.4)
   subset        ///< the next cases depend on the last ones: no list beforehand
 };
 
@@ -41,6 +41,9 @@ struct DesignSettings {
   Eigen::MatrixXd correlation;
   std::vector<std::vector<double>> table;  ///< file: a column a variable
 };
+
+/// Counts up when equal settings give other cases: journals of another version are not continued.
+inline constexpr int design_version = 2;
 
 /// The cases of a study. A case is computed from its number alone: nothing is kept per case.
 class Design {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,17 +46,19 @@ std::optional<std::pair<std::uint64_t, std::string_view>> parsed(std::string_vie
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count)
+Journal::Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count, Use use)
     : file_(std::move(file)), limit_(count) {
   assert(identity.find('\n') == std::string::npos);
   if (count > 0) offsets_.resize(count);
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  descriptor_ = ::open(file_.c_str(), (use == Use::append ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
   try {
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode))  // a device may have no end
       throw base::InputError({file_.string(), 0, "", "", "is a device, a pipe or a socket, must be a regular file"});
-    load(identity);
+    if (use == Use::append && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      throw base::InputError({file_.string(), 0, "", "", "another run is writing into this folder, must be its own"});
+    load(identity, use);
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -67,7 +70,7 @@ Journal::~Journal() {
   ::close(descriptor_);
 }
 
-void Journal::load(const std::string& identity) {
+void Journal::load(const std::string& identity, Use use) {
   const std::string head = std::string(schema) + identity;
   std::string rest;  // of the chunks so far: a line that has not ended
   std::uint64_t line_begin = 0;
@@ -113,11 +116,11 @@ void Journal::load(const std::string& identity) {
   if (torn_head && !head.starts_with(rest)) take(rest);  // some other file
   if (!rest.empty()) {                                   // a line that was being written
     if (!torn_head) ++damaged_;
-    if (::ftruncate(descriptor_, static_cast<off_t>(line_begin)) != 0)
+    if (use == Use::append && ::ftruncate(descriptor_, static_cast<off_t>(line_begin)) != 0)
       throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
   }
   size_ = line_begin;
-  if (first) write(head + "\n");
+  if (first && use == Use::append) write(head + "\n");
 }
 
 void Journal::note(std::uint64_t index, std::uint64_t offset) {

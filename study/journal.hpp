@@ -16,10 +16,14 @@ namespace snare::study {
 /// damaged one is taken out or passed over, and its case is run again. 8 bytes a case are held in memory.
 class Journal {
  public:
-  /// Opens or makes the file. identity: one line of text, equal for equal studies. count: cases there are; 0: not known.
-  /// Throws base::InputError when the file belongs to another study or is no regular file, std::system_error when the system
-  /// refuses.
-  Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count);
+  enum class Use {
+    append,  ///< one at a time holds the file, by a lock that goes with the process
+    look     ///< what is there, while another may be appending; nothing is written
+  };
+  /// Opens the file; to append it is made where it is missing. identity: one line of text, equal for equal studies. count: cases there
+  /// are; 0: not known. Throws base::InputError when the file belongs to another study, is held by another run or is no regular file,
+  /// std::system_error when the system refuses.
+  Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count, Use use = Use::append);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -45,7 +49,7 @@ class Journal {
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
  private:
-  void load(const std::string& identity);
+  void load(const std::string& identity, Use use);
   void note(std::uint64_t index, std::uint64_t offset);
   void write(std::string_view text);
   void sync();

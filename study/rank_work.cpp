@@ -3,6 +3,7 @@
 #include "base/archive.hpp"
 #include "base/errors.hpp"
 #include "base/index.hpp"
+#include "base/inputs.hpp"
 #include "study/clock.hpp"
 
 #include <fmt/format.h>
@@ -91,7 +92,8 @@ void RankLeader::run(Dispatcher& dispatcher, const RunWithValues& run,
                      const std::function<std::vector<double>(std::uint64_t)>& values,
                      const std::function<std::string(std::uint64_t)>& given_up, std::uint64_t first) {
   // The leader's own cases on a thread of their own: this one talks.
-  std::thread own([&] {
+  std::thread own([&, inputs = base::current_inputs()] {
+    const base::InputScope scope(inputs);
     run_cases(
         dispatcher, settings_.threads, [&](std::uint64_t index) { return run(first + index, values(index)); },
         Idle::wait);
@@ -155,7 +157,8 @@ void follow(Ranks& ranks, const std::string& identity, int threads, const RunWit
     reader(tasks);
     std::vector<TimedResult> results;
     std::atomic<bool> finished{false};
-    std::thread work([&] {
+    std::thread work([&, inputs = base::current_inputs()] {
+      const base::InputScope scope(inputs);
       results = run_list(
           tasks.size(), threads, [&](std::size_t k) { return run(tasks[k].number, tasks[k].values); },
           [&] { return over.load() || stop(); });

@@ -1,28 +1,37 @@
 #include "study/sobol_indices.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
+
+#include <array>
 #include <cmath>
 
 namespace snare::study {
 
 namespace {
 
-/// Sums of a numerator over rows, and of its products, for a ratio of means and its error.
-struct Ratio {
-  double v = 0.0, vv = 0.0, vw = 0.0;
+/// Sums of one quantity over the rows of each replicate.
+using Sums = std::array<double, sobol_replicates>;
 
-  void add(double value, double w) {
-    v += value;
-    vv += value * value;
-    vw += value * w;
+double sum(const Sums& sums) {
+  double total = 0.0;
+  for (const double one : sums) total += one;
+  return total;
+}
+
+/// Half of the 95 % interval of r = sum(v) / sum(w), by linear propagation: the replicates' v - r w are independent.
+double half_interval(const Sums& v, const Sums& w, const Sums& rows) {
+  const double r = sum(v) / sum(w);
+  double squares = 0.0;
+  double replicates = 0.0;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    if (rows[k] == 0.0) continue;
+    replicates += 1.0;
+    squares += std::pow(v[k] - r * w[k], 2);
   }
-  /// Standard error of v / w: the scatter of (v - r w) over rows, divided by the mean of w and by sqrt(n).
-  [[nodiscard]] double error(double r, double w, double ww, double n) const {
-    const double mean_w = w / n;
-    const double mean = (v - r * w) / n;
-    const double square = (vv - 2.0 * r * vw + r * r * ww) / n - mean * mean;
-    return std::sqrt(std::max(0.0, square) / (n - 1.0)) / mean_w;
-  }
-};
+  constexpr double tail = 0.025;
+  const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), tail));
+  return t * std::sqrt(replicates / (replicates - 1.0) * squares) / sum(w);
+}
 
 }  // namespace
 
@@ -31,6 +40,7 @@ SobolIndices sobol_indices(std::size_t variables, std::uint64_t rows,
   SobolIndices indices;
   std::vector<double> y(variables + 2);
   const auto for_rows = [&](const auto& use) {
+    indices.dropped = 0;
     for (std::uint64_t row = 0; row < rows; ++row) {
       bool whole = true;
       for (std::size_t k = 0; k < y.size(); ++k) {
@@ -39,43 +49,50 @@ SobolIndices sobol_indices(std::size_t variables, std::uint64_t rows,
         y[k] = one.value_or(0.0);
       }
       if (whole)
-        use();
+        use(row % sobol_replicates);
       else
         ++indices.dropped;
     }
   };
-  for_rows([&] {
+  Sums whole{};
+  for_rows([&](std::uint64_t replicate) {
     ++indices.rows;
+    whole[replicate] += 1.0;
     indices.mean += 0.5 * (y[0] + y[1]);
   });
-  constexpr std::uint64_t least = 2;
-  if (indices.rows < least) return indices;
-  const auto n = static_cast<double>(indices.rows);
-  indices.mean /= n;
-  indices.dropped = 0;
+  std::size_t replicates = 0;
+  for (const double count : whole) replicates += count > 0.0 ? 1 : 0;
+  constexpr std::size_t least = 2;
+  if (replicates < least) return indices;
+  indices.mean /= static_cast<double>(indices.rows);
 
-  // With f_A and f_B about the mean: V_j = E[f_B (f_ABj - f_A)], T_j = E[(f_A - f_ABj)^2] / 2, V = E[f_A^2 + f_B^2] / 2.
-  double w = 0.0;
-  double ww = 0.0;
-  std::vector<Ratio> first(variables), total(variables);
-  for_rows([&] {
-    const double a = y[0] - indices.mean;
-    const double b = y[1] - indices.mean;
-    const double square = 0.5 * (a * a + b * b);
-    w += square;
-    ww += square * square;
+  // V = E[(f_A - m)^2 + (f_B - m)^2] / 2, T_j = E[(f_A - f_ABj)^2] / 2; V_j by products, E[(f_B - m) (f_ABj - f_A)], or by
+  // differences, V - E[(f_B - f_ABj)^2] / 2.
+  Sums variance{};
+  double squares = 0.0;
+  std::vector<Sums> by_products(variables), by_differences(variables), total(variables);
+  for_rows([&](std::uint64_t k) {
+    const double square = 0.5 * (std::pow(y[0] - indices.mean, 2) + std::pow(y[1] - indices.mean, 2));
+    variance[k] += square;
+    squares += square * square;
     for (std::size_t j = 0; j < variables; ++j) {
-      const double difference = y[j + 2] - y[0];
-      first[j].add(b * difference, square);
-      total[j].add(0.5 * difference * difference, square);
+      by_products[j][k] += (y[1] - indices.mean) * (y[j + 2] - y[0]);
+      by_differences[j][k] += square - 0.5 * std::pow(y[1] - y[j + 2], 2);
+      total[j][k] += 0.5 * std::pow(y[0] - y[j + 2], 2);
     }
   });
-  indices.variance = w / n;
+  const double w = sum(variance);
+  indices.variance = w / static_cast<double>(indices.rows);
   if (!(indices.variance > 0.0)) return indices;
+  indices.effective_rows = w * w / squares;
+  if (indices.effective_rows < least_effective_rows) return indices;
+  // Where most rows contribute, products scatter less; of a rare outcome few rows or none have one.
+  constexpr double even = 1.0 / 3.0;
+  const bool products = indices.effective_rows >= even * static_cast<double>(indices.rows);
+  const std::vector<Sums>& first = products ? by_products : by_differences;
   for (std::size_t j = 0; j < variables; ++j) {
-    const double s = first[j].v / w;
-    const double t = total[j].v / w;
-    indices.of.push_back({s, t, first[j].error(s, w, ww, n), total[j].error(t, w, ww, n)});
+    indices.of.push_back({sum(first[j]) / w, sum(total[j]) / w, half_interval(first[j], variance, whole),
+                          half_interval(total[j], variance, whole)});
   }
   return indices;
 }

@@ -3,10 +3,14 @@
 #include "study/distribution.hpp"
 #include "study/random_access.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace snare::study {
@@ -49,6 +53,8 @@ void SubsetSimulation::tell(const std::vector<std::optional<double>>& margins) {
     chains_.clear();
     for (std::size_t k = 0; k < margins.size(); ++k)
       chains_.push_back({State{std::move(asked_[k]), margins[k].value_or(far)}});
+    families_.resize(margins.size());
+    std::iota(families_.begin(), families_.end(), std::size_t{0});
     end_level();
     return;
   }
@@ -95,26 +101,45 @@ double SubsetSimulation::variation_of(double threshold, double probability) cons
 }
 
 void SubsetSimulation::end_level() {
-  std::vector<const State*> states;
-  for (const std::vector<State>& chain : chains_)
-    for (const State& state : chain) states.push_back(&state);
-  std::ranges::stable_sort(states, [](const State* a, const State* b) { return a->margin > b->margin; });
-  const double next = 0.5 * (states[seeds_ - 1]->margin + states[seeds_]->margin);  // seeds_ of the states are above it
-  const bool last = states[seeds_ - 1]->margin >= 0.0 || !std::isfinite(next);
-  const double threshold = last ? 0.0 : next;
-  const auto above = std::ranges::count_if(states, [&](const State* s) { return s->margin >= threshold; });
-  const double probability = static_cast<double>(above) / static_cast<double>(states.size());
+  std::vector<std::pair<std::size_t, const State*>> states;  // with their families
+  for (std::size_t c = 0; c < chains_.size(); ++c)
+    for (const State& state : chains_[c]) states.emplace_back(families_[c], &state);
+  std::ranges::stable_sort(states, [](const auto& a, const auto& b) { return a.second->margin > b.second->margin; });
+  // seeds_ of the states are above it, more where margins are equal.
+  const double next = 0.5 * (states[seeds_ - 1].second->margin + states[seeds_].second->margin);
   const double from = first_ ? far : threshold_;
+  // Where the margin has few values the next threshold may leave nothing out: then the share of the event is counted as it is.
+  const bool stuck = !(next > states.back().second->margin);
+  const bool last = states[seeds_ - 1].second->margin >= 0.0 || !std::isfinite(next) || stuck;
+  const double threshold = last ? 0.0 : next;
+  const auto below = std::ranges::find_if(states, [&](const auto& s) { return s.second->margin < threshold; });
+  states.erase(below, states.end());
+  const double probability = static_cast<double>(states.size()) / static_cast<double>(seeds_ * length_);
   levels_.push_back({from, probability, variation_of(threshold, probability)});
-  reached_ = last && above > 0;
-  const bool stuck = !last && !first_ && !(next > threshold_);  // a margin of few values
-  if (last || stuck || static_cast<int>(levels_.size()) >= settings_.most_levels) {
+  hits_ = states.size();
+  std::map<std::size_t, double> members;
+  for (const auto& [family, state] : states) members[family] += 1.0;
+  family_squares_ = 0.0;
+  for (const auto& [family, count] : members) family_squares_ += std::pow(count / static_cast<double>(hits_), 2);
+  threshold_interval_ = interval_of_threshold();
+  reached_ = last && hits_ > 0;
+  if (last || static_cast<int>(levels_.size()) >= settings_.most_levels)
     asked_.clear();
-    return;
-  }
+  else
+    begin_level(states, threshold);
+}
+
+// Of more states than seeds, by margin, every so-manieth: their margins are distributed as those of all.
+void SubsetSimulation::begin_level(const std::vector<std::pair<std::size_t, const State*>>& above, double threshold) {
   std::vector<std::vector<State>> seeds;
-  for (std::size_t k = 0; k < seeds_; ++k) seeds.push_back({*states[k]});
+  std::vector<std::size_t> families;
+  for (std::size_t k = 0; k < seeds_; ++k) {
+    const auto& [family, state] = above[(2 * k + 1) * above.size() / (2 * seeds_)];
+    seeds.push_back({*state});
+    families.push_back(family);
+  }
   chains_ = std::move(seeds);
+  families_ = std::move(families);
   threshold_ = threshold;
   first_ = false;
   steps_ = 0;
@@ -127,10 +152,25 @@ double SubsetSimulation::probability() const noexcept {
   return p;
 }
 
+// Thresholds taken as given, the probability is the mean of independent contributions, one a case of the first level: the cases of the
+// last level that descend from it, w of all of them. Its relative variance is sum w^2 - 1/n.
 double SubsetSimulation::variation() const noexcept {
-  double squares = 0.0;
-  for (const Level& level : levels_) squares += level.variation * level.variation;
-  return std::sqrt(squares);
+  if (hits_ == 0) return 1.0;
+  return std::sqrt(std::max(0.0, family_squares_ - 1.0 / static_cast<double>(seeds_ * length_)));
+}
+
+ProbabilityInterval SubsetSimulation::interval() const {
+  return {reached_ ? threshold_interval_.low : 0.0, threshold_interval_.high};
+}
+
+ProbabilityInterval SubsetSimulation::interval_of_threshold() const {
+  if (levels_.size() == 1) return proportion_interval(hits_, seeds_ * length_);
+  if (hits_ == 0) return {0.0, threshold_interval_.high};  // no more probable than the threshold before
+  constexpr double tail = 0.025;
+  const double freedom = 1.0 / family_squares_;  // the mean is over all cases of the first level and costs none of them
+  const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
+  const double factor = std::exp(t * std::sqrt(std::log1p(variation() * variation())));
+  return {probability() / factor, std::min(1.0, probability() * factor)};
 }
 
 }  // namespace snare::study

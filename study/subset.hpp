@@ -1,7 +1,10 @@
 #pragma once
 
+#include "study/proportion.hpp"
+
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace snare::study {
@@ -23,7 +26,8 @@ class SubsetSimulation {
   struct Level {
     double threshold = 0.0;    ///< margin that the level's cases reach
     double probability = 0.0;  ///< of the next level's threshold within this one
-    double variation = 0.0;    ///< its coefficient of variation
+    double variation =
+        0.0;  ///< its coefficient of variation, with the correlation along the chains (Au, Beck 2001, eq. 25-27)
   };
 
   explicit SubsetSimulation(const Settings& settings);
@@ -37,11 +41,15 @@ class SubsetSimulation {
   /// Cases that were told before those of next().
   [[nodiscard]] std::uint64_t told() const noexcept { return told_; }
   [[nodiscard]] bool finished() const noexcept { return asked_.empty(); }
-  /// Whether the event was reached; else the probability is a bound from above of what could be seen.
+  /// Whether the event was reached; else the probability is that of the last threshold, which bounds it from above.
   [[nodiscard]] bool reached() const noexcept { return reached_; }
   [[nodiscard]] double probability() const noexcept;
-  /// Coefficient of variation, chains counted as correlated as they are, levels as independent (Au, Beck 2001, eq. 28).
+  /// Coefficient of variation, by the scatter over the families of cases that descend from one case of the first level: it contains the
+  /// correlation along chains and between levels.                                                     theory.md (S.5)
   [[nodiscard]] double variation() const noexcept;
+  /// 95 % interval of the probability. With one level that of a share; with more, Student's t in the logarithm, with as many degrees of
+  /// freedom as there are effective families. Where the event was not reached: from zero to a bound that holds more often.
+  [[nodiscard]] ProbabilityInterval interval() const;
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
 
  private:
@@ -52,12 +60,15 @@ class SubsetSimulation {
 
   void ask();
   void end_level();
+  void begin_level(const std::vector<std::pair<std::size_t, const State*>>& above, double threshold);
   [[nodiscard]] double variation_of(double threshold, double probability) const;
+  [[nodiscard]] ProbabilityInterval interval_of_threshold() const;
 
   Settings settings_;
   std::size_t seeds_ = 1;   // chains of a level
   std::size_t length_ = 1;  // of a chain
   std::vector<std::vector<State>> chains_;
+  std::vector<std::size_t> families_;  // of a chain: the case of the first level from which it descends
   std::vector<std::vector<double>> asked_;
   std::vector<Level> levels_;
   double threshold_ = 0.0;  // of the level at hand
@@ -66,6 +77,9 @@ class SubsetSimulation {
   std::uint64_t told_ = 0;
   bool first_ = true;
   bool reached_ = false;
+  std::uint64_t hits_ = 0;                  // cases of the last level beyond its threshold
+  double family_squares_ = 0.0;             // sum of the squared shares that families have in these
+  ProbabilityInterval threshold_interval_;  // of the probability of the last level's threshold
 };
 
 }  // namespace snare::study

@@ -19,14 +19,15 @@ std::string with_error(const identification::Estimate& e, double unit) {
 }
 
 std::string ring_down_report_html(const RingDownFile& file, const std::vector<RingDownFit>& fits,
-                                  const DampingSplit& split) {
+                                  const DampingSplit& split, const std::vector<std::string>& warnings) {
   ReportPage page(file.title, file.source);
   page.heading("Damping");
-  page.callout(split.statement, split.separated ? Tone::good : Tone::plain);
+  page.callout(split.statement, !split.consistent() ? Tone::bad : split.separated ? Tone::good : Tone::plain);
+  for (const std::string& warning : warnings) page.callout(warning, Tone::bad);
+  const std::string kind = split.consistent() ? "95 %" : "95 %, with the scatter between the decays";
   page.key_figures(
-      {{"bending_time", with_error(split.bending_time) + " s", split.separated ? "95 %" : "if all were material"},
-       {"mass_rate", with_error(split.mass_rate) + " 1/s",
-        split.separated ? "95 %" : "if all were mass-proportional"}});
+      {{"bending_time", with_error(split.bending_time) + " s", split.separated ? kind : "if all were material"},
+       {"mass_rate", with_error(split.mass_rate) + " 1/s", split.separated ? kind : "if all were mass-proportional"}});
   Table table{"",
               {"Series"_code, "Frequency [Hz]"_number, "Damping ratio"_number, "Decay [1/s]"_number,
                "Amplitude [mm]"_number, "Friction [mm/s]"_number}};
@@ -37,9 +38,6 @@ std::string ring_down_report_html(const RingDownFile& file, const std::vector<Ri
       table.rows.push_back({file.series[s].data.name, with_error(mode.frequency), with_error(mode.damping_ratio),
                             with_error(mode.decay), with_error(mode.amplitude, per_mm),
                             rubs ? with_error(*fits[s].friction, per_mm) : std::string("none seen")});
-    }
-    if (!fits[s].noise_only()) {
-      page.callout(file.series[s].data.name + ": what is left is no noise, so the errors are too small", Tone::bad);
     }
   }
   page.table(table);

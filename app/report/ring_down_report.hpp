@@ -14,9 +14,10 @@ inline constexpr double per_mm = 1e3;  ///< from metres
 [[nodiscard]] std::string with_error(const identification::Estimate& e, double unit = 1.0);
 
 /// report.html of ring-downs: their damping, a table of the modes, and every record beside its fit.
-/// fits: one a series of the file.
+/// fits: one a series of the file. warnings: what must not be relied on.
 [[nodiscard]] std::string ring_down_report_html(const identification::RingDownFile& file,
                                                 const std::vector<identification::RingDownFit>& fits,
-                                                const identification::DampingSplit& split);
+                                                const identification::DampingSplit& split,
+                                                const std::vector<std::string>& warnings);
 
 }  // namespace snare::app

@@ -37,7 +37,8 @@ std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector
     for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
       const RingDownMode& mode = fits[s].modes[m];
       if (!mode.significant()) continue;
-      MatchedMode match{s, m, {mode.natural(), 1.0, mode.decay}, 0.0};
+      MatchedMode match{
+          s, m, {mode.natural(), 1.0, mode.decay}, 0.0, fits[s].decay_covariance.row(static_cast<Eigen::Index>(m))};
       double nearest = std::numeric_limits<double>::infinity();
       for (const wire::RodMode& candidate : computed) {
         const double distance = std::abs(std::log(candidate.natural / mode.natural()));
@@ -57,15 +58,24 @@ std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector
 DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
   constexpr double far_off = 1.2;
   std::vector<DecayOfMode> decays;
-  std::string strangers;
-  for (const MatchedMode& m : modes) {
-    decays.push_back(m.decay);
-    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
-    strangers += fmt::format("; {:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
-                             0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed);
+  const auto n = static_cast<Eigen::Index>(modes.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    decays.push_back(modes[i].decay);
+    for (std::size_t k = 0; k < modes.size(); ++k) {
+      if (modes[i].series == modes[k].series)
+        covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+            modes[i].covariance[static_cast<Eigen::Index>(modes[k].mode)];
+    }
   }
-  DampingSplit split = split_damping(decays);
-  split.statement += strangers;
+  DampingSplit split = split_damping(decays, covariance);
+  for (const MatchedMode& m : modes) {
+    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
+    split.warnings.push_back(fmt::format("{:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
+                                         0.5 / std::numbers::pi * m.decay.natural,
+                                         0.5 / std::numbers::pi * m.computed));
+    split.statement += "; " + split.warnings.back();
+  }
   return split;
 }
 

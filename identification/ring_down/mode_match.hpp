@@ -12,13 +12,14 @@ struct MatchedMode {
   std::size_t series = 0, mode = 0;  ///< indices
   DecayOfMode decay;                 ///< its bending_share: bending and axial together, one time for both
   double computed = 0.0;             ///< natural angular frequency of the wire's mode [rad/s]; 0: no wire declared
+  Eigen::VectorXd covariance;        ///< of its decay with those of all modes of its record [1/s^2]
 };
 
 /// The significant modes of all series, for split_damping. fits: one a series. Throws InputError when the
 /// declared wire has no rest.
 [[nodiscard]] std::vector<MatchedMode> match_modes(const RingDownFile& file, const std::vector<RingDownFit>& fits);
 
-/// split_damping of these, with a word where a frequency is more than a fifth off the wire's.
+/// split_damping of these, with a warning where a frequency is more than a fifth off the wire's.
 [[nodiscard]] DampingSplit split_damping(const std::vector<MatchedMode>& modes);
 
 }  // namespace snare::identification

@@ -285,6 +285,9 @@ RingDownFit fit_ring_down(const RingDown& data) {
     if (m == largest) fit.largest = fit.modes.size();
     fit.modes.push_back(mode_of(now, covariance, m));
   }
+  std::vector<Index> decays;
+  for (const Index m : order) decays.push_back(now.layout.decay(m));
+  fit.decay_covariance = covariance(decays, decays);
   if (now.layout.rubbing >= 0) {
     const Estimate g = of(now.p, covariance, now.layout.friction());
     const double size = fit.modes[fit.largest].amplitude.value;

@@ -37,6 +37,7 @@ struct RingDownMode {
 /// What is found in one record; usable or not says its report.
 struct RingDownFit {
   std::vector<RingDownMode> modes;   ///< by frequency
+  Eigen::MatrixXd decay_covariance;  ///< of their decays, a row and a column a mode [1/s^2]
   std::size_t largest = 0;           ///< index of the mode of the largest amplitude
   std::optional<Estimate> friction;  ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
   double friction_bic = 0.0;         ///< BIC without friction less that with it; kept above 10

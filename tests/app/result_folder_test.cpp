@@ -34,9 +34,9 @@ TEST_F(Refusals, FoldersThatCannotBeWrittenAreFoundBeforeComputing) {
   write("file", "in the way");
   fs::create_directories(folder_ / "taken/curves.csv");
   for (const std::string verb : {"push long.toml", "reproduce", "validate"}) {
-    EXPECT_EQ(refused(verb + " --out file"), 1) << verb;
+    EXPECT_EQ(refused(verb + " --out file"), 2) << verb;
     EXPECT_NE(contents("err.txt").find("file"), std::string::npos) << contents("err.txt");
-    EXPECT_EQ(refused(verb + " --out file/below"), 1) << verb;
+    EXPECT_EQ(refused(verb + " --out file/below"), 2) << verb;
     EXPECT_EQ(refused(verb + " --out /proc/nowhere"), 1) << verb;
     EXPECT_EQ(refused(verb + " --out ''"), 2) << verb;
     EXPECT_NE(contents("err.txt").find("--out = '', must name a folder"), std::string::npos) << contents("err.txt");

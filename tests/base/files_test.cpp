@@ -1,5 +1,8 @@
 #include "base/files.hpp"
 
+#include "base/errors.hpp"
+#include "base/inputs.hpp"
+#include "base/sha256.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -91,6 +94,32 @@ TEST(Utf8, FindsTheFirstByteThatIsNotWellFormed) {
   EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);                                // surrogate
   EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);                            // beyond U+10FFFF
   EXPECT_EQ(find_invalid_utf8("\xFF"), 0u);
+}
+
+// FIPS 180-4 examples, and lengths about the end of a block, by sha256sum.
+TEST(Sha256, KnownDigests) {
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_F(Files, AreReadOnceInAScope) {
+  write_text(path("a.txt"), "first");
+  const auto inputs = std::make_shared<Inputs>();
+  {
+    const InputScope scope(inputs);
+    EXPECT_EQ(read_text(path("a.txt")), "first");
+    EXPECT_THROW(write_text(path("a.txt"), "second"), InputError);  // an input
+    std::filesystem::remove(path("a.txt"));
+    EXPECT_EQ(read_text(path("a.txt")), "first");
+    EXPECT_THROW(static_cast<void>(read_text(path("a.txt"), 3)), InputError);
+  }
+  write_text(path("a.txt"), "second");
+  EXPECT_EQ(read_text(path("a.txt")), "second");
+  ASSERT_EQ(inputs->files().size(), 1U);
+  EXPECT_EQ(inputs->files()[0].sha256, sha256("first"));
 }
 
 }  // namespace

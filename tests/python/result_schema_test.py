@@ -154,7 +154,7 @@ def prepare(work):
     sweep = sweep.replace("[collect]", '[collect]\nheld = "series[s60].in_contact_at_end"')
     (work / "sweep.toml").write_text(sweep + '\n[histories]\ncolumns = "all"\n')
     free = sweep.split("[[correlate]]")[0] + "[collect]" + sweep.split("[collect]")[1]
-    (work / "sobol.toml").write_text(free.replace('"latin_hypercube"', '"sensitivity"'))
+    (work / "sobol.toml").write_text(free.replace('"latin_hypercube"', '"sensitivity"').replace("cases = 4", "cases = 24"))
     (work / "subset.toml").write_text(free.replace('"latin_hypercube"', '"subset"').replace("cases = 4", "cases = 20") +
                                       "\n[subset]\nlevel_probability = 0.5\nlevels = 2\n")
 

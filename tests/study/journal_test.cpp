@@ -70,6 +70,17 @@ TEST_F(JournalTest, RefusesAnotherStudy) {
   EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 0U);  // the file is as it was
 }
 
+TEST_F(JournalTest, OneAtATimeAppendsAndOthersMayLook) {
+  Journal journal(file(), "s", 10);
+  journal.append(3, "three");
+  EXPECT_THAT(test::refusal([&] { return Journal(file(), "s", 10); }),
+              testing::HasSubstr("another run is writing into this folder"));
+  const std::string before = contents("cases.journal") + "4 tor";
+  std::ofstream(file(), std::ios::binary | std::ios::app) << "4 tor";  // being written
+  EXPECT_EQ(Journal(file(), "s", 10, Journal::Use::look).result(3), "three");
+  EXPECT_EQ(contents("cases.journal"), before);
+}
+
 // A device that never ends would be read for ever.
 TEST_F(JournalTest, RefusesWhatIsNoFile) {
   std::filesystem::create_symlink("/dev/full", file());
