@@ -105,9 +105,8 @@ void tell(const MotionStage& stage, const char* name, Console& console) {
 
 void tell_numbers(const MotionStage& stage, Console& console) {
   for (const identification::TracedNumber& n : stage.numbers) {
-    std::string line = fmt::format("  {} = {:.6g}{}{}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit);
-    if (n.lower && n.upper) line += fmt::format("  [{:.5g}, {:.5g}]", *n.lower, *n.upper);
-    console.say(line);
+    console.say(fmt::format("  {} = {:.6g}{}{}  {}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit,
+                            identification::interval_words(n.lower, n.upper, n.identified, n.bound)));
   }
 }
 

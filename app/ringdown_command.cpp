@@ -6,11 +6,13 @@
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "identification/ring_down/mode_match.hpp"
+#include "results/finite_json.hpp"
 #include "results/in_mm.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <limits>
 #include <numbers>
 
 namespace snare::app {
@@ -25,8 +27,10 @@ using identification::RingDownMode;
 using nlohmann::json;
 
 json estimate_json(const Estimate& e, double unit = 1.0) {
-  return {
-      {"value", unit * e.value}, {"stderr", unit * e.error}, {"lower", unit * e.lower()}, {"upper", unit * e.upper()}};
+  return {{"value", unit * e.value},
+          {"stderr", results::finite(unit * e.error)},
+          {"lower", results::finite(unit * e.lower())},
+          {"upper", results::finite(unit * e.upper())}};
 }
 
 json series_json(const identification::RingDown& data, const RingDownFit& fit) {
@@ -50,10 +54,16 @@ json series_json(const identification::RingDown& data, const RingDownFit& fit) {
           {"residual", {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
 }
 
+/// Of one of the two numbers; where only their sum is known, neither has an interval.
+json share_json(const DampingSplit& split, Estimate share) {
+  if (!split.separated) share.error = std::numeric_limits<double>::infinity();
+  return estimate_json(share);
+}
+
 json damping_json(const DampingSplit& split) {
   return {{"separated", split.separated},
-          {"bending_time_s", estimate_json(split.bending_time)},
-          {"mass_rate_1_s", estimate_json(split.mass_rate)},
+          {"bending_time_s", share_json(split, split.bending_time)},
+          {"mass_rate_1_s", share_json(split, split.mass_rate)},
           {"correlation", split.correlation},
           {"misfit_p", split.misfit_p},
           {"statement", split.statement}};

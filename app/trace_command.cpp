@@ -112,9 +112,8 @@ ExitStatus status_of(const identification::Experiment& experiment, const Trace& 
 }
 
 std::string number_line(const FittedNumber& n) {
-  std::string text = fmt::format("  {} = {:.6g}{}{}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit);
-  if (n.lower && n.upper) text += fmt::format("  [{:.5g}, {:.5g}]", *n.lower, *n.upper);
-  return text;
+  return fmt::format("  {} = {:.6g}{}{}  {}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit,
+                     identification::interval_words(n.lower, n.upper, n.identified, n.bound));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 namespace snare::numerics {
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
+  if (a.size() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
@@ -19,6 +20,7 @@ GeneralEigen general_eigen(const Eigen::MatrixXd& a) {
 }
 
 ThinSvd thin_svd(const Eigen::MatrixXd& a) {
+  if (a.size() == 0) return {Eigen::MatrixXd(a.rows(), 0), {}, Eigen::MatrixXd(a.cols(), 0)};
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }

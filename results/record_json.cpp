@@ -1,5 +1,6 @@
 #include "results/record_json.hpp"
 
+#include "results/finding_json.hpp"
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
 
@@ -50,20 +51,34 @@ json errors_json(const std::vector<ChannelError>& errors) {
 
 json number_json(const TracedNumber& n) {
   return {{"value", finite(n.value)},
-          {"stderr", n.lower ? finite(n.stderr_) : json()},
+          {"stderr", n.identified ? finite(n.stderr_) : json()},
           {"unit", n.unit},
           {"lower", finite(n.lower)},
-          {"upper", finite(n.upper)}};
+          {"upper", finite(n.upper)},
+          {"identified", n.identified},
+          {"on_bound", bound_json(n.bound)}};
+}
+
+json open_json(const std::vector<identification::OpenNumbers>& open) {
+  json result = json::array();
+  for (const identification::OpenNumbers& direction : open) {
+    json changes = json::object(), known = json::object();
+    for (const identification::NamedChange& c : direction.changes) changes[c.key] = finite(c.change);
+    for (const TracedNumber& n : direction.known) known[n.key] = number_json(n);
+    result.push_back({{"what", identification::null_words(direction.changes)},
+                      {"changes", changes},
+                      {"held", {{"key", direction.changes.front().key}, {"value", finite(direction.held)}}},
+                      {"known", known}});
+  }
+  return result;
 }
 
 json stage_json(const MotionTrace& trace, const MotionStage& stage) {
   json numbers = json::object();
   for (const TracedNumber& n : stage.numbers) numbers[n.key] = number_json(n);
-  return {{with_unit("rmse", trace), finite(stage.rmse)},
-          {"nrmse", finite(stage.nrmse)},
-          {"chi2_dof", finite(stage.chi2_dof)},
-          {"parameters", numbers},
-          {"channels", errors_json(stage.errors)}};
+  return {{with_unit("rmse", trace), finite(stage.rmse)}, {"nrmse", finite(stage.nrmse)},
+          {"chi2_dof", finite(stage.chi2_dof)},           {"parameters", numbers},
+          {"indistinguishable", open_json(stage.open)},   {"channels", errors_json(stage.errors)}};
 }
 
 const char* end_name(identification::ProfileEnd end) {
@@ -142,6 +157,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
           {"source", set.source},
           {"version", version()},
           {"warnings", trace.warnings},
+          {"findings", findings_json(trace.findings)},
           {"noise", {{with_unit("sigma", trace), finite(trace.sigma)}, {"source", trace.noise_source}}},
           {"declared", stage_json(trace, trace.declared)},
           {"profiles", profiles_json(trace)},

@@ -139,6 +139,21 @@ std::string partly_explained(const Trace& t) {
          reservation(t);
 }
 
+bool impossible(const identification::Finding& f) {
+  return f.kind == identification::FindingKind::impossible_stiffness && f.sure;
+}
+
+/// The readings do not determine the numbers of a model that describes them.
+std::string cannot_tell(const Trace& t) {
+  return fmt::format(
+      "Cannot tell: the base model describes the readings (rmse {:.3g} N), but they do not determine its numbers, so "
+      "that an "
+      "effect that acts like one of these would not be seen. Hold one of the numbers that go together at a value that "
+      "was "
+      "measured otherwise.",
+      t.base.rmse);
+}
+
 std::string not_explained(const Trace& t) {
   std::string text;
   if (t.rival_explanation) {
@@ -146,7 +161,7 @@ std::string not_explained(const Trace& t) {
         "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
         "does not have does so more simply.",
         fmt::join(t.partial, " and "), t.base.rmse);
-  } else if (std::ranges::any_of(t.findings, [](const identification::Finding& f) { return f.sure; })) {
+  } else if (std::ranges::any_of(t.findings, impossible)) {
     text =
         fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
   } else if (t.from_laws) {
@@ -177,12 +192,6 @@ std::string zero_words(const identification::ZeroCheck& z) {
 
 }  // namespace
 
-std::string finding_words(const identification::Finding& f) {
-  return fmt::format("{} = {:.4g} {} is {:.3g} times that of a solid section of the declared diameter and modulus{}",
-                     f.key, f.value, f.unit, f.value / f.limit,
-                     f.sure ? ": no such wire has it, so the fit stands in for something else" : "");
-}
-
 std::string verdict(const Trace& t) {
   using identification::VerdictKind;
   std::string text;
@@ -199,8 +208,10 @@ std::string verdict(const Trace& t) {
     case VerdictKind::not_explained:
       text = not_explained(t);
       break;
+    case VerdictKind::cannot_tell:
+      text = cannot_tell(t);
+      break;
   }
-  for (const identification::Finding& f : t.findings) text += fmt::format(" Note: {}.", finding_words(f));
   if (t.zero && t.zero->doubtful) text += zero_words(*t.zero);
   return text;
 }

@@ -12,9 +12,6 @@ namespace snare::results {
 /// The verdict in a sentence or three, for a person.
 [[nodiscard]] std::string verdict(const identification::Trace& trace);
 
-/// A number beyond what the declared construction allows, in a sentence.
-[[nodiscard]] std::string finding_words(const identification::Finding& finding);
-
 /// Mean standard deviation of a fitted reading [N]; none before the noise is known.
 [[nodiscard]] std::optional<double> reading_noise(const identification::Trace& trace);
 

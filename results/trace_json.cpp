@@ -1,6 +1,7 @@
 #include "results/trace_json.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "results/finding_json.hpp"
 #include "results/finite_json.hpp"
 #include "results/in_mm.hpp"
 #include "results/trace_findings.hpp"
@@ -31,6 +32,20 @@ json correlation_json(const std::vector<FittedNumber>& numbers) {
   return result;
 }
 
+/// Null directions: which numbers go together, and the others with the first one held.
+json open_json(const std::vector<identification::OpenDirection>& open) {
+  json result = json::array();
+  for (const identification::OpenDirection& direction : open) {
+    json changes = json::object();
+    for (const identification::NamedChange& c : direction.changes) changes[c.key] = finite(c.change);
+    result.push_back({{"what", identification::null_words(direction.changes)},
+                      {"changes", changes},
+                      {"held", {{"key", direction.changes.front().key}, {"value", finite(direction.held)}}},
+                      {"known", numbers_json(direction.known)}});
+  }
+  return result;
+}
+
 json error_json(const Trace& trace, const ModelError& error) {
   json series = json::object();
   for (std::size_t k = 0; k < error.series_rmse.size(); ++k)
@@ -40,7 +55,8 @@ json error_json(const Trace& trace, const ModelError& error) {
           {"chi2_dof", finite(error.chi2_dof)},
           {"series_rmse_N", series},
           {"parameters", numbers_json(error.numbers)},
-          {"correlation", correlation_json(error.numbers)}};
+          {"correlation", correlation_json(error.numbers)},
+          {"indistinguishable", open_json(error.open)}};
 }
 
 json tests_json(const identification::ResidualTests& tests) {
@@ -166,19 +182,6 @@ json remaining_json(const Trace& trace) {
           {"channel", trace.remaining.channel.empty() ? json() : json(trace.remaining.channel)}};
 }
 
-json findings_json(const Trace& trace) {
-  json result = json::array();
-  for (const identification::Finding& f : trace.findings) {
-    result.push_back({{"key", f.key},
-                      {"value", finite(f.value)},
-                      {"limit", finite(f.limit)},
-                      {"unit", f.unit},
-                      {"sure", f.sure},
-                      {"what", finding_words(f)}});
-  }
-  return result;
-}
-
 json places_json(const Trace& trace) {
   json result = json::array();
   for (const identification::PlaceEstimate& p : trace.places) {
@@ -198,7 +201,8 @@ json numbers_json(const std::vector<FittedNumber>& numbers) {
     result[n.key] = {{"value", finite(n.value)},       {"stderr", finite(n.standard_error)},
                      {"declared", finite(n.declared)}, {"unit", n.unit},
                      {"lower95", finite(n.lower)},     {"upper95", finite(n.upper)},
-                     {"profiled", n.profiled},         {"averaged", n.averaged}};
+                     {"profiled", n.profiled},         {"averaged", n.averaged},
+                     {"identified", n.identified},     {"on_bound", bound_json(n.bound)}};
   }
   return result;
 }
@@ -228,7 +232,7 @@ json findings_document(const identification::Experiment& experiment, const Trace
               {"independent_numbers", trace.rows},
               {"few_readings", trace.few_readings},
               {"one_condition", trace.one_condition},
-              {"findings", findings_json(trace)},
+              {"findings", findings_json(trace.findings)},
               {"places", places_json(trace)},
               {"zero", zero_json(trace.zero)},
               {"interrupted", trace.interrupted},
@@ -306,8 +310,8 @@ json fit_json(const identification::Experiment& experiment, const Trace& trace) 
   json whole = findings_document(experiment, trace);
   whole["warnings"] = trace_warnings(experiment, trace);
   json result{{"schema", "snare-fit/1"}, {"interrupted", trace.interrupted}};
-  for (const char* key : {"title", "source", "version", "places", "noise", "declared", "heldout", "left_out",
-                          "mesh_error_N", "warnings"}) {
+  for (const char* key : {"title", "source", "version", "places", "findings", "noise", "declared", "heldout",
+                          "left_out", "mesh_error_N", "warnings"}) {
     result[key] = whole[key];
   }
   result["fit"] = whole["final"];

@@ -66,7 +66,12 @@ std::vector<std::string> trace_warnings(const identification::Experiment& experi
     s.test.travel.clear();
   }
   const identification::Model model(std::move(series), experiment.solver, false);
-  return push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model");
+  std::vector<std::string> warnings;
+  for (const identification::Finding& f : trace.findings) warnings.push_back(f.what);
+  for (std::string& w :
+       push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model"))
+    warnings.push_back(std::move(w));
+  return warnings;
 }
 
 std::vector<std::string> wire_warnings(const reduction::WireFile& file) {

@@ -103,7 +103,7 @@ std::string fit_report_html(const identification::Experiment& experiment, const 
   Table numbers{"", {"Number"_code, "Declared"_number, "Value"_number, "95 % interval"_number, "Unit"_text}};
   for (const identification::FittedNumber& n : trace.final.numbers) {
     std::vector<Cell> row{n.key, shown(n.declared)};
-    for (Cell& cell : value_cells(n.value, n.lower, n.upper)) row.push_back(std::move(cell));
+    for (Cell& cell : value_cells(n)) row.push_back(std::move(cell));
     row.emplace_back(n.unit);
     numbers.rows.push_back(std::move(row));
   }

@@ -44,9 +44,8 @@ void errors(ReportPage& page, const MotionTrace& trace) {
 void numbers(ReportPage& page, const MotionStage& stage) {
   Table table{"Numbers of the final model", {"Key"_code, "Value"_number, "95 %"_number, "Unit"_text}};
   for (const TracedNumber& n : stage.numbers)
-    table.rows.push_back(
-        {n.key, format_number(n.value),
-         n.lower && n.upper ? fmt::format("{:.5g} to {:.5g}", *n.lower, *n.upper) : std::string("not seen"), n.unit});
+    table.rows.push_back({n.key, format_number(n.value),
+                          identification::interval_words(n.lower, n.upper, n.identified, n.bound), n.unit});
   page.table(table);
 }
 
@@ -159,6 +158,12 @@ std::string record_verdict(const MotionTrace& trace) {
       return fmt::format(
           "Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest stays open.",
           names, 100.0 * (1.0 - trace.share_left));
+    case VerdictKind::cannot_tell:
+      return "Cannot tell: the scenario describes the records, but they do not determine its numbers: an effect that "
+             "acts "
+             "like one of these would not be seen. Hold one of the numbers that go together at a value that was "
+             "measured "
+             "otherwise.";
     case VerdictKind::not_explained:
       break;
   }

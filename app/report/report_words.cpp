@@ -76,4 +76,13 @@ std::vector<Cell> value_cells(std::optional<double> value, std::optional<double>
   return {show(*value), lower ? "from " + show(*lower) : upper ? "up to " + show(*upper) : absent};
 }
 
+std::vector<Cell> value_cells(const identification::FittedNumber& number) {
+  using identification::AtBound;
+  std::vector<Cell> cells = value_cells(number.value, number.lower, number.upper);
+  if (number.bound != AtBound::none)
+    cells[0].text += number.bound == AtBound::lower ? " (its lower bound)" : " (its upper bound)";
+  if (!number.identified) cells[1].text = "not determined";
+  return cells;
+}
+
 }  // namespace snare::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/report/report_page.hpp"
+#include "identification/tracing/model_error.hpp"
 
 #include <optional>
 #include <string>
@@ -32,5 +33,7 @@ inline constexpr const char* absent = "\u2013";  ///< stands where a value is mi
 /// leaves meaningful.
 [[nodiscard]] std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
                                             std::optional<double> upper);
+/// The same of a fitted number, with words where it stands on its bound or is not determined.
+[[nodiscard]] std::vector<Cell> value_cells(const identification::FittedNumber& number);
 
 }  // namespace snare::app

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace snare::app {
 
 using namespace results;
@@ -15,6 +17,7 @@ using identification::RingDownFit;
 using identification::RingDownMode;
 
 std::string with_error(const identification::Estimate& e, double unit) {
+  if (!std::isfinite(e.error)) return fmt::format("{:.5g}, not determined", unit * e.value);
   return fmt::format("{:.5g} -+ {:.2g}", unit * e.value, unit * 1.96 * e.error);
 }
 

@@ -102,6 +102,8 @@ KeyFigure effect_figure(const Trace& trace) {
     return {label, effects_found(trace), "in part; at most " + measured(trace.remaining.upper, " N rms") + " is left",
             Tone::plain};
   }
+  if (trace.kind == identification::VerdictKind::cannot_tell)
+    return {label, "cannot tell", "the readings do not determine the numbers of the base model", Tone::plain};
   if (!trace.explained) {
     const std::string partial = spaced(joined(trace.partial));
     const std::string why = partial.empty() ? "no effect of the catalogue fits" : "not settled by " + partial;
@@ -139,7 +141,8 @@ std::optional<KeyFigure> prediction_figure(const Trace& trace) {
 
 /// Good: an engineer may rely on it; bad: not; plain: within what is said.
 Tone tone_of(const Trace& trace) {
-  if (trace.kind == identification::VerdictKind::partly_explained) return Tone::plain;
+  using identification::VerdictKind;
+  if (trace.kind == VerdictKind::partly_explained || trace.kind == VerdictKind::cannot_tell) return Tone::plain;
   return trace.explained ? Tone::good : Tone::bad;
 }
 
@@ -332,9 +335,7 @@ void add_parameters(ReportPage& page, const Trace& trace) {
     std::vector<Cell> row{key, number.unit.empty() ? "" : name_and_unit(key).second, shown(number.declared)};
     for (const auto* model : {&base, &final}) {
       const auto fitted = model->find(key);
-      const auto cells = fitted == model->end()
-                             ? value_cells({}, {}, {})
-                             : value_cells(fitted->second.value, fitted->second.lower, fitted->second.upper);
+      const auto cells = fitted == model->end() ? value_cells({}, {}, {}) : value_cells(fitted->second);
       row.insert(row.end(), cells.begin(), cells.end());
     }
     row.emplace_back(number.profiled ? "profile" : number.averaged ? "average" : "curvature");

@@ -1,7 +1,44 @@
 #include "base/units.hpp"
 #include "identification/fitting/parameter.hpp"
 
+#include <array>
+
 namespace snare::identification {
+
+namespace {
+
+bool stiffnesses_declared(const PushProblem& p) {
+  return p.wire.bending_stiffness_override && p.wire.axial_stiffness_override && !p.wire.yielding;
+}
+
+bool weightless(const PushProblem& p) {
+  return p.gravity == std::array<double, 3>{};
+}
+
+const char* diameter_unseen(const PushProblem& p) {
+  const bool touches = p.pusher.radius > 0.0 || p.mount.kind == wire::MountKind::supports;
+  return stiffnesses_declared(p) && weightless(p) && !touches
+             ? "both stiffnesses are declared, the wire has no weight, and its centreline meets a knife edge"
+             : "";
+}
+
+const char* modulus_unseen(const PushProblem& p) {
+  return stiffnesses_declared(p) ? "both stiffnesses are declared: they do not follow from the modulus" : "";
+}
+
+const char* density_unseen(const PushProblem& p) {
+  return weightless(p) ? "the wire has no weight: declare [gravity] vector_m_s2" : "";
+}
+
+const char* supports_unseen(const PushProblem& p) {
+  return p.mount.kind == wire::MountKind::supports ? "" : "only a wire on supports touches them";
+}
+
+const char* knife_edge(const PushProblem& p) {
+  return p.pusher.radius > 0.0 ? "" : "a knife edge has none: declare a radius > 0 to start from";
+}
+
+}  // namespace
 
 const std::vector<Parameter>& construction_numbers() {
   using base::GPa;
@@ -12,7 +49,8 @@ const std::vector<Parameter>& construction_numbers() {
        .unit_size = mm,
        .number = member([](auto& p, auto&) -> auto& { return p.wire.diameter; }),
        .limits = [](const PushProblem& p) { return between(0.5 * p.wire.diameter, 1.5 * p.wire.diameter); },
-       .step = 1e-8},
+       .step = 1e-8,
+       .unseen = diameter_unseen},
       {.key = "wire.youngs_modulus_GPa",
        .unit = "GPa",
        .unit_size = GPa,
@@ -20,25 +58,29 @@ const std::vector<Parameter>& construction_numbers() {
        .number = member([](auto& p, auto&) -> auto& { return p.wire.youngs_modulus; }),
        .limits =
            [](const PushProblem& p) { return between(0.01 * p.wire.youngs_modulus, 3.0 * p.wire.youngs_modulus); },
-       .step = 1e-3},
+       .step = 1e-3,
+       .unseen = modulus_unseen},
       {.key = "wire.density_kg_m3",
        .unit = "kg/m^3",
        .parametrisation = Parametrisation::ratio,
        .number = member([](auto& p, auto&) -> auto& { return p.wire.density; }),
        .limits = [](const PushProblem& p) { return between(0.2 * p.wire.density, 5.0 * p.wire.density); },
-       .step = 1e-3},
+       .step = 1e-3,
+       .unseen = density_unseen},
       {.key = "mount.support_radius_mm",
        .unit = "mm",
        .unit_size = mm,
        .number = member([](auto& p, auto&) -> auto& { return p.mount.support_radius; }),
        .limits = [](const PushProblem& p) { return between(0.0, 0.2 * p.mount.span); },
-       .step = 1e-7},
+       .step = 1e-7,
+       .unseen = supports_unseen},
       {.key = "pusher.radius_mm",
        .unit = "mm",
        .unit_size = mm,
        .number = member([](auto& p, auto&) -> auto& { return p.pusher.radius; }),
        .limits = [](const PushProblem& p) { return between(0.1 * p.pusher.radius, 10.0 * p.pusher.radius); },
-       .step = 1e-7}};
+       .step = 1e-7,
+       .unseen = knife_edge}};
   return all;
 }
 

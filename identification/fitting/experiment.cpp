@@ -5,6 +5,7 @@
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "identification/fitting/parameter_set.hpp"
+#include "identification/fitting/unfitted_keys.hpp"
 #include "scenario/push_reader.hpp"
 
 #include <fmt/format.h>
@@ -320,6 +321,10 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
   std::vector<std::string> names = table.texts_or_none(key);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
+      if (const std::string why = why_not_fitted(names[i]); key != "heldout" && !why.empty()) {
+        table.fail_element(key, i, fmt::format("must be {}: {}", what, why));
+        continue;
+      }
       const std::string nearest = base::nearest_word(names[i], known);
       table.fail_element(key, i,
                          nearest.empty() ? fmt::format("must be {}", what)

@@ -252,6 +252,45 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
 
 namespace {
 
+/// Whether chi2 stays where it is, within 1, when the number that moves most along `direction` is moved and held.
+bool stays_along(const Model& model, const Data& data, const Fit& optimum, const Eigen::VectorXd& direction) {
+  Eigen::Index most = 0;
+  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&most);
+  const Setting& centre = optimum.settings[static_cast<std::size_t>(most)];
+  const double lower = model.lower(*centre.parameter), upper = model.upper(*centre.parameter);
+  // A fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it known.
+  double step = centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
+  if (centre.coordinate + step > upper) step = -step;
+  if (centre.coordinate + step < lower) return false;
+  FitOptions options;
+  options.max_iterations = 15;
+  std::vector<Setting> others, held{{centre.parameter, centre.coordinate + step}};
+  for (std::size_t k = 0; k < optimum.free; ++k) {
+    if (k == static_cast<std::size_t>(most)) continue;
+    Setting& s = others.emplace_back(optimum.settings[k]);
+    const double along = step * direction[static_cast<Eigen::Index>(k)] / direction[most];
+    s.coordinate = std::clamp(s.coordinate + along, model.lower(*s.parameter), model.upper(*s.parameter));
+  }
+  const std::vector<Setting> fixed = optimum.fixed();
+  held.insert(held.end(), fixed.begin(), fixed.end());
+  const Fit moved = fit(model, data, others, held, options);
+  return moved.report.usable() && moved.chi2 < optimum.chi2 + 1.0;
+}
+
+}  // namespace
+
+void find_rank(const Model& model, const Data& data, Fit& fit) {
+  if (fit.free == 0 || !fit.report.usable()) return;
+  constexpr double twice = 2.0;
+  const Evaluation wide = model.evaluate(fit.settings, fit.parameters(), twice);
+  const Eigen::MatrixXd error = wide.complete ? Eigen::MatrixXd(data.jacobian(wide) - fit.jacobian) : Eigen::MatrixXd();
+  fit.rank = identifiability_of(
+      fit.jacobian, error, [&](const Eigen::VectorXd& direction) { return stays_along(model, data, fit, direction); });
+  if (!fit.rank.directions.empty()) fit.covariance = fit.rank.covariance;
+}
+
+namespace {
+
 /// The fitted numbers but `which`, moved along with its step, to first order: c_i += step cov_ij / cov_jj.
 std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::size_t which, double step) {
   const auto j = static_cast<Eigen::Index>(which);

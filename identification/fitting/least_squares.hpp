@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identification/fitting/data.hpp"
+#include "identification/fitting/identifiability.hpp"
 #include "identification/fitting/model.hpp"
 #include "numerics/report.hpp"
 
@@ -18,6 +19,7 @@ struct Fit {
   Eigen::VectorXd residual;       ///< whitened
   Eigen::MatrixXd jacobian;       ///< whitened
   Eigen::MatrixXd covariance;     ///< of the coordinates, (J^T J)^-1 in the directions that the data see
+  Identifiability rank;           ///< which numbers the data determine; empty where find_rank() was not asked
   double chi2 = 0.0;
   numerics::SolveReport report;
   double estimated = 0.0;  ///< standard deviations that are estimated from the same data: those of published fits
@@ -44,6 +46,11 @@ struct FitOptions {
 /// start: coordinates to begin with; `fixed` settings stay.
 [[nodiscard]] Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
                       const std::vector<Setting>& fixed = {}, const FitOptions& options = {});
+
+/// Fills `rank` of a usable fit: derivatives by twice the step tell the error of those that it has, and a direction that they
+/// leave in doubt is null where chi2 rises by less than 1 when the number that moves most is moved along it and held, all
+/// others refitted. With null directions the covariance becomes that of `rank`.                theory.md (I.32)
+void find_rank(const Model& model, const Data& data, Fit& fit);
 
 /// Ends of the interval of one coordinate (in its unit) in which the profile of chi2 [-] (all others refitted) stays within `rise` of its
 /// minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is absent.

@@ -26,7 +26,7 @@ bool concerns(const Parameter& p, const Series& series) {
 std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vector<Series>& declared,
                                                                 const std::vector<Series>& applied,
                                                                 const std::vector<Setting>& settings,
-                                                                const std::vector<const Parameter*>& by) {
+                                                                const std::vector<const Parameter*>& by, double widen) {
   std::vector<std::vector<coupling::PushVariation>> variations(declared.size());
   for (const Parameter* number : by) {
     const Parameter& p = *number;
@@ -34,11 +34,11 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
     // A ratio's step moves the value itself by about that share.
     for (std::size_t k = 0; k < declared.size(); ++k) {
       if (!concerns(p, declared[k])) {
-        variations[k].push_back({nullptr, p.step});
+        variations[k].push_back({nullptr, widen * p.step});
         continue;
       }
       if (p.mount_gives && !applied[k].test.mount.translational_stiffness) {
-        variations[k].push_back({nullptr, p.step, 0.0, 1.0});
+        variations[k].push_back({nullptr, widen * p.step, 0.0, 1.0});
         continue;
       }
       const double own = p.number.get(declared[k].test, {});
@@ -47,7 +47,7 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
                                  ReadingModel unused;
                                  p.number.set(test, unused, p.value(own, at + amount));
                                },
-                               p.step, p.travel});
+                               widen * p.step, p.travel});
     }
   }
   return variations;
@@ -174,7 +174,8 @@ std::vector<Prediction> Model::predict_with(const Applied& model, const Predicti
   return predictions;
 }
 
-Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<const Parameter*>& by) const {
+Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<const Parameter*>& by,
+                           double widen) const {
   std::vector<Setting> settings = given;
   for (const Parameter* p : by) {
     if (find(settings, p) == nullptr && p->parametrisation != Parametrisation::magnitude) settings.push_back({p, 0.0});
@@ -192,7 +193,7 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
     if (p->derivative == Derivative::implicit) of_test.push_back(p);
   }
   std::vector<std::vector<coupling::PushVariation>> variations;
-  if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test);
+  if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test, widen);
   std::vector<Prediction> predictions = predict_with(applied, options, variations);
   Evaluation result = forces_of(series, predictions);
   const bool derive = !by.empty() && result.complete;
@@ -201,11 +202,11 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
     predictions[k].force_by.resize(0, 0);  // which `by` has
   }
   result.predictions = std::move(predictions);
-  if (derive && !implicit) difference_curves(settings, by, result);
+  if (derive && !implicit) difference_curves(settings, by, widen, result);
   return result;
 }
 
-void Model::difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
+void Model::difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by, double widen,
                               Evaluation& result) const {
   PredictionOptions plain;
   plain.thin = thin_;
@@ -215,7 +216,8 @@ void Model::difference_curves(std::vector<Setting> settings, const std::vector<c
         *std::find_if(settings.begin(), settings.end(), [&](const Setting& o) { return o.parameter == by[j]; });
     const double centre = s.coordinate;
     // Wide enough for the jumps of a section that slips vertex by vertex.
-    const double h = s.parameter->parametrisation == Parametrisation::shift ? 100.0 * s.parameter->step : 2e-2;
+    const double h =
+        widen * (s.parameter->parametrisation == Parametrisation::shift ? 100.0 * s.parameter->step : 2e-2);
     const auto curve_at = [&](double coordinate) {
       s.coordinate = std::clamp(coordinate, lower(*s.parameter), upper(*s.parameter));
       return forces_of(series_, predict_with(apply(settings), plain, {}));

@@ -50,10 +50,11 @@ class Model {
   };
   [[nodiscard]] Applied apply(const std::vector<Setting>& settings) const;
 
-  /// Forces, and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values).
-  /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no.
-  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings,
-                                    const std::vector<const Parameter*>& by = {}) const;
+  /// Forces [N], and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values).
+  /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no. The steps of the
+  /// differences are `widen` times the usual ones, > 0.
+  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings, const std::vector<const Parameter*>& by = {},
+                                    double widen = 1.0) const;
 
   /// Derivatives by factors of EI on windows of the wire, one a column: hat functions over `windows` evenly
   /// spread stations of the material between the mounts. Empty where the model is not differentiable.
@@ -64,7 +65,7 @@ class Model {
       const Applied& model, const PredictionOptions& options,
       const std::vector<std::vector<coupling::PushVariation>>& variations) const;
   /// Derivatives by the numbers of the test by differences of whole curves, into `result`.
-  void difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
+  void difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by, double widen,
                          Evaluation& result) const;
 
   std::vector<Series> series_;

@@ -63,7 +63,9 @@ struct Parameter {
   Derivative derivative = Derivative::implicit;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
   bool mount_gives = false;     ///< the compliance of the mounts: differentiated as such where they are rigid
-  std::string only{};           ///< name of the one series that it belongs to; empty: all
+  /// Why the forces of a test cannot depend on it; empty: they may. Null: they always may, or its effect says why.
+  const char* (*unseen)(const PushProblem&) = nullptr;
+  std::string only{};  ///< name of the one series that it belongs to; empty: all
 
   /// Value for a series that declares `declared`.
   [[nodiscard]] double value(double declared, double coordinate) const;

@@ -83,22 +83,64 @@ double reading_sigma(const RecordSet& set, const std::string& sensor) {
   return of_one / std::sqrt(6.0);
 }
 
+namespace {
+
+/// Number k of a fit; its standard error and interval by the covariance.
+TracedNumber number_of(const MotionModel& model, const MotionFit& fit, std::size_t k) {
+  const auto i = static_cast<Eigen::Index>(k);
+  const MotionSetting& s = fit.settings[k];
+  const auto told = [&](double value) { return model.as_set(fit.settings, k, value); };
+  TracedNumber n{s.number.key, s.number.unit, told(s.value), 0.0, {}, {}};
+  n.bound = at_bound(s.value, s.number.lower, s.number.upper);
+  n.identified = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() &&
+                 fit.jacobian.col(i).norm() > 0.0;
+  if (!n.identified) return n;
+  const double error = std::sqrt(fit.covariance(i, i));
+  n.stderr_ = std::abs(told(s.value + error) - n.value);
+  if (n.bound != AtBound::lower) n.lower = told(std::max(s.number.lower, s.value - half_width_95 * error));
+  if (n.bound != AtBound::upper) n.upper = told(std::min(s.number.upper, s.value + half_width_95 * error));
+  return n;
+}
+
+/// The null directions of a fit whose rank was asked. Numbers with the sign of their declared value scale; places shift, where they
+/// may change theirs.
+std::vector<OpenNumbers> open_numbers(const MotionModel& model, const MotionFit& fit) {
+  std::vector<OpenNumbers> open;
+  for (const NullDirection& direction : fit.rank.directions) {
+    OpenNumbers one;
+    std::vector<std::size_t> numbers{direction.held};
+    numbers.insert(numbers.end(), direction.others.begin(), direction.others.end());
+    double largest = 0.0;  // power; what shifts is counted to 1 % of what scales
+    for (const std::size_t k : numbers) {
+      const MotionSetting& s = fit.settings[k];
+      const bool place = s.number.unit == "mm" || s.number.unit == "m" || s.number.unit == "deg";
+      const bool relative = s.value * s.number.declared > 0.0 && (s.number.lower >= 0.0 || !place);
+      const double change =
+          direction.change[static_cast<Eigen::Index>(k)] * s.number.scale / (relative ? s.value : 1.0);
+      one.changes.push_back({s.number.key, s.number.unit, change, relative});
+      if (relative) largest = std::max(largest, std::abs(change));
+      if (k != direction.held) one.known.push_back(number_of(model, fit, k));
+    }
+    one.held = fit.settings[direction.held].value;
+    const double unit = largest > 0.0 ? largest : std::abs(one.changes.front().change);
+    for (NamedChange& c : one.changes) c.change /= unit;
+    open.push_back(std::move(one));
+  }
+  return open;
+}
+
+}  // namespace
+
 std::vector<TracedNumber> traced_numbers(const MotionModel& model, const MotionFit& fit) {
   std::vector<TracedNumber> numbers;
   for (std::size_t k = 0; k < fit.settings.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    const MotionSetting& s = fit.settings[k];
-    const auto told = [&](double value) { return model.as_set(fit.settings, k, value); };
-    TracedNumber n{s.number.key, s.number.unit, told(s.value), 0.0, {}, {}};
-    const bool seen = i < fit.covariance.rows() && fit.covariance(i, i) > 0.0 && i < fit.jacobian.cols() &&
-                      fit.jacobian.col(i).norm() > 0.0;
-    if (seen) {
-      const double error = std::sqrt(fit.covariance(i, i));
-      n.stderr_ = std::abs(told(s.value + error) - n.value);
-      n.lower = told(std::max(s.number.lower, s.value - half_width_95 * error));
-      n.upper = told(std::min(s.number.upper, s.value + half_width_95 * error));
+    TracedNumber n = number_of(model, fit, k);
+    if (!fit.rank.is_known(k)) {
+      n.identified = false;
+      n.stderr_ = 0.0;
+      n.lower = n.upper = std::nullopt;
     }
-    numbers.push_back(n);
+    numbers.push_back(std::move(n));
   }
   return numbers;
 }
@@ -107,6 +149,7 @@ MotionStage motion_stage(const MotionModel& model, const MotionData& data, const
                          const MotionFit* heldout, const MotionData& heldout_data) {
   MotionStage stage;
   stage.numbers = traced_numbers(model, fit);
+  stage.open = open_numbers(model, fit);
   stage.errors = errors_of(model, data.records, fit.predictions);
   stage.rmse = rmse_of(data, fit.residual);
   double range = 0.0, squares = 0.0, count = 0.0;

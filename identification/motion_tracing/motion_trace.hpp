@@ -19,7 +19,17 @@ namespace snare::identification {
 struct TracedNumber {
   std::string key, unit;
   double value = 0.0, stderr_ = 0.0;
-  std::optional<double> lower, upper;  ///< 95 %, of correlated residuals; absent where the records do not show it
+  /// 95 %, of correlated residuals; absent where the records do not show it, and at the bound on which the number stands.
+  std::optional<double> lower, upper;
+  AtBound bound = AtBound::none;  ///< on which it stands
+  bool identified = true;         ///< the records change with it, and no null direction moves it: theory.md (I.32)
+};
+
+/// Numbers that move together while no reading changes: theory.md (I.32).
+struct OpenNumbers {
+  std::vector<NamedChange> changes;  ///< the number that moves most first: the one to hold
+  double held = 0.0;                 ///< value of that, in its unit
+  std::vector<TracedNumber> known;   ///< the others, with the first number of every direction held
 };
 
 /// Error of one channel over some records.
@@ -35,6 +45,7 @@ struct ChannelError {
 /// One model of a trace with what it leaves.
 struct MotionStage {
   std::vector<TracedNumber> numbers;
+  std::vector<OpenNumbers> open;     ///< null directions of the records
   std::vector<ChannelError> errors;  ///< of the fitted records
   std::vector<ChannelError>
       heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
@@ -93,6 +104,7 @@ struct MotionTrace {
   std::vector<Leftover> leftovers;
   std::vector<Profile> profiles;      ///< of the numbers for which they are asked, in the final model
   std::vector<ModelFamily> families;  ///< of the base fit, as the file lists them
+  std::vector<Finding> findings;
   std::vector<std::string> warnings;  ///< what of this is doubtful, a sentence each
   std::string next_measurement;
   std::vector<std::string> next_separates;

@@ -5,6 +5,7 @@
 #include "identification/motion_tracing/motion_beginnings.hpp"
 #include "identification/motion_tracing/motion_round.hpp"
 #include "identification/motion_tracing/motion_stage.hpp"
+#include "identification/motion_tracing/record_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -41,8 +42,10 @@ class Tracer {
     look.fixed = shared;
     const MotionFit declared = fit_motion(model_, data_, own, look);
     if (!declared.report.usable()) return end(declared.report.message);
+    trace_.findings = channel_findings(data_, {&declared.predictions});
     if (!go_on("base fit")) return end("interrupted before the base fit was finished");
     current_ = base_fit();
+    find_rank(model_, data_, current_);
     base_settings_ = current_.settings;
     trace_.fit_simulations = current_.simulations;
     trace_.fit_iterations = current_.iterations;
@@ -55,6 +58,7 @@ class Tracer {
     trace_.kind = trace_.significant ? VerdictKind::not_explained : VerdictKind::nothing_missing;
     trace_.share_left = trace_.significant ? 1.0 : 0.0;
     if (options_.effects && (trace_.significant || large(trace_.base))) look_for_effects();
+    find_findings();
     profile();
     families();
     warn();
@@ -73,6 +77,17 @@ class Tracer {
     return [this](int iteration, double chi2) {
       return go_on(fmt::format("iteration {}, misfit {:.5g}", iteration, chi2));
     };
+  }
+  /// Signs and units of the readings, and what is remarkable about the numbers of the final model.
+  void find_findings() {
+    for (Finding& f : channel_findings(data_, {&current_.predictions})) {
+      if (std::ranges::find(trace_.findings, f.key, &Finding::key) == trace_.findings.end())
+        trace_.findings.push_back(std::move(f));
+    }
+    for (Finding& f : number_findings(trace_.final, base_settings_)) trace_.findings.push_back(std::move(f));
+    for (const Finding& f : trace_.findings) trace_.warnings.push_back(f.what);
+    if (trace_.kind == VerdictKind::nothing_missing && !trace_.final.open.empty())
+      trace_.kind = VerdictKind::cannot_tell;
   }
   /// Profiles of the numbers for which they are asked, in the final model.
   void profile() {
@@ -127,9 +142,7 @@ class Tracer {
         return f.key == n.key && !(f.lower && *f.lower < 0.0);
       });
       if (!of_file || !(model_.declared().number(n.key).value_or(0.0) > 0.0)) continue;
-      if (!n.lower)
-        trace_.warnings.push_back(fmt::format("{} is not identifiable: these records do not change with it", n.key));
-      else if (half_width_95 * n.stderr_ >= std::abs(n.value))
+      if (n.identified && half_width_95 * n.stderr_ >= std::abs(n.value))
         trace_.warnings.push_back(
             fmt::format("{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
                         n.value, n.stderr_, n.unit));
@@ -146,7 +159,8 @@ class Tracer {
     data_ = motion_data(set_, fitted_, scales);
     heldout_data_ = motion_data(set_, heldout_, scales);
   }
-  MotionTrace end(const std::string& why) {
+  MotionTrace end(std::string why) {
+    for (const Finding& f : trace_.findings) why += "; " + f.what;
     trace_.interrupted = stop_;
     static_cast<void>(
         trace_.report.end(stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
@@ -454,6 +468,7 @@ class Tracer {
       rounds_of_.push_back(trace_.rounds.size() - 1);
       if (drop_needless()) kept.resize(1);  // the models along the way had what is dropped
       trace_.channel = trace_.effects[trace_.selected_effects.front()].channel;
+      find_rank(model_, data_, current_);
       trace_.final = stage(current_, {});
       judge();
       trace_.significant = true;

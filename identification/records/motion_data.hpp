@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/fitting/identifiability.hpp"
 #include "identification/records/motion_model.hpp"
 #include "numerics/report.hpp"
 
@@ -54,6 +55,7 @@ struct MotionFit {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale: as MotionFitOptions::derivatives
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
+  Identifiability rank;        ///< which numbers the records determine; empty where find_rank() was not asked
   double chi2 = 0.0;           ///< sum of squares of the residual
   long simulations = 0;        ///< that it took
   int iterations = 0;

@@ -14,6 +14,13 @@ namespace {
 
 constexpr double step_share = 0.1;  ///< of a number's scale: the step of the differences
 
+/// Step of the differences by a number. One that has grown far beyond its declared value is moved in proportion: a smaller step
+/// would show the errors of the integration alone.
+double step_of(const MotionSetting& s) {
+  const double scale = s.number.scale_follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale;
+  return step_share * scale;
+}
+
 void gauss_newton(const MotionModel& model, const MotionData& data, const MotionFitOptions& options, MotionFit& fit) {
   const auto count = static_cast<Eigen::Index>(fit.settings.size());
   Eigen::VectorXd start(count);
@@ -66,13 +73,13 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
 Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
                                    const std::vector<MotionSetting>& settings,
                                    const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
-                                   Differences differences) {
+                                   Differences differences, double widen) {
   std::vector<std::vector<MotionSetting>> points;
   std::vector<std::optional<std::size_t>> only;
   std::vector<std::pair<double, double>> steps;  // down, up
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const MotionNumber& n = settings[k].number;
-    const double step = step_share * n.scale;
+    const double step = widen * step_of(settings[k]);
     const double up = settings[k].value + step <= n.upper ? step : 0.0;
     const bool both = differences == Differences::central || up == 0.0;
     const double down = both && settings[k].value - step >= n.lower ? step : 0.0;
@@ -143,6 +150,28 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
                                 fit.settings[static_cast<std::size_t>(j)].number.scale;
   }
   return fit;
+}
+
+void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit) {
+  const auto numbers = static_cast<Eigen::Index>(fit.settings.size());
+  if (numbers == 0 || !fit.report.usable() || fit.jacobian.cols() != numbers || model.stopped()) return;
+  constexpr double twice = 2.0;
+  const Eigen::MatrixXd wide =
+      signal_derivatives(model, data, fit.settings, fit.predictions, {}, Differences::central, twice);
+  if (model.stopped()) return;
+  fit.rank = identifiability_of(fit.jacobian, wide - fit.jacobian);
+  if (fit.rank.directions.empty() || fit.covariance.cols() != numbers) return;
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < numbers; ++k)
+    if (fit.rank.covariance(k, k) > 0.0) free.push_back(k);
+  fit.covariance.setZero();
+  if (free.empty()) return;
+  const ColouredNoise noise = coloured_noise(data, fit.residual, static_cast<Eigen::Index>(free.size()));
+  Eigen::VectorXd scale(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index k = 0; k < scale.size(); ++k)
+    scale[k] = fit.settings[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].number.scale;
+  fit.covariance(free, free) =
+      scale.asDiagonal() * sandwich(data, noise, fit.jacobian(Eigen::all, free)) * scale.asDiagonal();
 }
 
 }  // namespace snare::identification

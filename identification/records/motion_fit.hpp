@@ -18,11 +18,15 @@ enum class Differences {
 };
 
 /// Derivatives of the stacked signal [-] by some numbers, each times the number's scale: differences of a tenth of the scale, one-sided
-/// at a bound. A column whose simulations fail is zero. `base`: predictions at `settings`.
+/// at a bound. A column whose simulations fail is zero. `base`: predictions at `settings`; widen: factor of the steps, > 0.
 [[nodiscard]] Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
                                                  const std::vector<MotionSetting>& settings,
                                                  const std::vector<RecordPrediction>& base,
                                                  const std::vector<MotionSetting>& fixed = {},
-                                                 Differences differences = Differences::central);
+                                                 Differences differences = Differences::central, double widen = 1.0);
+
+/// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With null directions the
+/// covariance becomes that with one number of each held.                                       theory.md (I.32)
+void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit);
 
 }  // namespace snare::identification

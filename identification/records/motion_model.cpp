@@ -129,7 +129,10 @@ std::vector<MotionSetting> MotionModel::free_settings(const std::vector<std::siz
     MotionNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));
     number.lower = f.lower.value_or(bounds_.at(f.key));
     if (f.upper) number.upper = *f.upper;
-    if (f.scale) number.scale = *f.scale;
+    if (f.scale) {
+      number.scale = *f.scale;
+      number.scale_follows = false;
+    }
     if (!f.each) {
       settings.push_back({number, number.declared});
       continue;

@@ -54,7 +54,10 @@ MotionNumber keyed_number(const std::string& key, double declared) {
   number.key = key;
   number.unit = unit_of_key(key);
   number.declared = declared;
-  if (declared != 0.0) number.scale = 0.01 * std::abs(declared);
+  if (declared != 0.0) {
+    number.scale = 0.01 * std::abs(declared);
+    number.scale_follows = true;
+  }
   number.overrides = [key](double value, const StandingNumbers&) {
     return std::vector<base::Override>{{key, exact_text(value)}};
   };

@@ -1,8 +1,8 @@
 #include "identification/ring_down/ring_down.hpp"
 
+#include "identification/fitting/identifiability.hpp"
 #include "identification/fitting/statistics.hpp"
 #include "identification/ring_down/oscillations.hpp"
-#include "numerics/dense_solvers.hpp"
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -225,13 +225,14 @@ Numbers with_friction(const Numbers& without, Index largest, const VectorXd& tim
   return bic_gain > least_significant_bic ? rubbing : without;
 }
 
-/// s^2 (J^T J)^-1 with the residual's variance s^2; columns scaled to one, as units differ by powers of ten.
+/// s^2 (J^T J)^-1 with the residual's variance s^2; infinite variances of numbers that the readings do not determine, (I.32).
 MatrixXd covariance_of(const MatrixXd& by, const VectorXd& residual) {
-  const VectorXd scale = by.colwise().norm().cwiseMax(1e-300);
-  const MatrixXd scaled = by * scale.cwiseInverse().asDiagonal();
+  const Identifiability rank = identifiability_of(by, {});
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size() - by.cols());
-  return variance * scale.cwiseInverse().asDiagonal() * numerics::pseudo_inverse(scaled.transpose() * scaled) *
-         scale.cwiseInverse().asDiagonal();
+  MatrixXd covariance = variance * rank.covariance;
+  for (Index k = 0; k < covariance.rows(); ++k)
+    if (!rank.is_known(static_cast<std::size_t>(k))) covariance(k, k) = std::numeric_limits<double>::infinity();
+  return covariance;
 }
 
 /// One mode's numbers; errors of what is computed of several of them by their slopes.
@@ -239,6 +240,7 @@ RingDownMode mode_of(const Numbers& now, const MatrixXd& covariance, Index m) {
   const OscillationLayout& layout = now.layout;
   const VectorXd& p = now.p;
   const auto error_along = [&](const Eigen::Vector2d& slope, Index first) {
+    if (!covariance.diagonal().segment<2>(first).allFinite()) return std::numeric_limits<double>::infinity();
     return std::sqrt(std::max(0.0, slope.dot(covariance.block<2, 2>(first, first) * slope)));
   };
   RingDownMode mode;

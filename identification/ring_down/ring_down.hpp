@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,10 @@ struct RingDownMode {
   Estimate amplitude;      ///< at the first reading [m]
   /// sqrt(w^2 + s^2), of the undamped oscillation [rad/s].
   [[nodiscard]] double natural() const;
-  /// Larger than five standard errors.
-  [[nodiscard]] bool significant() const { return amplitude.value > 5.0 * amplitude.error; }
+  /// Larger than five standard errors, with a frequency and a decay that the readings determine.
+  [[nodiscard]] bool significant() const {
+    return amplitude.value > 5.0 * amplitude.error && std::isfinite(frequency.error) && std::isfinite(decay.error);
+  }
 };
 
 /// What is found in one record; usable or not says its report.

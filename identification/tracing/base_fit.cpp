@@ -14,6 +14,26 @@ namespace snare::identification {
 
 using base::InputError;
 
+namespace {
+
+/// Why the series to which a number belongs cannot show it; empty where they may.
+std::string unseen(const Parameter& p, const std::vector<Series>& all) {
+  std::vector<Series> series;
+  for (const Series& s : all)
+    if (p.only.empty() || p.only == s.name) series.push_back(s);
+  if (series.empty()) return "its series is held out";
+  for (const Effect& e : catalogue()) {
+    const bool own =
+        std::ranges::any_of(e.numbers, [&](const EffectNumber& n) { return p.key.ends_with(n.parameter.key); });
+    if (own && e.unobservable != nullptr) return e.unobservable(series);
+  }
+  if (p.unseen == nullptr) return "";
+  const bool none = std::ranges::all_of(series, [&](const Series& s) { return *p.unseen(s.test) != '\0'; });
+  return none ? p.unseen(series.front().test) : "";
+}
+
+}  // namespace
+
 Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model, Data& data,
              Progress& progress) {
   std::vector<std::string> keys = free;
@@ -27,6 +47,10 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
     if (!std::isfinite(declared)) {
       throw InputError({experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
                         "is a threshold that the declared model does not have: declare a value to start from"});
+    }
+    if (const std::string why = unseen(p, model.series()); !why.empty()) {
+      throw InputError(
+          {experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key), "no reading depends on it: " + why});
     }
     start.push_back({&p, p.coordinate(declared, declared)});
     length = length || key == "wire.length_mm";

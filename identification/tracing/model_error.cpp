@@ -3,6 +3,8 @@
 #include "identification/tracing/projection.hpp"
 #include "numerics/dense_solvers.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,26 +13,47 @@
 
 namespace snare::identification {
 
+namespace {
+
+/// A fitted number without an interval.
+FittedNumber number_of(const Model& model, const Setting& s) {
+  const Parameter& p = *s.parameter;
+  FittedNumber n;
+  n.key = p.key;
+  n.unit = p.unit;
+  n.declared = p.shown(model.declared(p), 0.0);
+  if (p.parametrisation == Parametrisation::magnitude) n.declared = std::numeric_limits<double>::infinity();
+  n.value = model.shown(s);
+  n.bound = at_bound(s.coordinate, model.lower(p), model.upper(p));
+  return n;
+}
+
+/// Its standard error and 1.96 of it either way, as far as that is admissible.
+void give_interval(const Model& model, const Setting& s, double deviation, FittedNumber& n) {
+  const Parameter& p = *s.parameter;
+  const double lower = s.coordinate - 1.96 * deviation, upper = s.coordinate + 1.96 * deviation;
+  if (n.bound != AtBound::lower && lower >= model.lower(p)) n.lower = model.shown({&p, lower});
+  if (n.bound != AtBound::upper && upper <= model.upper(p)) n.upper = model.shown({&p, upper});
+  if (n.bound == AtBound::none && !n.lower && !n.upper) return;
+  // A shift's coordinate is the value itself, a ratio's or a magnitude's its logarithm.
+  n.standard_error =
+      p.parametrisation == Parametrisation::shift ? deviation / p.unit_size : std::abs(n.value) * deviation;
+}
+
+double deviation_of(const Fit& fit, std::size_t k) {
+  const auto i = static_cast<Eigen::Index>(k);
+  return std::sqrt(std::max(0.0, fit.covariance(i, i)));
+}
+
+}  // namespace
+
 std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit) {
   std::vector<FittedNumber> result;
   for (std::size_t k = 0; k < fit.free; ++k) {
-    const Setting& s = fit.settings[k];
-    const Parameter& p = *s.parameter;
-    FittedNumber n;
-    n.key = p.key;
-    n.unit = p.unit;
-    n.declared = p.shown(model.declared(p), 0.0);
-    if (p.parametrisation == Parametrisation::magnitude) n.declared = std::numeric_limits<double>::infinity();
-    n.value = model.shown(s);
+    FittedNumber n = number_of(model, fit.settings[k]);
     const auto i = static_cast<Eigen::Index>(k);
-    if (fit.covariance.rows() > i && fit.jacobian.col(i).norm() > 0.0) {
-      const double deviation = std::sqrt(std::max(0.0, fit.covariance(i, i)));
-      // A shift's coordinate is the value itself, a ratio's or a magnitude's its logarithm.
-      n.standard_error =
-          p.parametrisation == Parametrisation::shift ? deviation / p.unit_size : std::abs(n.value) * deviation;
-      n.lower = model.shown({&p, s.coordinate - 1.96 * deviation});
-      n.upper = model.shown({&p, s.coordinate + 1.96 * deviation});
-    }
+    n.identified = fit.rank.is_known(k) && fit.covariance.rows() > i && fit.jacobian.col(i).norm() > 0.0;
+    if (n.identified) give_interval(model, fit.settings[k], deviation_of(fit, k), n);
     result.push_back(n);
   }
   for (std::size_t k = 0; k < result.size(); ++k) {
@@ -48,6 +71,57 @@ std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit) {
     }
   }
   return result;
+}
+
+std::vector<OpenDirection> open_directions(const Model& model, const Fit& fit) {
+  std::vector<OpenDirection> open;
+  for (const NullDirection& direction : fit.rank.directions) {
+    OpenDirection one;
+    one.held = model.shown(fit.settings[direction.held]);
+    std::vector<std::size_t> numbers{direction.held};
+    numbers.insert(numbers.end(), direction.others.begin(), direction.others.end());
+    double largest = 0.0;  // power; what shifts is counted to 1 % of what scales
+    for (const std::size_t k : numbers) {
+      const Parameter& p = *fit.settings[k].parameter;
+      const bool relative = p.parametrisation != Parametrisation::shift;
+      const double change = direction.change[static_cast<Eigen::Index>(k)];
+      one.changes.push_back({p.key, p.unit, relative ? change : change / p.unit_size, relative});
+      if (relative) largest = std::max(largest, std::abs(change));
+      if (k == direction.held) continue;
+      one.known.push_back(number_of(model, fit.settings[k]));
+      give_interval(model, fit.settings[k], deviation_of(fit, k), one.known.back());
+    }
+    const double unit = largest > 0.0 ? largest : std::abs(one.changes.front().change);
+    for (NamedChange& c : one.changes) c.change /= unit;
+    open.push_back(std::move(one));
+  }
+  return open;
+}
+
+std::vector<Finding> number_findings(const Model& model, const Fit& fit) {
+  std::vector<Finding> findings;
+  for (const OpenDirection& open : open_directions(model, fit)) {
+    Finding f{.kind = FindingKind::not_identifiable, .key = open.changes.front().key, .sure = true};
+    f.what = fmt::format("{}; {} left open", null_words(open.changes),
+                         open.changes.size() > 1 ? "their values are" : "its value is");
+    findings.push_back(std::move(f));
+  }
+  for (const FittedNumber& n : numbers_of(model, fit)) {
+    if (n.bound == AtBound::none) {
+      if (!n.identified || n.standard_error) continue;
+      Finding f{.kind = FindingKind::not_identifiable, .key = n.key, .unit = n.unit, .value = n.value};
+      f.what = fmt::format("{} is left open: every admissible value is within its 95 % interval", n.key);
+      findings.push_back(std::move(f));
+      continue;
+    }
+    const bool lower = n.bound == AtBound::lower;
+    Finding f{.kind = FindingKind::on_bound, .key = n.key, .unit = n.unit, .value = n.value, .limit = n.value};
+    f.what =
+        fmt::format("{} = {:.4g}{}{} stands on its {} bound: the readings ask for {} than is admissible", n.key,
+                    n.value, n.unit.empty() ? "" : " ", n.unit, lower ? "lower" : "upper", lower ? "less" : "more");
+    findings.push_back(std::move(f));
+  }
+  return findings;
 }
 
 ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& heldout,
@@ -72,6 +146,7 @@ ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& 
   error.nrmse = error.rmse / (high - low);
   error.chi2_dof = fit.chi2 / std::max(1.0, fit.dof());
   error.numbers = numbers_of(model, fit);
+  error.open = open_directions(model, fit);
   return error;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/fitting/finding.hpp"
 #include "identification/fitting/least_squares.hpp"
 
 #include <optional>
@@ -14,13 +15,24 @@ struct FittedNumber {
   std::string unit;
   double declared = 0.0;
   double value = 0.0;
-  std::optional<double> standard_error;
-  std::optional<double> lower;  ///< of the 95 % interval: 1.96 standard errors, unless by one of the two below
+  std::optional<double> standard_error;  ///< none where the readings do not determine the number
+  /// Of the 95 % interval: 1.96 standard errors, unless by one of the two below. An end that is not admissible is absent, and so
+  /// is that at the bound on which the number stands.
+  std::optional<double> lower;
   std::optional<double> upper;
   bool profiled = false;  ///< profile likelihood
   bool averaged = false;  ///< over the effects that may be the right ones in the place of what is selected
   /// With every fitted number, itself among them, in their order; empty where there is no standard error.
   std::vector<double> correlation = {};
+  AtBound bound = AtBound::none;  ///< on which it stands
+  bool identified = true;         ///< no null direction of the readings moves it: theory.md (I.32)
+};
+
+/// Numbers that move together while no reading changes: theory.md (I.32).
+struct OpenDirection {
+  std::vector<NamedChange> changes;  ///< the number that moves most first: the one to hold
+  double held = 0.0;                 ///< value of that, in its unit
+  std::vector<FittedNumber> known;   ///< the others, with the first number of every direction held
 };
 
 /// Errors of a model over the fitted series.
@@ -30,10 +42,17 @@ struct ModelError {
   double chi2_dof = 0.0;
   std::vector<double> series_rmse;  ///< one a series of the experiment, held-out ones too [N]
   std::vector<FittedNumber> numbers;
+  std::vector<OpenDirection> open;  ///< null directions of the readings
 };
 
 /// The fitted numbers of a model with their standard errors and 1.96 of them either way.
 [[nodiscard]] std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit);
+
+/// The null directions of a fit whose rank was asked.
+[[nodiscard]] std::vector<OpenDirection> open_directions(const Model& model, const Fit& fit);
+
+/// Fitted numbers that stand on a bound, and null directions.
+[[nodiscard]] std::vector<Finding> number_findings(const Model& model, const Fit& fit);
 
 /// all: every series; heldout: one a series; predictions: of the fitted model, one a series; model: of the
 /// fitted series.

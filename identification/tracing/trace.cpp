@@ -7,6 +7,7 @@
 #include "identification/tracing/model_average.hpp"
 #include "identification/tracing/outside_causes.hpp"
 #include "identification/tracing/progress.hpp"
+#include "identification/tracing/reading_findings.hpp"
 #include "identification/tracing/trace_input.hpp"
 
 #include <fmt/format.h>
@@ -82,7 +83,9 @@ class Tracer {
   void conclude();
   void select();
   void reject();
+  void find_findings();
   [[nodiscard]] bool decided() const;
+  [[nodiscard]] bool numbers_open() const;
   void compare_models();
   void average_intervals();
   void find_intervals();
@@ -173,6 +176,9 @@ void Tracer::look_at_base() {
     result_.declared = error_of(declared, predictions);
     result_.declared_predictions = forces_only(predictions);
   }
+  std::vector<std::vector<double>> forces;
+  for (const Prediction& p : result_.declared_predictions) forces.push_back(p.force);
+  result_.findings = sign_findings(result_.series, forces, model_.solver());
   result_.base_tests = test_residuals(model_, data_, base_);
   result_.base = error_of(base_, base_predictions_);
   result_.base_predictions = forces_only(base_predictions_);
@@ -322,9 +328,8 @@ void Tracer::conclude() {
     remaining.channel = result_.channel;
   }
   // A model whose stiffness no such wire has describes the readings and not the wire.
-  result_.findings = beyond_construction(model_, numbers_of(model_, final_));
-  const bool impossible =
-      std::any_of(result_.findings.begin(), result_.findings.end(), [](const Finding& f) { return f.sure; });
+  const std::vector<Finding> beyond = beyond_construction(model_, numbers_of(model_, final_));
+  const bool impossible = std::any_of(beyond.begin(), beyond.end(), [](const Finding& f) { return f.sure; });
   if (impossible && result_.kind != VerdictKind::not_explained) {
     result_.partial = added_;
     result_.selected.clear();
@@ -335,11 +340,33 @@ void Tracer::conclude() {
     leave(before, 1.0);
     result_.kind = VerdictKind::not_explained;
   }
+  result_.findings.insert(result_.findings.end(), beyond.begin(), beyond.end());
+  find_findings();
+  if (result_.kind == VerdictKind::nothing_missing && numbers_open()) result_.kind = VerdictKind::cannot_tell;
   result_.explained = result_.kind == VerdictKind::nothing_missing || result_.kind == VerdictKind::explained;
+}
+
+// What is remarkable about the fitted numbers of the final model, and the units that they speak of.
+void Tracer::find_findings() {
+  std::vector<Finding> found = number_findings(model_, final_);
+  const bool turned =
+      std::ranges::any_of(result_.findings, [](const Finding& f) { return f.kind == FindingKind::sign_turned; });
+  if (!turned && !result_.from_laws && progress_.go_on("units of the readings")) {
+    for (Finding& f : unit_findings(model_, data_, final_)) found.push_back(std::move(f));
+  }
+  result_.findings.insert(result_.findings.end(), found.begin(), found.end());
+  progress_.clock("signs and units of the readings");
+}
+
+// Whether the readings leave a number of the final model open.
+bool Tracer::numbers_open() const {
+  return std::ranges::any_of(result_.findings,
+                             [](const Finding& f) { return f.kind == FindingKind::not_identifiable; });
 }
 
 void Tracer::select() {
   final_ = current_;
+  if (!added_.empty()) find_rank(model_, data_, final_);
   result_.selected = added_;
   result_.selected_classes = classes_;
   for (const ChannelFunction& f : result_.alternatives) {
@@ -372,7 +399,10 @@ bool Tracer::decided() const {
                     .cause_outside = !result_.alternatives.empty(),
                     .one_condition = result_.one_condition && !result_.selected.empty(),
                     .zero_in_doubt = result_.zero && result_.zero->doubtful,
-                    .something_left = !tests_.agrees(result_.tolerance)};
+                    .something_left = !tests_.agrees(result_.tolerance),
+                    .numbers_open = numbers_open()};
+  for (const Finding& f : result_.findings)
+    if (f.kind == FindingKind::sign_turned || f.kind == FindingKind::unit_slip) evidence.readings_in_doubt = true;
   if (result_.selected.empty()) {
     return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
@@ -412,6 +442,8 @@ void Tracer::compare_models() {
 void Tracer::average_intervals() {
   if (result_.kind == VerdictKind::not_explained) return;
   for (std::size_t k = 0; k < base_.free; ++k) {
+    const FittedNumber& known = result_.final.numbers[k];
+    if (!known.identified || known.bound != AtBound::none) continue;
     std::optional<Interval> interval;
     if (!result_.selected.empty()) {
       interval = interval_over_rivals(final_, k, rounds_, tests_.left.inflation());
@@ -422,8 +454,8 @@ void Tracer::average_intervals() {
     const Parameter& p = *final_.settings[k].parameter;
     FittedNumber& n = result_.final.numbers[k];
     n.averaged = true;
-    n.lower = model_.shown({&p, interval->first});
-    n.upper = model_.shown({&p, interval->second});
+    n.lower = interval->first >= model_.lower(p) ? std::optional(model_.shown({&p, interval->first})) : std::nullopt;
+    n.upper = interval->second <= model_.upper(p) ? std::optional(model_.shown({&p, interval->second})) : std::nullopt;
   }
 }
 
@@ -432,6 +464,7 @@ void Tracer::find_intervals() {
   constexpr double rise = 3.84;  // of chi2: 95 %
   for (std::size_t k = base_.free; k < final_.free; ++k) {
     const Parameter& p = *final_.settings[k].parameter;
+    if (!final_.rank.is_known(k)) continue;
     if (!progress_.go_on("interval of " + p.key)) break;
     const ProfileInterval interval = profile_interval(
         model_, data_, final_, k, rise, [&](int, double) { return progress_.go_on("interval of " + p.key); });
@@ -473,6 +506,7 @@ Trace Tracer::run() {
     result_.report = base_.report;
     return finished();
   }
+  find_rank(model_, data_, base_);
   result_.noise = data_.noise;
   result_.rows = static_cast<std::size_t>(data_.rows());
   result_.peak_force = peak_force(data_);

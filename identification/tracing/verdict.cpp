@@ -1,5 +1,7 @@
 #include "identification/tracing/verdict.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,7 +10,8 @@
 namespace snare::identification {
 
 std::string to_string(VerdictKind kind) {
-  static constexpr const char* names[] = {"nothing_missing", "explained", "partly_explained", "not_explained"};
+  static constexpr const char* names[] = {"nothing_missing", "explained", "partly_explained", "not_explained",
+                                          "cannot_tell"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -25,6 +28,7 @@ double model_tolerance(const Experiment& experiment, const Data& data) {
 
 std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers) {
   constexpr double sure_beyond = 1.5;
+  constexpr double rounding = 1e-9;
   const wire::WireSpecification& wire = model.series().front().test.wire;
   std::vector<Finding> findings;
   if (!model.series().front().modulus_declared || !(wire.youngs_modulus > 0.0) || !(wire.diameter > 0.0))
@@ -35,8 +39,14 @@ std::vector<Finding> beyond_construction(const Model& model, const std::vector<F
     double limit = 0.0;
     if (n.key.ends_with("wire.axial_stiffness_N")) limit = wire.youngs_modulus * area;
     if (n.key.ends_with("wire.bending_stiffness_Nm2")) limit = wire.youngs_modulus * area * square / 16.0;
-    if (limit == 0.0 || !(n.value > limit)) continue;
-    findings.push_back({n.key, n.value, limit, n.unit, n.lower && *n.lower > sure_beyond * limit});
+    if (limit == 0.0 || !(n.value > (1.0 + rounding) * limit)) continue;
+    Finding f{
+        .kind = FindingKind::impossible_stiffness, .key = n.key, .unit = n.unit, .value = n.value, .limit = limit};
+    f.sure = n.lower && *n.lower > sure_beyond * limit;
+    f.what = fmt::format(
+        "{} = {:.4g} {} is {:.3g} times that of a solid section of the declared diameter and modulus{}", n.key, n.value,
+        n.unit, n.value / limit, f.sure ? ": no such wire has it, so the fit stands in for something else" : "");
+    findings.push_back(std::move(f));
   }
   return findings;
 }
@@ -61,7 +71,9 @@ bool each_alone(const std::vector<std::vector<std::string>>& classes) {
 
 bool is_decided(const Evidence& e) {
   constexpr double least_dof = 5.0;
-  if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt || e.something_left) return false;
+  if (e.dof < least_dof || e.cause_outside || e.one_condition || e.zero_in_doubt || e.something_left ||
+      e.numbers_open || e.readings_in_doubt)
+    return false;
   if (!each_alone(e.classes)) return false;
   for (std::size_t k = 1; k < e.left_out.size(); ++k) {
     if (!(e.left_out[k] < e.left_out[k - 1])) return false;

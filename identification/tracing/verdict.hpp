@@ -13,18 +13,10 @@ enum class VerdictKind {
   nothing_missing,   ///< the base model does: what it leaves is noise, or within the tolerance
   explained,         ///< the base model with the selected effects does
   partly_explained,  ///< the selected effects carry nearly all; what is left is small and said
-  not_explained
+  not_explained,
+  cannot_tell  ///< the base model leaves noise only, but the readings do not determine its numbers: theory.md (I.32)
 };
 [[nodiscard]] std::string to_string(VerdictKind kind);
-
-/// A fitted number that no wire of the declared construction has.
-struct Finding {
-  std::string key;
-  double value = 0.0;  ///< in its unit
-  double limit = 0.0;  ///< of the solid section
-  std::string unit;
-  bool sure = false;  ///< the whole interval lies beyond what a thicker or stiffer wire could have
-};
 
 /// What is left after the final model, when it is more than noise.
 struct Remaining {
@@ -72,6 +64,8 @@ struct Evidence {
   bool one_condition = false;                       ///< of readings
   bool zero_in_doubt = false;                       ///< of the travel
   bool something_left = false;                      ///< what the noise leaves once in twenty
+  bool numbers_open = false;                        ///< a null direction of the readings moves a fitted number
+  bool readings_in_doubt = false;                   ///< their sign or their unit
   /// Errors of conditions left out [N]: of the base model, then with one selected effect after the other.
   std::vector<double> left_out{};
 };

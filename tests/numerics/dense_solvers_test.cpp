@@ -90,5 +90,13 @@ TEST(DenseSolvers, LeastSquaresOfAnyRank) {
   EXPECT_LT((full_rank_least_squares(tall, b) - least_squares(tall, b)).norm(), 1e-13);
 }
 
+TEST(DenseSolvers, DecompositionsOfAnEmptyMatrixAreEmpty) {
+  EXPECT_EQ(symmetric_eigen(Eigen::MatrixXd(0, 0)).values.size(), 0);
+  const ThinSvd svd = thin_svd(Eigen::MatrixXd(5, 0));
+  EXPECT_EQ(svd.s.size(), 0);
+  EXPECT_EQ(svd.U.rows(), 5);
+  EXPECT_EQ(svd.V.cols(), 0);
+}
+
 }  // namespace
 }  // namespace snare::numerics

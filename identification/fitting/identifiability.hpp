@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// A direction in which fitted numbers move while no reading changes.                       theory.md (I.32)
+struct NullDirection {
+  std::size_t held = 0;             ///< index of the number that moves most; with it held the others are known
+  std::vector<std::size_t> others;  ///< indices of the numbers that move with it; empty: no reading depends on `held`
+  Eigen::VectorXd change;           ///< of every number, over that of `held`: in the units of the Jacobian's columns
+};
+
+/// Which fitted numbers, and which combinations of them, the readings determine.             theory.md (I.32)
+struct Identifiability {
+  std::vector<NullDirection> directions;  ///< a basis of the null space in which few numbers move
+  std::vector<bool> known;                ///< one a number: none of the directions moves it
+  /// Covariance of the numbers in the units of the Jacobian's columns, with the `held` ones held; zero in their rows.
+  Eigen::MatrixXd covariance;
+
+  /// Whether number k is determined; true where the rank was not asked.
+  [[nodiscard]] bool is_known(std::size_t k) const { return k >= known.size() || known[k]; }
+};
+
+/// Decides about a direction (in the units of the Jacobian's columns) that the errors of the derivatives leave in doubt.
+using NullCheck = std::function<bool(const Eigen::VectorXd& direction)>;
+
+/// Rank of the scaled Jacobian at the answer of a fit.                                       theory.md (I.32)
+///   J v, |columns of J| = 1: a singular direction v is null where |J v| <= 3 |E v| + floor
+/// jacobian: of the whitened residual [-], a column a number; error: of its entries, as the difference of the derivatives by two
+/// step sizes (same shape; empty: exact derivatives). check: asked where |E v| > 0.01; none: such directions are null.
+/// A column below its own error is a direction of its own.
+[[nodiscard]] Identifiability identifiability_of(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& error,
+                                                 const NullCheck& check = {});
+
+/// How a number moves along a null direction, for a sentence.
+struct NamedChange {
+  std::string key, unit;
+  double change = 0.0;    ///< relative: power by which it scales; else of its value, in its unit
+  bool relative = false;  ///< it scales
+};
+
+/// "a, b and c scale together, in the powers 1, 1 and -1: no reading changes". changes: not empty.
+[[nodiscard]] std::string null_words(const std::vector<NamedChange>& changes);
+
+}  // namespace snare::identification
