@@ -25,7 +25,7 @@ std::string in_quotes(const std::string& text) {
 }
 
 // Every call has one result, and functions that are called for it assign and branch alone where they can: some readers know no more.
-constexpr const char* helpers = R"(
+constexpr const char* modelica_helpers = R"(
   function pow "Power of a number that is not negative, as C writes it"
     input Real x;
     input Real y;
@@ -248,7 +248,7 @@ std::string modelica_package(const DistilledCase& one, const std::string& title,
   text += array("knots_travel", table.axes()[0]) + array("knots_position", table.axes()[1]) +
           array("knots_slack", table.axes()[2]) + array("nodes", table.nodes());
   if (one.table.unloading) text += array("nodes_unloading", one.table.unloading->nodes());
-  text += filled(helpers, numbers) + evaluation("force", "Force of the table", "nodes");
+  text += filled(modelica_helpers, numbers) + evaluation("force", "Force of the table", "nodes");
   if (one.table.unloading)
     text += evaluation("force_unloading", "The way back from the end of the travel", "nodes_unloading");
   for (const DistilledPlace& place : one.places) {

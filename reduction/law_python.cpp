@@ -7,7 +7,7 @@ namespace snare::reduction {
 
 namespace {
 
-constexpr const char* helpers = R"(
+constexpr const char* python_helpers = R"(
 
 class OutsideRange(UserWarning):
     """A force was asked outside the range of the law and was continued linearly."""
@@ -152,7 +152,7 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
   array("knots_slack", table.axes()[2]);
   array("nodes", table.nodes());
   if (one.table.unloading) array("nodes_unloading", one.table.unloading->nodes());
-  text += filled(helpers, table_numbers(table)) + filled(table_function, {{"name", "force"}, {"nodes", "nodes"}});
+  text += filled(python_helpers, table_numbers(table)) + filled(table_function, {{"name", "force"}, {"nodes", "nodes"}});
   if (one.table.unloading) text += filled(table_function, {{"name", "force_unloading"}, {"nodes", "nodes_unloading"}});
   for (const DistilledPlace& place : one.places) {
     for (const ExportedLaw& law : exported_laws(place, "math.")) {
