@@ -35,8 +35,8 @@ const Factor* near_factor(double ratio, double within) {
   return nullptr;
 }
 
-/// Sums over the readings of one sensor, less their means.
-struct Sums {
+/// ChannelSums over the readings of one sensor, less their means.
+struct ChannelSums {
   double measured = 0.0, predicted = 0.0, both = 0.0;
   /// Share of the readings' squares that a multiple of the prediction leaves.
   [[nodiscard]] double left(double multiple) const {
@@ -44,15 +44,15 @@ struct Sums {
   }
 };
 
-std::map<std::string, Sums> sums_of(const MotionData& data, const std::vector<RecordPrediction>& predictions) {
-  std::map<std::string, Sums> sums;
+std::map<std::string, ChannelSums> sums_of(const MotionData& data, const std::vector<RecordPrediction>& predictions) {
+  std::map<std::string, ChannelSums> sums;
   for (const ResidualPiece& piece : data.pieces) {
     const RecordPrediction& prediction = predictions[data.place_of(piece.record)];
     if (!prediction.usable() || prediction.channels.size() <= piece.channel) continue;
     const RecordChannel& channel = data.set->records[piece.record].channels[piece.channel];
     const Eigen::VectorXd m = channel.values.head(piece.size), p = prediction.channels[piece.channel].head(piece.size);
     const Eigen::VectorXd measured = m.array() - m.mean(), predicted = p.array() - p.mean();
-    Sums& s = sums[channel.sensor];
+    ChannelSums& s = sums[channel.sensor];
     s.measured += measured.squaredNorm();
     s.predicted += predicted.squaredNorm();
     s.both += measured.dot(predicted);
@@ -61,7 +61,7 @@ std::map<std::string, Sums> sums_of(const MotionData& data, const std::vector<Re
 }
 
 /// What the readings of a sensor are to a prediction, if they are not the same.
-std::optional<Finding> channel_finding(const std::string& sensor, const Sums& s) {
+std::optional<Finding> channel_finding(const std::string& sensor, const ChannelSums& s) {
   constexpr double follows = 0.04;  // share of the squares: a fifth of the standard deviation
   constexpr double within = 0.05;   // of a factor
   if (!(s.measured > 0.0) || !(s.predicted > 0.0) || s.left(1.0) <= follows) return std::nullopt;
