@@ -13,7 +13,7 @@ using Point = PublishedDeviance::Point;
 using Random = std::mt19937_64;
 
 /// Readings below which the bootstrap is itself corrected by a second one.
-constexpr double few_readings = 20.0;
+constexpr double few_lost_readings = 20.0;
 constexpr int bias_replicates = 400;
 
 /// Numbers that would be printed of lost readings of these curves.
@@ -74,7 +74,7 @@ BootstrapResult published_bootstrap(const PublishedDeviance& deviance, const Poi
     truth.log_sigma -= 0.5 * std::log(result.bias);
   }
   const bool twice =
-      std::ranges::any_of(deviance.series(), [](const PublishedSeries& s) { return s.count < few_readings; });
+      std::ranges::any_of(deviance.series(), [](const PublishedSeries& s) { return s.count < few_lost_readings; });
   std::vector<double> first, second;
   for (int k = 0; k < replicates; ++k) {
     Point found = deviance.minimise(printer.draw(truth, random), truth);

@@ -44,7 +44,7 @@ Line line_of(const std::vector<DecayOfMode>& decays, const MatrixXd& covariance)
 }
 
 /// Least squares of some of the two numbers.
-struct Solution {
+struct SplitSolution {
   Vector2d value = Vector2d::Zero();
   Vector2d error = Vector2d::Zero();  ///< standard errors
   double correlation = -1.0;
@@ -52,7 +52,7 @@ struct Solution {
   int numbers = 0;  ///< that are fitted
 };
 
-Solution least_squares(const Line& line, const VectorXd& scatter, const std::vector<Index>& columns) {
+SplitSolution least_squares(const Line& line, const VectorXd& scatter, const std::vector<Index>& columns) {
   const MatrixXd covariance = line.covariance + MatrixXd(scatter.cwiseAbs2().asDiagonal());
   const Eigen::LLT<MatrixXd> root(covariance);
   const MatrixXd rows = root.matrixL().solve(MatrixXd(line.rows(Eigen::all, columns)));
@@ -62,7 +62,7 @@ Solution least_squares(const Line& line, const VectorXd& scatter, const std::vec
   const MatrixXd scaled = rows * scale.cwiseInverse().asDiagonal();
   const MatrixXd inverse = (scaled.transpose() * scaled).inverse();
   const VectorXd x = inverse * (scaled.transpose() * right);
-  Solution solution;
+  SplitSolution solution;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto c = static_cast<Index>(k);
     solution.value[columns[k]] = x[c] / scale[c];
@@ -75,13 +75,13 @@ Solution least_squares(const Line& line, const VectorXd& scatter, const std::vec
 }
 
 /// The best solution without a negative number among these columns.
-Solution admissible(const Line& line, const VectorXd& scatter, const std::vector<Index>& columns) {
-  const Solution all = least_squares(line, scatter, columns);
+SplitSolution admissible(const Line& line, const VectorXd& scatter, const std::vector<Index>& columns) {
+  const SplitSolution all = least_squares(line, scatter, columns);
   if (all.value.minCoeff() >= 0.0) return all;
-  Solution best;  // no damping
+  SplitSolution best;  // no damping
   best.chi2 = std::numeric_limits<double>::infinity();
   for (const Index one : columns) {
-    const Solution alone = least_squares(line, scatter, {one});
+    const SplitSolution alone = least_squares(line, scatter, {one});
     if (alone.value[one] >= 0.0 && alone.chi2 < best.chi2) best = alone;
   }
   if (best.numbers == 0) {
@@ -100,7 +100,7 @@ VectorXd scatter_of(const Line& line, const std::vector<Index>& columns) {
   constexpr int halvings = 80, refinements = 4;
   for (int k = 0; k < halvings; ++k) {
     const double share = std::sqrt(low * high);
-    Solution found;
+    SplitSolution found;
     for (int i = 0; i < refinements; ++i) {
       found = admissible(line, scatter, columns);
       scatter = share * (line.rows * found.value).cwiseMax(floor * line.right.cwiseAbs().maxCoeff());
@@ -119,7 +119,7 @@ double wider_by(double dof) {
 
 /// Two numbers or one of them, as far as the decays agree on them.
 struct Combined {
-  Solution solution;
+  SplitSolution solution;
   double misfit_p = 1.0;
   int dof = 0;
 };
@@ -128,13 +128,13 @@ Combined combine(const Line& line, const std::vector<Index>& columns, double lea
   const auto n = static_cast<int>(line.right.size());
   const VectorXd none = VectorXd::Zero(n);
   Combined result{least_squares(line, none, columns)};
-  const Solution best = admissible(line, none, columns);
+  const SplitSolution best = admissible(line, none, columns);
   result.dof = n - best.numbers;
   if (result.dof > 0) result.misfit_p = chi_square_tail(best.chi2, result.dof);
   if (result.misfit_p >= least_p) return result;
   // The share is known from as many degrees of freedom: Student's t in the place of the normal quantile.
   const VectorXd scatter = scatter_of(line, columns);
-  const Solution widened = least_squares(line, scatter, columns);
+  const SplitSolution widened = least_squares(line, scatter, columns);
   result.solution = admissible(line, scatter, columns);
   result.solution.error = wider_by(result.dof) * widened.error;
   result.solution.correlation = widened.correlation;
