@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t most_cells = 40;   // a leg of the path: finer ones say no more of a smooth part
 constexpr std::size_t fewest_cells = 4;  // of a condition
 constexpr std::size_t a_cell = 2;        // readings, at least on average
-constexpr std::size_t few_readings = 8;  // a leg: of as many every one has its cell
+constexpr std::size_t few_of_a_leg = 8;  // a leg: of as many every one has its cell
 
 /// Replicates of one condition, averaged over common cells of the path.
 struct Cells {
@@ -72,7 +72,7 @@ std::optional<Cells> cells_of(const std::vector<Series>& series, const std::vect
     const double margin = 0.5 * (to - from) / static_cast<double>(std::max<std::size_t>(readings, 2) - 1);
     from -= margin;
     to += margin;
-    const std::size_t few = std::min(readings, few_readings);
+    const std::size_t few = std::min(readings, few_of_a_leg);
     const std::size_t cells = std::clamp<std::size_t>(std::max(few, readings / a_cell), 1, most_cells);
     const double width = (to - from) / static_cast<double>(cells);
     std::vector<Sums> sums;

@@ -11,8 +11,8 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double weight_from = 0.05;  // of the largest computed force: readings below it say nothing of the sign
-constexpr double nearly_all = 0.8;    // of these readings
+constexpr double weight_from = 0.05;       // of the largest computed force: readings below it say nothing of the sign
+constexpr double nearly_all_turned = 0.8;  // of these readings
 
 /// Share of the readings whose sign is against that of the computed force, of those where it counts; nothing without any.
 std::optional<double> share_against(const std::vector<double>& measured, const std::vector<double>& computed) {
@@ -106,14 +106,14 @@ double peak_of(const std::vector<Eigen::VectorXd>& forces) {
 }
 
 /// A slip with which the readings can be fitted by stiffnesses near the declared ones.
-struct Trial {
+struct SlipTrial {
   const char* words = "";
   double factor = 1.0, distance = std::numeric_limits<double>::infinity();
 };
 
 /// The fit of one slip, if it does: compared with chi2 of the fit as it is.
-std::optional<Trial> try_slip(const Model& model, const Data& data, const Fit& base, double force, double travel,
-                              double chi2) {
+std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fit& base, double force, double travel,
+                                  double chi2) {
   constexpr double plausible = 3.0;                         // between the largest forces
   constexpr double much_better = 0.2;                       // of chi2
   const double near = std::log(travel == 1.0 ? 1.3 : 2.0);  // of the stiffnesses to the declared ones
@@ -130,7 +130,7 @@ std::optional<Trial> try_slip(const Model& model, const Data& data, const Fit& b
   const Fit trial = fit(now.model, now.data, start, {}, options);
   if (!trial.report.usable() || !(trial.chi2 < much_better * chi2)) return std::nullopt;
   const Ratios ratios = ratios_of(now.model, trial);
-  Trial found;
+  SlipTrial found;
   found.distance = 0.0;
   for (const double r : ratios.log) found.distance = std::max(found.distance, std::abs(r));
   if (ratios.bound || found.distance > near) return std::nullopt;
@@ -155,7 +155,7 @@ std::vector<Finding> sign_findings(const std::vector<Series>& series, const std:
       if (up.complete) computed.assign(up.force.front().begin(), up.force.front().end());
     }
     const std::optional<double> against = share_against(s.readings->force, computed);
-    const bool turned = against && *against >= nearly_all;
+    const bool turned = against && *against >= nearly_all_turned;
     if (!down && !turned) continue;
     Finding f{.kind = FindingKind::sign_turned, .key = key, .sure = true};
     f.value = turned ? *against : 1.0;
@@ -193,13 +193,13 @@ std::vector<Finding> unit_findings(const Model& model, const Data& data, const F
   const bool poorly = squares > count * std::pow(poor * peak, 2) && chi2 > 9.0 * count;
   if (ratios.keys.empty() && !ratios.bound) return {};
   if (!ratios.bound && !poorly) return {};
-  Trial best;
+  SlipTrial best;
   bool of_force = true;
   for (const UnitSlip& slip : unit_slips) {
     for (const bool force : {true, false}) {
       const char* words = force ? slip.force : slip.travel;
       if (words[0] == '\0') continue;
-      std::optional<Trial> trial =
+      std::optional<SlipTrial> trial =
           try_slip(model, data, base, force ? slip.factor : 1.0, force ? 1.0 : slip.factor, chi2);
       if (!trial || trial->distance >= best.distance) continue;
       trial->words = words;
