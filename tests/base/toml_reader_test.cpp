@@ -239,8 +239,8 @@ TEST(TomlOverride, WhatCannotBeDoneIsReported) {
   EXPECT_EQ(message("a", "5 mm"), "--set: a = 5 mm, must be a number > 0");
   EXPECT_EQ(message("a", "[1"), "--set: a = [1, the value must be a TOML literal or a bare word");
   EXPECT_EQ(message("a", "\"x"), "--set: a = \"x, the value must be a TOML literal or a bare word");
-  EXPECT_EQ(message("a", "1\nb = 2"), "--set: a = 1\nb = 2, must be a number > 0");  // no second key comes in
-  EXPECT_EQ(message("a", "x\xFF"), "--set: a = x\xFF, the value must be a TOML literal or a bare word");
+  EXPECT_EQ(message("a", "1\nb = 2"), R"(--set: a = 1\x0ab = 2, must be a number > 0)");  // no second key comes in
+  EXPECT_EQ(message("a", "x\xFF"), R"(--set: a = x\xff, the value must be a TOML literal or a bare word)");
   EXPECT_EQ(message("a.b", "1"), "--set: a.b = 1, a is not a table");
   EXPECT_EQ(message("a[1]", "1"), "--set: a[1] = 1, a has no elements");
   EXPECT_EQ(message("b", "1"), "--set: b = 1, unknown key; known here: a, series");

@@ -51,12 +51,12 @@ inline identification::Trace explained_trace() {
   t.noise.source = "declared";
   t.from_laws = true;
   t.mesh_error = 0.00627;
-  t.declared = {348.4, 29.6, 6107038.0, {}, {}};
+  t.declared = {348.4, 29.6, 6107038.0, {}, {}, {}};
   const FittedNumber base{"wire.axial_stiffness_N", "N", 341059.0, 17216.4, 617.0, 16047.2, 18470.9, false};
-  t.base = {0.1826, 0.0155, 1.668, {}, {base}};
+  t.base = {0.1826, 0.0155, 1.668, {}, {base}, {}};
   const FittedNumber stiffness{"wire.axial_stiffness_N", "N", 341059.0, 27023.7, 2122.0, 23168.6, 31520.3, false};
   const FittedNumber stress{"plasticity.yield_stress_MPa", "MPa", std::nan(""), 181.8, 20.0, 147.5, {}, true};
-  t.final = {0.1622, 0.0138, 1.331, {}, {stiffness, stress}};
+  t.final = {0.1622, 0.0138, 1.331, {}, {stiffness, stress}, {}};
   t.declared_predictions = {prediction({0.0, 20.0, 301.5}), prediction({0.0, 0.6, 2.1})};
   t.base_predictions = {prediction({0.0, 0.8, 2.7}), prediction({0.0, 0.4, 1.9})};
   t.final_predictions = std::vector{prediction({0.0, 0.7, 2.8}), prediction({0.0, 0.5, 1.95})};
