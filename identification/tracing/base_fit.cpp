@@ -25,7 +25,9 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
   for (const Effect& e : catalogue()) {
     const bool own =
         std::ranges::any_of(e.numbers, [&](const EffectNumber& n) { return p.key.ends_with(n.parameter.key); });
-    if (own && e.unobservable != nullptr) return e.unobservable(series);
+    // The declared model has the effect of a threshold already, so its absence cannot be a reason.
+    const bool declared = p.parametrisation == Parametrisation::magnitude;
+    if (own && !declared && e.unobservable != nullptr) return e.unobservable(series);
   }
   if (p.unseen == nullptr) return "";
   const bool none = std::ranges::all_of(series, [&](const Series& s) { return *p.unseen(s.test) != '\0'; });
