@@ -194,7 +194,8 @@ const WrongFile wrong_files[] = {
     {"points = 21", "points = 21\nmount.spam_mm = 174.0",
      "x.toml:27: series[s40].mount.spam_mm = 174.0, unknown key; did you mean span_mm?"},
     {"points = 21", "points = 21\nsolver.elements = 64",
-     "x.toml:27: series[s40].solver, unknown key; known here: bulge, columns, contact_position_mm, contact_position_sigma_mm, "
+     "x.toml:27: series[s40].solver, unknown key; known here: bulge, columns, contact_position_mm, "
+     "contact_position_sigma_mm, "
      "file, force_sigma_N, "
      "gravity, law, "
      "mount, name, path_mm, points, pusher, scale, travel_mm, wire"},
