@@ -196,10 +196,10 @@ TEST_F(Command, WireThatCannotBeSolvedKeepsWhatItReached) {
   EXPECT_EQ(csv.find("\ns90,6,"), std::string::npos);
 }
 
-TEST_F(Command, UnwritableFolderIsAFailure) {
+TEST_F(Command, AFileInTheWayOfTheFolderIsWrongInput) {
   write("file", "in the way");
   const Result result = run("push x.toml --out file/below");
-  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("file"), std::string::npos) << result.err;
 }
 
