@@ -158,12 +158,6 @@ def published_parameters(stored):
     return table(["number", "declared", "fitted", "unit"], rows)
 
 
-@region
-def published_ranges(stored):
-    return table(["assumed range of the fits", "verdict"],
-                 [[f"{number(v['to_mm'])} mm", v["verdict"]] for v in stored.json("reproduce.json")["verdicts"]])
-
-
 # ---- docs/results/tracing.md ----
 
 
@@ -388,7 +382,7 @@ def store_reproduction(snare, root):
     head = [i for i, line in enumerate(lines) if line.startswith("rms distance")][0]
     results = root / "benchmarks/results"
     (results / "reproduce.json").write_text(json.dumps(kept, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    (results / "reproduce.txt").write_text("\n".join(lines[head:head + 5]) + "\n", encoding="utf-8")
+    (results / "reproduce.txt").write_text("\n".join(lines[head:head + 4]) + "\n", encoding="utf-8")
 
 
 def update(page, stored, check, root):
