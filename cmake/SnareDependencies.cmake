@@ -14,8 +14,6 @@ function(snare_required_unless_auto variable option)
 endfunction()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-# Headers of one source file (numerics/sparse_eigen.cpp).
-find_package(Spectra 1.0 REQUIRED)
 find_package(KLU REQUIRED)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS idas nvecserial sunmatrixsparse)
 find_package(OpenMP REQUIRED COMPONENTS CXX)

@@ -69,9 +69,13 @@ numerics::GeneralEigen shifted_eigenvalues(const Pencil& pencil) {
   }
   numerics::Klu factors(shifted);
   if (!factors.factorize(shifted)) return {};
-  const auto apply = [&](const VectorXd& x, Eigen::Ref<VectorXd> y) {
-    y = numerics::product(B, x);
-    factors.solve(y);
+  const auto apply = [&](const MatrixXd& X) {
+    MatrixXd Y(X.rows(), X.cols());
+    for (Index k = 0; k < X.cols(); ++k) {
+      Y.col(k) = numerics::product(B, VectorXd(X.col(k)));
+      factors.solve(Y.col(k));
+    }
+    return Y;
   };
   return numerics::largest_eigenvalues(apply, B.order, slowest_eigenvalues);
 }
