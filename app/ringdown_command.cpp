@@ -111,6 +111,7 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
     json& one = result["series"][m.series]["modes"][m.mode];
     one["bending_share"] = m.decay.bending_share;
     one["computed_Hz"] = m.computed > 0.0 ? json(m.computed / (2.0 * std::numbers::pi)) : json();
+    one["computed_error_Hz"] = m.computed_error ? json(*m.computed_error) : json();
   }
   const DampingSplit split = identification::split_damping(modes);
   result["damping"] = damping_json(split);

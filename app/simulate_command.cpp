@@ -38,15 +38,15 @@ ExitStatus simulate(const scenario::Scenario& asked, const CommonOptions& option
   const scenario::WireMotions& motions = asked.motions;
   const std::vector<MotionRecord> records = run_motions(
       motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
-  begin_writing();
   const bool partial = left_undone(motions.runs, records);
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
   const FinishedMotion& run = finished.front();
+  json summary = motion_summary(asked, run, interrupted);
+  begin_writing();
   const std::vector<std::string> warnings = motion_warnings(finished);
   for (const std::string& warning : warnings) console.warn(warning);
   write_history(options.out / "history.csv", run.asked.motion, run.samples);
   if (!motions.sensors.empty()) write_telemetry(options.out / "telemetry.csv", motions, run.samples);
-  json summary = motion_summary(asked, run);
   summary.update({{"interrupted", partial}, {"warnings", warnings}});
   base::write_text(options.out / "report.html", motion_page(asked, run, version(), warnings, partial));
   write_result(options, "summary.json", summary);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <iterator>
 
 namespace snare::numerics {
@@ -43,13 +44,43 @@ SparseMatrix make_pattern(int order, const std::vector<std::pair<int, int>>& ent
   return result;
 }
 
-Eigen::MatrixXd dense(const SparseMatrix& matrix) {
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
+namespace {
+
+/// Calls f(row, column, value) for every entry, column by column.
+template <typename Matrix, typename Function>
+void for_each_entry(Matrix& matrix, const Function& f) {
   for (int j = 0; j < matrix.order; ++j) {
     for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s)
-      full(matrix.row[at(s)], j) = matrix.value[at(s)];
+      f(matrix.row[at(s)], j, matrix.value[at(s)]);
   }
+}
+
+template <typename Vector>
+Vector product_with(const SparseMatrix& matrix, const Vector& x) {
+  Vector y = Vector::Zero(matrix.order);
+  for_each_entry(matrix, [&](int i, int j, double value) { y[i] += value * x[j]; });
+  return y;
+}
+
+}  // namespace
+
+Eigen::MatrixXd dense(const SparseMatrix& matrix) {
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(matrix.order, matrix.order);
+  for_each_entry(matrix, [&](int i, int j, double value) { full(i, j) = value; });
   return full;
+}
+
+Eigen::VectorXd product(const SparseMatrix& matrix, const Eigen::VectorXd& x) { return product_with(matrix, x); }
+Eigen::VectorXcd product(const SparseMatrix& matrix, const Eigen::VectorXcd& x) { return product_with(matrix, x); }
+
+void scale(SparseMatrix& matrix, const Eigen::VectorXd& rows, const Eigen::VectorXd& columns) {
+  for_each_entry(matrix, [&](int i, int j, double& value) { value *= rows[i] * columns[j]; });
+}
+
+Eigen::VectorXd largest_of_rows(const SparseMatrix& matrix) {
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(matrix.order);
+  for_each_entry(matrix, [&](int i, int, double value) { largest[i] = std::max(largest[i], std::abs(value)); });
+  return largest;
 }
 
 SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {

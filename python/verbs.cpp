@@ -177,15 +177,24 @@ py::tuple distil(const Path& file, const Pairs& set, int threads, const py::obje
 
 py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
   const auto asked = std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
+  struct Simulated {
+    std::vector<results::MotionRecord> records;
+    json summary;
+  };
   ColumnSink history, telemetry;
   const scenario::WireMotions& motions = asked->motions;
-  const auto records =
-      made([asked](const results::Watch& watch) { return results::simulate_all(asked->motions.runs, watch); }, threads,
-           progress);
-  const std::vector<results::FinishedMotion> finished = results::finished_motions(motions, *records);
+  const auto simulated = made(
+      [asked](const results::Watch& watch) {
+        Simulated one{results::simulate_all(asked->motions.runs, watch), {}};
+        one.summary = results::motion_summary(*asked, results::finished_motions(asked->motions, one.records).front(),
+                                              [&watch] { return watch.stopped(); });
+        return one;
+      },
+      threads, progress);
+  const std::vector<results::FinishedMotion> finished = results::finished_motions(motions, simulated->records);
   const results::FinishedMotion& run = finished.front();
-  json document = results::motion_summary(*asked, run);
-  document["interrupted"] = results::left_undone(motions.runs, *records);
+  json document = simulated->summary;
+  document["interrupted"] = results::left_undone(motions.runs, simulated->records);
   document["warnings"] = results::motion_warnings(finished);
   results::give_history(history, run.asked.motion, run.samples);
   if (!motions.sensors.empty()) results::give_telemetry(telemetry, motions, run.samples);

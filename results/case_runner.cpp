@@ -59,7 +59,7 @@ CaseEnd simulate(const scenario::Scenario& asked, const Stop& stop, json& result
   const auto& report = record.result.report;
   CaseEnd end = ending(report.usable(), report.termination, report.message);
   if (history != nullptr && keeps_history(end)) give_history(*history, one.motion, record.samples);
-  if (end.status == Status::done) result = motion_summary(asked, {one, record.samples, record.result});
+  if (end.status == Status::done) result = motion_summary(asked, {one, record.samples, record.result}, stop);
   return end;
 }
 

@@ -211,24 +211,44 @@ json peak_torques(const FinishedMotion& run) {
   return all;
 }
 
-/// Small oscillations about the end, and by what moves the frequency of that in which it has the largest share.
-json modes_json(const FinishedMotion& run) {
+/// Small oscillations about the end, each with what the mesh does to it as the same motion on a coarser mesh shows.
+coupling::SmallMotions small_motions(const scenario::WireMotions& motions, const FinishedMotion& run,
+                                     const std::function<bool()>& stop) {
+  coupling::MotionOptions options = run.asked.options;
+  options.stop = stop;
+  coupling::SmallMotions small = coupling::small_motions_at(run.asked.motion, options, run.result.last);
+  if (!motions.on_half_mesh) {
+    for (coupling::MotionMode& mode : small.modes) mode.mesh_error = 0.0;
+    return small;
+  }
+  const coupling::MotionResult coarse = coupling::simulate(*motions.on_half_mesh, options);
+  if (coarse.report.usable())
+    add_mesh_errors(small, coupling::small_motions_at(*motions.on_half_mesh, options, coarse.last));
+  return small;
+}
+
+/// The small oscillations, and by what moves the frequency of that in which it has the largest share, of those that the mesh resolves.
+json modes_json(const coupling::SmallMotions& small) {
   json list = json::array(), frequencies = json::object();
   std::map<std::string, double> largest;
-  const coupling::SmallMotions small = coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last);
   for (const coupling::MotionMode& mode : small.modes) {
     json shares = json::object();
     for (const auto& [name, share] : mode.shares) {
       shares[name] = share;
-      if (share <= largest[name]) continue;
+      if (!mode.resolved() || share <= largest[name]) continue;
       largest[name] = share;
       frequencies[name] = mode.frequency;
     }
-    list.push_back({{"frequency_Hz", mode.frequency}, {"damping_ratio", mode.damping}, {"shares", shares}});
+    list.push_back({{"frequency_Hz", mode.frequency},
+                    {"discretisation_error_Hz", mode.mesh_error ? json(*mode.mesh_error) : json()},
+                    {"resolved", mode.resolved()},
+                    {"damping_ratio", mode.damping},
+                    {"shares", shares}});
   }
+  const std::optional<double> step = small.largest_explicit_step();
   return {{"modes", list},
           {"frequencies_Hz", frequencies},
-          {"largest_explicit_step_s", small.fastest > 0.0 ? json(small.largest_explicit_step()) : json()}};
+          {"largest_explicit_step_s", step ? json(*step) : json()}};
 }
 
 json swings_json(const std::vector<scenario::Swing>& swings) {
@@ -273,7 +293,8 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   return outcome;
 }
 
-json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finished) {
+json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finished,
+                    const std::function<bool()>& stop) {
   const scenario::WireMotions& motions = asked.motions;
   json summary{{"schema", "snare-summary/1"},
                {"title", asked.title},
@@ -284,7 +305,8 @@ json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finis
   summary["outcome"] = outcome_json(motions, finished);
   if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished);
   if (motions.swinging) summary["swings"] = swings_json(swings_of(motions, finished));
-  if (motions.output.modes && finished.result.report.usable()) summary.update(modes_json(finished));
+  if (motions.output.modes && finished.result.report.usable()) 
+    summary.update(modes_json(small_motions(motions, finished, stop)));
   return summary;
 }
 

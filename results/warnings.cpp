@@ -41,6 +41,21 @@ std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
                       1e3 * last->travel)};
 }
 
+/// Warns of points on a branch that a wire which is free to move leaves, from the bifurcation on where there is one.
+std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
+  const auto unstable = [](const PushPoint& p) { return p.converged && p.unstable_modes > 0; };
+  const auto first = std::find_if(curve.points.begin(), curve.points.end(), unstable);
+  if (first == curve.points.end()) return {};
+  const auto last = std::find_if(curve.points.rbegin(), curve.points.rend(), unstable);
+  double begin = first->travel;
+  for (const coupling::PushEvent& e : curve.events) {
+    if (e.kind == coupling::PushEvent::Kind::bifurcation && e.travel <= first->travel) begin = e.travel;
+  }
+  return {fmt::format("the curve runs along an unstable branch from a travel of {:.4g} mm to {:.4g} mm: a wire that is free "
+                      "leaves it there; solver.instability = \"switch_branch\" goes on along the stable one",
+                      1e3 * begin, 1e3 * last->travel)};
+}
+
 }  // namespace
 
 std::vector<std::string> push_warnings(const std::vector<identification::Series>& series,
@@ -54,6 +69,7 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
     const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
     sentences.add(whose, wire::overload(wire, coupling::largest_stress(wire, points)));
     sentences.add(whose, lost_contact(points));
+    sentences.add(whose, unstable_branch(predictions[k].curve.curve));
   }
   return sentences.take();
 }

@@ -3,7 +3,6 @@
 #include "base/errors.hpp"
 #include "base/index.hpp"
 #include "base/units.hpp"
-#include "coupling/dynamics/modes.hpp"
 #include "scenario/arm_items.hpp"
 #include "scenario/body_contact_reader.hpp"
 #include "scenario/capture_reader.hpp"
@@ -287,7 +286,8 @@ ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides) {
   return arms;
 }
 
-WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder, const ArmOverrides& arms) {
+WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder, const ArmOverrides& arms,
+                             WireMesh mesh) {
   const TomlTable root = document.root();
   NamedMotion run;
   run.name = root.text("title");
@@ -339,7 +339,10 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.duration = run.options.duration;
   document.finish();
   complete_pushes(c, run.options);
-  for (DeclaredWire& w : c.wires) w.wire.rod.strands.time = c.strand_time;
+  for (DeclaredWire& w : c.wires) {
+    w.wire.rod.strands.time = c.strand_time;
+    if (mesh == WireMesh::halved) w.wire.rod.elements = (w.wire.rod.elements + 1) / 2;
+  }
   PressedRests pressed;
   for (DeclaredWire& w : c.wires)
     if (!w.law) c.motion.wires.push_back(w.wall ? at_rest_in_wall(std::move(w), pressed) : at_rest(std::move(w)));
@@ -348,14 +351,6 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.drawn = std::move(c.drawn);
   run.motion = std::move(c.motion);
   run.warnings = std::move(c.warnings);
-  if (motions.output.modes) {
-    const int unknowns = coupling::unknowns_of(run.motion, run.options);
-    if (unknowns > coupling::most_unknowns_of_modes) {
-      output.fail("modes", fmt::format("needs at most {} unknowns, there are {}: take fewer elements or laws for wires",
-                                       coupling::most_unknowns_of_modes, unknowns));
-      document.finish();
-    }
-  }
   motions.runs.push_back(std::move(run));
   return motions;
 }

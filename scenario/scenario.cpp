@@ -75,13 +75,20 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<base
   for (const base::Override& one : own) base::apply_override(looked_at, one, ignored);
   require_lists(file, looked_at);
 
-  TomlDocument document(file.string(), written, own);
-  const base::TomlTable root = document.root();
-  Scenario scenario;
-  base::require_schema(root, composed_schema);
-  scenario.title = root.text("title");
-  scenario.source = root.text_or("source", "");
-  scenario.motions = read_composition(document, file.parent_path(), arms);
+  const auto read = [&](WireMesh mesh) {
+    TomlDocument document(file.string(), written, own);
+    const base::TomlTable root = document.root();
+    Scenario scenario;
+    base::require_schema(root, composed_schema);
+    scenario.title = root.text("title");
+    scenario.source = root.text_or("source", "");
+    scenario.motions = read_composition(document, file.parent_path(), arms, mesh);
+    return scenario;
+  };
+  Scenario scenario = read(WireMesh::declared);
+  WireMotions& motions = scenario.motions;
+  if (motions.output.modes && !motions.runs.front().motion.wires.empty())
+    motions.on_half_mesh = std::move(read(WireMesh::halved).motions.runs.front().motion);
   return scenario;
 }
 

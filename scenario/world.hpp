@@ -45,6 +45,8 @@ struct WireMotions {
   std::vector<std::string> law_models;          ///< words of laws of which a wire has the numbers
   std::vector<DrawnLines> drawn;
   std::vector<NamedMotion> runs;
+  /// With `output.modes`: the first run on wires of half as many elements; none where no wire has elements.
+  std::optional<coupling::Motion> on_half_mesh;
 };
 
 /// What a scenario's file says there is.                                                      docs/scenario_file.md

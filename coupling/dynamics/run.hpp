@@ -66,7 +66,6 @@ class MotionRun {
   MotionResult go(double limit);
   /// See small_motions_at, about the present state (run_modes.cpp). Frequencies in Hz.
   [[nodiscard]] SmallMotions small_motions();
-  [[nodiscard]] int unknowns() const { return system_->size(); }
 
  private:
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
@@ -101,6 +100,7 @@ class MotionRun {
 
   /// Of the kinetic energy, of a vector of all unknowns.
   [[nodiscard]] std::vector<std::pair<std::string, double>> shares_of(const Eigen::VectorXcd& x);
+  [[nodiscard]] ModeShape shape_of(const Eigen::VectorXcd& x);
 
   // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);

@@ -1,12 +1,12 @@
 #include "coupling/dynamics/modes.hpp"
 
-#include "base/errors.hpp"
 #include "base/index.hpp"
 #include "coupling/dynamics/run.hpp"
 #include "multibody/dynamics.hpp"
-#include "numerics/dense_solvers.hpp"
+#include "numerics/klu.hpp"
+#include "numerics/sparse_eigen.hpp"
+#include "numerics/sparse_matrix.hpp"
 
-#include <fmt/format.h>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -47,47 +47,116 @@ void add_arm(const MotionArm& one, const VectorXd& q, const multibody::ArmState&
 
 }  // namespace
 
+namespace {
+
+/// A x + B x' = 0 with one pattern, columns scaled by the tolerances, the sizes at which unknowns of different units are alike.
+struct Pencil {
+  numerics::SparseMatrix A, B;
+};
+
+constexpr double shift = 0.9173;  // [1/s]: no eigenvalue of note
+
+/// Eigenvalues mu of (A + s B)^-1 B with their vectors: all of them, or of a large pencil those of the slowest motions.
+numerics::GeneralEigen shifted_eigenvalues(const Pencil& pencil) {
+  numerics::SparseMatrix shifted = pencil.A, B = pencil.B;
+  for (std::size_t k = 0; k < B.value.size(); ++k) shifted.value[k] += shift * B.value[k];
+  const VectorXd rows = numerics::largest_of_rows(shifted).cwiseInverse();
+  if (!rows.allFinite()) return {};
+  for (numerics::SparseMatrix* m : {&shifted, &B}) numerics::scale(*m, rows, VectorXd::Ones(rows.size()));
+  if (B.order <= most_unknowns_of_all_modes) {
+    const MatrixXd M = Eigen::FullPivLU<MatrixXd>(numerics::dense(shifted)).solve(numerics::dense(B));
+    return M.allFinite() ? numerics::general_eigen(M) : numerics::GeneralEigen{};
+  }
+  numerics::Klu factors(shifted);
+  if (!factors.factorize(shifted)) return {};
+  const auto apply = [&](const MatrixXd& X) {
+    MatrixXd Y(X.rows(), X.cols());
+    for (Index k = 0; k < X.cols(); ++k) {
+      Y.col(k) = numerics::product(B, VectorXd(X.col(k)));
+      factors.solve(Y.col(k));
+    }
+    return Y;
+  };
+  return numerics::largest_eigenvalues(apply, B.order, slowest_eigenvalues);
+}
+
+}  // namespace
+
 // F(y + x, y' + x') = 0 to first order: A x + B x' = 0. With M = (A + s B)^-1 B and M x = mu x it is lambda = s - 1/mu; what no rate acts on has
-// mu = 0. The columns are scaled by the tolerances, the sizes at which unknowns of different units are alike, the rows by their largest entry.
+// mu = 0.
 SmallMotions MotionRun::small_motions() {
-  constexpr double shift = 0.9173;  // [1/s]: no eigenvalue of note
   // Of the rates in the second matrix [1/s]: lifts them out of the round-off of the first.
   constexpr double weight = 1e3;
   const numerics::DaePoint now{time_, y_, rate_};
   leave_plane();
-  const MatrixXd A = numerics::dense(system_->jacobian(now, 0.0));
-  const MatrixXd B = (numerics::dense(system_->jacobian(now, weight)) - A) / weight;
   VectorXd size(system_->size());
   for (const numerics::DaeBlock& block : system_->layout().blocks())
     size.segment(block.first, block.count).setConstant(block.absolute_tolerance);
-  MatrixXd shifted = (A + shift * B) * size.asDiagonal();
-  const VectorXd rows = shifted.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
-  if (!rows.allFinite()) return {};
-  shifted = rows.asDiagonal() * shifted;
-  const MatrixXd M = Eigen::FullPivLU<MatrixXd>(shifted).solve(MatrixXd(rows.asDiagonal() * B * size.asDiagonal()));
-  if (!M.allFinite()) return {};
-  const numerics::GeneralEigen modes = numerics::general_eigen(M);
+  Pencil pencil{system_->jacobian(now, 0.0), system_->jacobian(now, weight)};
+  for (std::size_t k = 0; k < pencil.A.value.size(); ++k)
+    pencil.B.value[k] = (pencil.B.value[k] - pencil.A.value[k]) / weight;
+  for (numerics::SparseMatrix* m : {&pencil.A, &pencil.B}) numerics::scale(*m, VectorXd::Ones(size.size()), size);
+  const numerics::GeneralEigen found = shifted_eigenvalues(pencil);
   // Largest coefficients of an equation.
-  const VectorXd of_A = (A * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
-  const VectorXd of_B = (B * size.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
+  const VectorXd of_A = numerics::largest_of_rows(pencil.A), of_B = numerics::largest_of_rows(pencil.B);
   SmallMotions small;
-  for (Index k = 0; k < M.cols(); ++k) {
-    const std::complex<double> mu = modes.values[k];
+  double fastest = 0.0;
+  for (Index k = 0; k < found.values.size(); ++k) {
+    const std::complex<double> mu = found.values[k];
     if (std::abs(mu) == 0.0) continue;
     const std::complex<double> lambda = shift - 1.0 / mu;
     if (lambda.imag() < 0.0 || !(std::abs(lambda) > slowest) || !std::isfinite(std::abs(lambda))) continue;
-    const VectorXcd x = size.asDiagonal() * modes.vectors.col(k);
+    const VectorXcd x = found.vectors.col(k);
     // What constraints make of mu = 0 in round-off is no solution of the equations themselves.
-    const VectorXd rest = (A * x + lambda * (B * x)).cwiseAbs();
-    const VectorXd largest = (of_A + std::abs(lambda) * of_B) * modes.vectors.col(k).cwiseAbs().maxCoeff();
+    const VectorXd rest = (numerics::product(pencil.A, x) + lambda * numerics::product(pencil.B, x)).cwiseAbs();
+    const VectorXd largest = (of_A + std::abs(lambda) * of_B) * x.cwiseAbs().maxCoeff();
     if (!(rest.array() <= trusted * largest.array()).all()) continue;
-    small.fastest = std::max(small.fastest, std::abs(lambda));
-    if (lambda.imag() > slowest)
-      small.modes.push_back(
-          {std::abs(lambda) / (2.0 * std::numbers::pi), -lambda.real() / std::abs(lambda), shares_of(x)});
+    fastest = std::max(fastest, std::abs(lambda));
+    if (lambda.imag() <= slowest) continue;
+    const VectorXcd unscaled = size.asDiagonal() * x;
+    small.modes.push_back({std::abs(lambda) / (2.0 * std::numbers::pi), -lambda.real() / std::abs(lambda),
+                           shares_of(unscaled), shape_of(unscaled), std::nullopt});
   }
+  if (size.size() <= most_unknowns_of_all_modes) small.fastest = fastest;
   std::ranges::sort(small.modes, {}, &MotionMode::frequency);
   return small;
+}
+
+ModeShape MotionRun::shape_of(const VectorXcd& x) {
+  std::vector<std::complex<double>> coordinates;
+  const auto add = [&](std::complex<double> velocity, double mass) {
+    coordinates.push_back(std::sqrt(mass) * velocity);
+  };
+  for (const BodyPart& b : bodies_) {
+    if (!b.moves_freely()) continue;
+    const multibody::RigidBodyProperties& body = b.body().properties;
+    for (int i = 0; i < 3; ++i) {
+      add(x[b.velocity() + i], body.mass);
+      add(x[b.spin() + i], body.inertia(i, i));
+    }
+  }
+  for (std::size_t a = 0; a < motion_.arms.size(); ++a) {
+    const multibody::ElasticArm& arm = motion_.arms[a].arm;
+    const multibody::ElasticArmPart& part = constraints_->arm(static_cast<int>(a));
+    multibody::DynamicsWorkspace workspace(arm.tree);
+    const VectorXd mass = multibody::mass_matrix(arm.tree, part.state(y_).q, workspace).diagonal();
+    const multibody::ArmState real = part.state(x.real()), imaginary = part.state(x.imag());
+    for (Index i = 0; i < mass.size(); ++i) add({real.v[i], imaginary.v[i]}, mass[i]);
+    for (int j = 0; j < arm.motors(); ++j)
+      add({real.motor_rate[j], imaginary.motor_rate[j]}, arm.joints[at(j)].motor_inertia);
+  }
+  ModeShape shape;
+  shape.bodies_and_arms = Eigen::Map<const VectorXcd>(coordinates.data(), static_cast<Index>(coordinates.size()));
+  for (std::size_t w = 0; w < rods_.size(); ++w) {
+    Eigen::Matrix3Xcd& wire = shape.wires.emplace_back();
+    if (motion_.wires[w].rod.quasi_static) continue;
+    double mass = 0.0;
+    for (int i = 0; i < rods_[w].vertices(); ++i) mass += rods_[w].mass_of(i);
+    wire.resize(3, rods_[w].vertices());
+    for (int i = 0; i < rods_[w].vertices(); ++i)
+      wire.col(i) = std::sqrt(mass / rods_[w].vertices()) * x.segment<3>(rods_[w].velocity_of(i));
+  }
+  return shape;
 }
 
 // The kinetic energy is quadratic in the velocities: of an oscillation the sum of those of the real and of the imaginary part.
@@ -127,20 +196,9 @@ std::vector<std::pair<std::string, double>> MotionRun::shares_of(const VectorXcd
   return shares;
 }
 
-int unknowns_of(const Motion& motion, const MotionOptions& options) {
-  const MotionObserver none;
-  return MotionRun(motion, options, none).unknowns();
-}
-
 SmallMotions small_motions_at(const Motion& motion, const MotionOptions& options, const MotionState& state) {
   const MotionObserver none;
   MotionRun run(motion, options, none);
-  if (run.unknowns() > most_unknowns_of_modes) {
-    throw base::InputError(
-        {"", 0, "modes", fmt::format("{} unknowns", run.unknowns()),
-         fmt::format("at most {} can be asked for modes: wires of fewer elements, or laws in their place",
-                     most_unknowns_of_modes)});
-  }
   run.resume(state);
   return run.small_motions();
 }

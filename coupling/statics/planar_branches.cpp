@@ -63,6 +63,10 @@ bool PlanarPush::leave_unstable_branch() {
     workspace_.solver.solve(workspace_.system, direction, border);
     direction /= direction.lpNorm<Eigen::Infinity>();
   }
+  // The same side on every mesh: the vertices move along the chord, from the left mount to the right one, on the whole.
+  double along = 0.0;
+  for (Eigen::Index i = 0; i < n; i += wire::PlanarRod::block) along += direction[i];
+  if (along < 0.0) direction = -direction;
   double size = 1e-4;
   for (int k = 0; k < 10; ++k, size *= 2.0) {
     for (const double sign : {1.0, -1.0}) {

@@ -1,28 +1,31 @@
 #include "coupling/statics/push_solver.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 namespace snare::coupling {
 
 namespace {
 
-/// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them: their
-/// balance holds after extrapolation as it does on every mesh.
+/// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them, and are
+/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,
                                          &PushPoint::tension_left,
                                          &PushPoint::tension_right,
-                                         &PushPoint::contact_coordinate,
                                          &PushPoint::reaction_along_left,
                                          &PushPoint::reaction_across_left,
                                          &PushPoint::reaction_z_left,
                                          &PushPoint::reaction_along_right,
                                          &PushPoint::reaction_across_right,
-                                         &PushPoint::reaction_z_right};
+                                         &PushPoint::reaction_z_right,
+                                         &PushPoint::contact_coordinate};
+constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 1;
 
 /// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
 struct CoarsePoint {
@@ -62,6 +65,50 @@ struct CoarseCurve {
   std::vector<CoarsePoint> points;
 };
 
+/// A value on meshes of h, 2 h and 4 h.
+struct Refinement {
+  double fine, half, quarter;
+
+  [[nodiscard]] double extrapolated() const { return (64.0 * fine - 20.0 * half + quarter) / 45.0; }  // theory.md (W.11)
+  [[nodiscard]] double last_change() const { return fine - half; }
+  [[nodiscard]] double largest_change() const { return std::max(std::abs(fine - half), std::abs(half - quarter)); }
+  /// Whether the change falls as it does with a power of h between 1 and 5.
+  [[nodiscard]] bool in_order() const {
+    const double ratio = (fine - half) / (half - quarter);
+    return ratio >= 1.0 / 40.0 && ratio <= 0.5;
+  }
+};
+
+using Refinements = std::array<Refinement, extrapolated_values.size()>;
+
+/// Whether all forces of a point converge in order; those that hardly change beside the others are not asked.
+bool forces_in_order(const Refinements& values) {
+  constexpr double hardly = 0.05;
+  const auto forces = std::span(values).first<extrapolated_forces>();
+  double largest = 0.0;
+  for (const Refinement& r : forces) largest = std::max(largest, r.largest_change());
+  return std::ranges::all_of(
+      forces, [&](const Refinement& r) { return r.largest_change() <= hardly * largest || r.in_order(); });
+}
+
+/// Extrapolates the values of a point that converge in order, and returns what is left of the error of the force [N].
+double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& quarter) {
+  Refinements values;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    values[v] = {p.*extrapolated_values[v], half.values[v], quarter.values[v]};
+  const Refinement& arc = values.back();
+  static_assert(extrapolated_values.back() == &PushPoint::contact_coordinate);
+  if (arc.in_order()) p.contact_coordinate = arc.extrapolated();
+  const Refinement& force = values.front();
+  static_assert(extrapolated_values.front() == &PushPoint::force);
+  if (!forces_in_order(values)) return force.largest_change();
+  for (std::size_t v = 0; v < extrapolated_forces; ++v) p.*extrapolated_values[v] = values[v].extrapolated();
+  for (std::size_t v = 0; v < p.force_by.size(); ++v)
+    p.force_by[v] = Refinement{p.force_by[v], half.force_by[v], quarter.force_by[v]}.extrapolated();
+  const double third_order = (32.0 * force.fine - 12.0 * force.half + force.quarter) / 21.0;
+  return 2.0 * std::abs(p.force - third_order);
+}
+
 }  // namespace
 
 ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
@@ -82,13 +129,10 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     result.curve.report = coarse->report;  // the forces of the fine mesh stay as they are
     return result;
   }
-  const auto extrapolated = [](double fine, double half_value, double quarter_value) {
-    return (64.0 * fine - 20.0 * half_value + quarter_value) / 45.0;
-  };
   if (half.report.usable() && quarter.report.usable()) {
     PushCurve& c = result.curve;
-    c.natural_height = extrapolated(c.natural_height, half.natural_height, quarter.natural_height);
-    c.touch_height = extrapolated(c.touch_height, half.touch_height, quarter.touch_height);
+    c.natural_height = Refinement{c.natural_height, half.natural_height, quarter.natural_height}.extrapolated();
+    c.touch_height = Refinement{c.touch_height, half.touch_height, quarter.touch_height}.extrapolated();
   }
 
   // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
@@ -108,17 +152,7 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     const CoarsePoint& h = half.points[j];
     const CoarsePoint& q = quarter.points[k];
     p.iterations += h.iterations + q.iterations;
-    if (!h.same_state(p) || !q.same_state(p)) continue;
-    static_assert(extrapolated_values[0] == &PushPoint::force);
-    const double third_order = (32.0 * p.force - 12.0 * h.values[0] + q.values[0]) / 21.0;
-    for (std::size_t v = 0; v < extrapolated_values.size(); ++v) {
-      double& value = p.*extrapolated_values[v];
-      value = extrapolated(value, h.values[v], q.values[v]);
-    }
-    for (std::size_t v = 0; v < p.force_by.size(); ++v) {
-      p.force_by[v] = extrapolated(p.force_by[v], h.force_by[v], q.force_by[v]);
-    }
-    result.discretisation_error[i] = 2.0 * std::abs(p.force - third_order);
+    if (h.same_state(p) && q.same_state(p)) result.discretisation_error[i] = extrapolate(p, h, q);
   }
   return result;
 }

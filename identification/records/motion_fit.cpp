@@ -14,11 +14,11 @@ namespace {
 
 constexpr double step_share = 0.1;  ///< of a number's scale: the step of the differences
 
-/// Step of the differences by a number. One that has grown far beyond its declared value is moved in proportion: a smaller step
-/// would show the errors of the integration alone.
-double step_of(const MotionSetting& s) {
-  const double scale = s.number.scale_follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale;
-  return step_share * scale;
+/// Step of the differences by a number. For central ones a number that has grown far beyond its declared value is moved in
+/// proportion: a smaller step would show the errors of the integration alone. Forward ones would be off by the longer step.
+double step_of(const MotionSetting& s, Differences differences) {
+  const bool follows = s.number.scale_follows && differences == Differences::central;
+  return step_share * (follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale);
 }
 
 void gauss_newton(const MotionModel& model, const MotionData& data, const MotionFitOptions& options, MotionFit& fit) {
@@ -79,7 +79,7 @@ Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& d
   std::vector<std::pair<double, double>> steps;  // down, up
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const MotionNumber& n = settings[k].number;
-    const double step = widen * step_of(settings[k]);
+    const double step = widen * step_of(settings[k], differences);
     const double up = settings[k].value + step <= n.upper ? step : 0.0;
     const bool both = differences == Differences::central || up == 0.0;
     const double down = both && settings[k].value - step >= n.lower ? step : 0.0;

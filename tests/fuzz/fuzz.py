@@ -22,8 +22,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SOURCES = ["tests/fuzz/readers_libfuzzer.cpp", "base/errors.cpp", "base/range.cpp", "base/files.cpp", "base/csv.cpp",
-           "base/archive.cpp", "base/toml_tree.cpp", "base/toml_reader.cpp", "wire/specification.cpp",
+SOURCES = ["tests/fuzz/readers_libfuzzer.cpp", *(str(p.relative_to(ROOT)) for p in sorted((ROOT / "base").glob("*.cpp"))), "wire/specification.cpp",
            "scenario/push_reader.cpp", "coupling/contact/mesh_file.cpp", "multibody/urdf.cpp", "multibody/urdf_checks.cpp",
            "multibody/tree.cpp", "multibody/spatial.cpp", "identification/fitting/experiment.cpp",
            "identification/fitting/parameter.cpp", "identification/fitting/parameter_set.cpp",

@@ -54,6 +54,28 @@ TEST(InwardPush, StableBranchIsTakenOnRequest) {
   }
 }
 
+// A clamped leaf spring pressed at mid-span by an edge without friction, on the stable branch at 1 mm, from a shooting solution of the
+// planar extensible elastica. The branch may lean to either side; all meshes take the same one, and what is extrapolated is not mixed of both.
+TEST(InwardPush, BranchOfALeafSpringIsThatOfTheElasticaOnEveryMesh) {
+  PushProblem test = inward(50.0 * mm, 1.0 * mm, 10);
+  test.wire = {.diameter = 0.5 * mm, .length = 101.0 * mm, .youngs_modulus = 200e9, .poisson_ratio = 0.3, .density = 7850.0};
+  test.mount.span = 100.0 * mm;
+  test.pusher.radius = 0.0;
+  for (const int elements : {64, 128, 256}) {
+    PushOptions options = mesh(elements);
+    options.instability = Instability::switch_branch;
+    const ExtrapolatedCurve extrapolated = solve_push_extrapolated(test, options);
+    ASSERT_TRUE(extrapolated.curve.report.usable()) << extrapolated.curve.report.message;
+    const PushPoint& p = extrapolated.curve.points.back();
+    EXPECT_EQ(p.unstable_modes, 0);
+    EXPECT_NEAR(p.force, 0.66317, 1e-4);
+    EXPECT_NEAR(std::abs(p.transverse_force), 0.0831, 2e-4);
+    EXPECT_NEAR(std::min(-p.tension_left, -p.tension_right), 4.793, 2e-3);
+    EXPECT_NEAR(std::max(-p.tension_left, -p.tension_right), 4.876, 2e-3);
+    EXPECT_NEAR(std::abs(p.contact_coordinate - 50.5 * mm), 0.098 * mm, 1e-3 * mm);
+  }
+}
+
 TEST(InwardPush, SnapsToTheMirroredShapeAndIsTouchedThere) {
   for (const double position : {87.5 * mm, 65.0 * mm, 40.0 * mm}) {
     PushProblem test = inward(position, 40.0 * mm, 40);
