@@ -27,9 +27,9 @@ using Eigen::VectorXd;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-Row frequency_row(const std::string& name, const std::string& unit, const std::string& source, double reference,
-                  double value, ErrorKind kind, double limit) {
-  return {"capture", name, unit, source, reference, value, kind, limit};
+Row frequency_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind,
+                  double reference, double value, const Limit& limit) {
+  return {"capture", name, unit, source, kind, reference, value, limit};
 }
 
 /// Exponents [1/s] of the sum of decaying oscillations that signals (channels x samples), `interval` [s] apart, consist of: the shift between two
@@ -111,10 +111,10 @@ void compare(const std::string& what, const std::vector<coupling::MotionMode>& m
     for (const std::complex<double>& lambda : found)
       if (!(std::abs(nearest - expected) <= std::abs(lambda - expected))) nearest = lambda;
     const std::string name = fmt::format("{}, {} swings: ", what, m.shares.empty() ? "all" : m.shares[0].first);
-    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", std::abs(nearest) / two_pi,
-                                 m.frequency, ErrorKind::relative, 0.01));
-    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated",
-                                 -nearest.real() / std::abs(nearest), m.damping, ErrorKind::absolute, 0.01));
+    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", Kind::convergence,
+                                 std::abs(nearest) / two_pi, m.frequency, Limit::relative(0.01)));
+    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated", Kind::convergence,
+                                 -nearest.real() / std::abs(nearest), m.damping, Limit::relative(0.1)));
   }
 }
 
@@ -157,7 +157,7 @@ std::vector<Row> held_frequency_rows(const std::filesystem::path& data) {
   compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, rows);
   if (!run.result.report.usable() || rows.empty())
     rows.push_back(frequency_row("visitor of 16 t held on the arm, modes below 1 Hz", "", "six freedoms of the visitor",
-                                 6.0, not_computed, ErrorKind::absolute, 0.5));
+                                 Kind::closed_form, 6.0, not_computed, Limit::relative(0.1)));
   return rows;
 }
 
@@ -209,12 +209,13 @@ std::vector<Row> bushing_frequency_rows(const std::filesystem::path& data) {
     return std::log(roll(joints, 1.05 * K) / roll(joints, K / 1.05)) / (2.0 * std::log(1.05));
   };
   const std::string name = "roll of a held visitor of 16 t, joints of ";
-  return {frequency_row(name + "1e12 N m/rad", "Hz", "(K_GF/I)^1/2/(2 pi)", std::sqrt(K / I) / two_pi, roll(1e12, K),
-                        ErrorKind::relative, 1e-3),
-          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", 0.5, sensitivity(1e12),
-                        ErrorKind::absolute, 1e-3),
-          frequency_row(name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", 0.0,
-                        sensitivity(1e6), ErrorKind::absolute, 0.01)};
+  return {frequency_row(name + "1e12 N m/rad", "Hz", "(K_GF/I)^1/2/(2 pi)", Kind::closed_form,
+                        std::sqrt(K / I) / two_pi, roll(1e12, K), Limit::relative(1e-3)),
+          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", Kind::closed_form, 0.5,
+                        sensitivity(1e12), Limit::relative(2e-3)),
+          frequency_row(name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", Kind::closed_form,
+                        0.0, sensitivity(1e6),
+                        Limit::absolute(0.01, "zero reference; the exponent is 1/2 where the bushing gives alone"))};
 }
 
 std::vector<Check> frequency_checks(const std::filesystem::path& data) {
