@@ -79,18 +79,19 @@ Validation in_order(const std::vector<validation::Check>& checks,
 
 std::string page(const Validation& v) {
   const auto& [rows, skipped, checks, done] = v;
-  ReportPage page("Validation of snare",
-                  "Every row: a computed value, its reference, and the kind of the reference. Only a row of the kind "
-                  "\"convergence of this code\" has a reference that this code has computed.");
+  ReportPage page(
+      "Validation of snare",
+      "Every row: a computed value and its reference, whose kind says where it comes from. Rows of the kind "
+      "\"convergence of this code\" compare this code with itself, all others with a reference from elsewhere.");
   page.doubts({}, !v.whole());
   page.heading("Kinds of references");
   page.paragraph(fmt::format("{} rows: {}.", rows.size(), validation::count_by_kind(rows)));
   page.list(
       {"closed form: a formula, a quadrature, the root of an equation, a balance that has to close, a state or a "
-       "symmetry that has to hold; forces and masses in it may be those of the run",
-       "published measurement: readings of others, or what they state about them",
+       "symmetry that has to hold; it may be evaluated with forces and masses of the run that it checks",
+       "published measurement: readings of others, or their published statements about them",
        "published computation: numbers that others have computed, fits of their measurements included",
-       "independent code: another formulation or program that shares no equation with what is checked",
+       "independent code: another formulation or program that shares no equation with the code under test",
        "convergence of this code: this code on a finer mesh, at a tighter tolerance, at another scale or by another "
        "of its routes, and the work that it needs"});
   std::string group;

@@ -101,7 +101,7 @@ std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::fil
 struct FlightTruth {
   const char *file, *how, *wire;  // key of the wire's stiffness
   double stiffness;               // in the unit of that key
-  Kind kind;                      // of what has made the flight
+  Kind kind;                      // of the program that made the flight
   const char* maker;
 };
 constexpr double made_gf = 9.3e7;        // N m/rad

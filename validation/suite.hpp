@@ -17,12 +17,12 @@ enum class Kind {
   /// Value known from mathematics or mechanics: a formula, a series, a quadrature, the root of an equation, the state of rest, a symmetry, a
   /// balance that has to close or a constraint that has to hold.
   closed_form,
-  /// Readings that others measured and published, or what they state about these.
+  /// Readings that others measured and published, or their statements about these readings.
   published_measurement,
   /// Number or statement that others computed, fits and models of their own measurements included.
   published_computation,
-  /// Result of another formulation or program that shares no equation with what is checked. It may be written for the purpose, as the elastica by
-  /// shooting, the continuous wire by collocation and the blind machines are; records made by such a program count.
+  /// Result of another formulation or program that shares no equation with the code under test. It may be written for the purpose, as the elastica
+  /// by shooting, the continuous wire by collocation and the blind machines are; records made by such a program count.
   independent_code,
   /// This code compared with itself: on a finer mesh, at a tighter tolerance, at another scale, by another of its routes (the static solver, the
   /// linearised equations), from records that it made; and its numerical work, such as an observed order or a number of steps.
