@@ -59,16 +59,15 @@ struct Watch {
 };
 
 /// What a pulse makes of a motion from a state on, every column a time: half the difference of a pulse and its opposite, without the terms
-/// that go with the square of the pulse.
+/// that go with the square of the pulse. With them the swing of one period a record, damped by 8.5e-4, appears damped by 3.3e-3.
 MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState& state, coupling::FrameLoad load,
                 const Watch& watch) {
   coupling::MotionOptions options = asked.options;
   options.output_interval = watch.every;
   options.duration = state.time + watch.to;
-  // The damping of the integrator has to be small compared with a damping ratio of 1e-3.
-  options.relative_tolerance = 1e-8;
-  options.body_position_tolerance = options.angle_tolerance = 1e-12;
-  options.body_velocity_tolerance = options.spin_tolerance = 1e-10;
+  options.relative_tolerance = 1e-7;
+  options.body_position_tolerance = options.angle_tolerance = 1e-10;
+  options.body_velocity_tolerance = options.spin_tolerance = 1e-8;
   options.newton_share = 1e-3;
   options.max_order = 5;
   coupling::MotionState from = state;
@@ -100,9 +99,19 @@ MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState&
   return difference;
 }
 
+/// Largest relative errors of a mode.
+struct Agreement {
+  double frequency, damping;
+};
+// A held visitor swings linearly: the parts of the third order in the pulse and the integrator's errors stay.
+constexpr Agreement linear{1e-4, 1e-3};
+// In strings the state drifts while it is watched, and the answer depends on the size of the pulse: 2 and 2.5 percent of the damping at a
+// third of the pulse and at the whole.
+constexpr Agreement drifting{0.01, 0.05};
+
 /// A row for each of these frequencies [Hz] by eigenvalues: that of the answer which is nearest.
 void compare(const std::string& what, const std::vector<coupling::MotionMode>& modes, double lowest, double highest,
-             const MatrixXd& signals, const Watch& watch, std::vector<Row>& rows) {
+             const MatrixXd& signals, const Watch& watch, const Agreement& agreement, std::vector<Row>& rows) {
   Eigen::VectorXcd found;
   if (signals.size() > 0) found = exponents(signals, watch.every, watch.keep);
   for (const coupling::MotionMode& m : modes) {
@@ -114,9 +123,9 @@ void compare(const std::string& what, const std::vector<coupling::MotionMode>& m
       if (!(std::abs(nearest - expected) <= std::abs(lambda - expected))) nearest = lambda;
     const std::string name = fmt::format("{}, {} swings: ", what, m.shares.empty() ? "all" : m.shares[0].first);
     rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", Kind::convergence,
-                                 std::abs(nearest) / two_pi, m.frequency, Limit::relative(0.01)));
+                                 std::abs(nearest) / two_pi, m.frequency, Limit::relative(agreement.frequency)));
     rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated", Kind::convergence,
-                                 -nearest.real() / std::abs(nearest), m.damping, Limit::relative(0.1)));
+                                 -nearest.real() / std::abs(nearest), m.damping, Limit::relative(agreement.damping)));
   }
 }
 
@@ -151,12 +160,12 @@ std::vector<Row> held_frequency_rows(const std::filesystem::path& data) {
       run_of(data / "scenarios/ssrms_htv_held.toml", {"duration_s=1.0", "loads[thruster].moment_Nm=[0.0,0.0,0.0]"});
   const std::vector<coupling::MotionMode> modes =
       coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes;
-  Watch watch{0.1, 0.5, 60.5, 0.2, 1e-7, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
+  Watch watch{0.1, 0.5, 20.5, 0.1, 1e-5, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
   const MatrixXd signals =
       answer(run.asked, run.result.last,
-             push_on_body(run.asked.motion, "htv", {20.0, 15.0, 10.0}, {500.0, 300.0, -400.0}), watch);
+             push_on_body(run.asked.motion, "htv", {200.0, 150.0, 100.0}, {5000.0, 3000.0, -4000.0}), watch);
   std::vector<Row> rows;
-  compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, rows);
+  compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, linear, rows);
   if (!run.result.report.usable() || rows.empty())
     rows.push_back(frequency_row("visitor of 16 t held on the arm, modes below 1 Hz", "", "six freedoms of the visitor",
                                  Kind::closed_form, 6.0, not_computed, Limit::relative(0.1)));
@@ -175,7 +184,7 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
   compare("visitor of 16 t in strings", modes, 2.5, 4.0,
           answer(run.asked, run.result.last,
                  push_on_body(run.asked.motion, "htv", {50.0, 50.0, 50.0}, {500.0, 300.0, -400.0}), slow),
-          slow, rows);
+          slow, drifting, rows);
   const coupling::MotionArm& arm = run.asked.motion.arms[0];
   const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0, arm.arm.tree.find_frame("snare::turning")};
   const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5, [](const MotionSample& s) -> VectorXd {
@@ -183,7 +192,8 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
                      return (VectorXd(2) << a.q[a.q.size() - 1], a.v[a.v.size() - 1]).finished();
                    }};
   compare("visitor of 16 t in strings", modes, 200.0, 600.0,
-          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, rows);
+          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, drifting,
+          rows);
   return rows;
 }
 

@@ -49,7 +49,9 @@ class Limit {
   /// std::invalid_argument without a reason.
   [[nodiscard]] static Limit absolute(double limit, std::string reason);
 
+  /// Whether the error is relative to the reference or absolute.
   [[nodiscard]] ErrorKind error_kind() const { return error_kind_; }
+  /// Largest error: relative [-], or absolute in the row's unit.
   [[nodiscard]] double value() const { return value_; }
   /// Empty for a relative limit.
   [[nodiscard]] const std::string& reason() const { return reason_; }
