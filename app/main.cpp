@@ -89,7 +89,7 @@ const Verb verbs[] = {
      "BENCHMARK.toml", "benchmark file; the shipped ring when left out", false,
      "snare benchmark --case impact_middle --against theirs.csv", snare::app::run_benchmark,
      "snare-benchmark-result/1"},
-    {"validate", "every validation row: reference, value, error, limit, verdict", nullptr, nullptr, false,
+    {"validate", "every validation row: reference, its kind, value, error, limit, verdict", nullptr, nullptr, false,
      "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
        return snare::app::run_validate(options, console);

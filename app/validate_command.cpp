@@ -41,11 +41,13 @@ nlohmann::json row_json(const validation::Row& row) {
           {"name", row.name},
           {"unit", row.unit},
           {"source", row.source},
+          {"kind", validation::key_of(row.kind)},
           {"reference", row.reference},
           {"value", row.value},
           {"error", row.error()},
-          {"error_kind", row.kind == validation::ErrorKind::relative ? "relative" : "absolute"},
-          {"limit", row.limit},
+          {"error_kind", row.limit.error_kind() == validation::ErrorKind::relative ? "relative" : "absolute"},
+          {"limit", row.limit.value()},
+          {"limit_reason", row.limit.reason()},
           {"verdict", row.within() ? "within" : "out"}};
 }
 
@@ -77,16 +79,29 @@ Validation in_order(const std::vector<validation::Check>& checks,
 
 std::string page(const Validation& v) {
   const auto& [rows, skipped, checks, done] = v;
-  ReportPage page("Validation of snare",
-                  "Every row: what was computed, beside a reference that does not come from it.");
+  ReportPage page(
+      "Validation of snare",
+      "Every row: a computed value and its reference, whose kind says where it comes from. Rows of the kind "
+      "\"convergence of this code\" compare this code with itself, all others with a reference from elsewhere.");
   page.doubts({}, !v.whole());
+  page.heading("Kinds of references");
+  page.paragraph(fmt::format("{} rows: {}.", rows.size(), validation::count_by_kind(rows)));
+  page.list(
+      {"closed form: a formula, a quadrature, the root of an equation, a balance that has to close, a state or a "
+       "symmetry that has to hold; it may be evaluated with forces and masses of the run that it checks",
+       "published measurement: readings of others, or their published statements about them",
+       "published computation: numbers that others have computed, fits of their measurements included",
+       "independent code: another formulation or program that shares no equation with the code under test",
+       "convergence of this code: this code on a finer mesh, at a tighter tolerance, at another scale or by another "
+       "of its routes, and the work that it needs"});
   std::string group;
   Table table;
   const auto flush = [&] {
     if (!table.rows.empty()) page.table(table);
     table = Table{};
-    table.columns = {"quantity"_text, "reference"_number, "computed"_number, "error"_number,
-                     "limit"_number,  "verdict"_text,     "source"_text};
+    table.columns = {"quantity"_text,   "kind"_text,    "reference"_number,
+                     "computed"_number, "error"_number, "limit"_number,
+                     "verdict"_text,    "source"_text,  "why the limit is absolute"_text};
   };
   for (const validation::Row& row : rows) {
     if (row.group != group) {
@@ -96,12 +111,14 @@ std::string page(const Validation& v) {
     }
     const std::string unit = row.unit.empty() ? "" : " " + row.unit;
     table.rows.push_back({{row.name},
+                          {std::string(validation::words_of(row.kind))},
                           {format_significant(row.reference, 8) + unit},
                           {format_significant(row.value, 8) + unit},
                           {format_significant(row.error(), 2)},
-                          {format_significant(row.limit, 2)},
+                          {format_significant(row.limit.value(), 2)},
                           {row.within() ? "within" : "OUT", row.within() ? Tone::good : Tone::bad},
-                          {row.source}});
+                          {row.source},
+                          {row.limit.reason()}});
   }
   flush();
   if (!skipped.empty()) {
@@ -121,8 +138,9 @@ void write_files(const CommonOptions& options, const Validation& v) {
 }
 
 std::string count_words(const Validation& v, const CommonOptions& options) {
-  return fmt::format("{}{} rows, {} out of their limit; wrote {}/validation.json",
-                     v.whole() ? "" : fmt::format("a part, {} of {} checks: ", v.done, v.checks), v.rows.size(),
+  const std::string kinds = v.rows.empty() ? "" : fmt::format(" ({})", validation::count_by_kind(v.rows));
+  return fmt::format("{}{} rows{}, {} out of their limit; wrote {}/validation.json",
+                     v.whole() ? "" : fmt::format("a part, {} of {} checks: ", v.done, v.checks), v.rows.size(), kinds,
                      v.out(), options.out.string());
 }
 
@@ -189,7 +207,7 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   for (const validation::Row& row : v.rows) {
     if (row.group != group) console.say((group = row.group) + ":");
     console.say(fmt::format("  {:<58} {:>14.8g} {:>14.8g} {:<6} error {:.1e} of {:.0e} {}", row.name, row.reference,
-                            row.value, row.unit, row.error(), row.limit, row.within() ? "" : "OUT"));
+                            row.value, row.unit, row.error(), row.limit.value(), row.within() ? "" : "OUT"));
   }
   if (!v.whole()) {
     console.complain("interrupted: " + count_words(v, options));

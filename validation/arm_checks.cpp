@@ -61,9 +61,9 @@ double mean_period(const ArmHistory& history, const ElasticArm& arm) {
   return 2.0 * (swings[n - 1].end - swings[0].begin) / static_cast<double>(n);
 }
 
-Row arm_row(const std::string& name, const std::string& unit, const std::string& source, double reference, double value,
-            ErrorKind kind, double limit) {
-  return {"arms", name, unit, source, reference, value, kind, limit};
+Row arm_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind, double reference,
+            double value, const Limit& limit) {
+  return {"arms", name, unit, source, kind, reference, value, limit};
 }
 
 }  // namespace
@@ -78,8 +78,9 @@ std::vector<Row> arm_conservation_rows() {
     const double start = history.samples.front().energy;
     double worst = history.report.usable() ? 0.0 : not_computed;
     for (const ArmSample& s : history.samples) worst = std::max(worst, std::abs(s.energy - start) / start);
-    rows.push_back(arm_row("undamped arm, 100 s: largest change of the energy over the energy", "", "conservation", 0.0,
-                           worst, ErrorKind::absolute, 1e-8));
+    rows.push_back(arm_row("undamped arm, 100 s: largest change of the energy over the energy", "", "conservation",
+                           Kind::closed_form, 0.0, worst,
+                           Limit::absolute(1e-8, "zero reference; the value is a share of the energy at the start")));
   }
   auto run = at_rest(spatial_arm(true, 400.0), Drive::limp(), 10.0, 1e-12);
   run.initial.q.tail<3>() << 0.3, -0.2, 0.25;
@@ -93,10 +94,13 @@ std::vector<Row> arm_conservation_rows() {
     linear = std::max(linear, (s.momentum.force - start.force).norm() / start.force.norm());
     angular = std::max(angular, (s.momentum.moment - start.moment).norm() / start.moment.norm());
   }
-  rows.push_back(arm_row("floating arm: relative change of the linear momentum a second", "1/s", "conservation", 0.0,
-                         linear / 10.0, ErrorKind::absolute, 1e-12));
-  rows.push_back(arm_row("floating arm: relative change of the angular momentum a second", "1/s", "conservation", 0.0,
-                         angular / 10.0, ErrorKind::absolute, 1e-12));
+  rows.push_back(arm_row("floating arm: relative change of the linear momentum a second", "1/s", "conservation",
+                         Kind::closed_form, 0.0, linear / 10.0,
+                         Limit::absolute(1e-12, "zero reference; the value is a share of the momentum at the start")));
+  rows.push_back(
+      arm_row("floating arm: relative change of the angular momentum a second", "1/s", "conservation",
+              Kind::closed_form, 0.0, angular / 10.0,
+              Limit::absolute(1e-12, "zero reference; the value is a share of the angular momentum at the start")));
   return rows;
 }
 
@@ -125,7 +129,8 @@ std::vector<Row> arm_work_rows() {
     }
     const double change = history.samples.back().energy - history.samples.front().energy;
     rows.push_back(arm_row("change of the energy of a lossless arm under its servos", "J",
-                           "work of the drives, from the history", work, change, ErrorKind::relative, 1e-6));
+                           "work of the drives, from the history", Kind::closed_form, work, change,
+                           Limit::relative(1e-6)));
   }
   auto run = at_rest(planar_arm(link, link, 2.0, DeflectionLaw::linear(400.0, 0.0)), Drive::limp(), 1.0, 1e-10);
   const int tip = run.arm.tree.find_frame("tip");
@@ -137,11 +142,11 @@ std::vector<Row> arm_work_rows() {
     return Vector3d(link.length * (std::cos(a) + std::cos(b)), link.length * (std::sin(a) + std::sin(b)), 0.0);
   };
   const double way = force.dot(place_of_tip(history.samples.back()) - place_of_tip(history.samples.front()));
-  rows.push_back(arm_row("work of a constant force at the tip of a limp arm", "J", "force times way", way,
-                         history.report.usable() ? history.samples.back().work.loads : not_computed,
-                         ErrorKind::relative, 1e-6));
-  rows.push_back(arm_row("energy that this force gives to the arm", "J", "force times way", way,
-                         history.samples.back().energy, ErrorKind::relative, 1e-6));
+  rows.push_back(arm_row("work of a constant force at the tip of a limp arm", "J", "force times way", Kind::closed_form,
+                         way, history.report.usable() ? history.samples.back().work.loads : not_computed,
+                         Limit::relative(1e-6)));
+  rows.push_back(arm_row("energy that this force gives to the arm", "J", "force times way", Kind::closed_form, way,
+                         history.samples.back().energy, Limit::relative(1e-6)));
   return rows;
 }
 
@@ -149,7 +154,8 @@ std::vector<Row> arm_frequency_rows() {
   std::vector<Row> rows;
   constexpr double H = 3.0, B = 5.0, K = 200.0, kp = 70.0;
   const auto add = [&rows](const std::string& name, double expected, double value, double limit) {
-    rows.push_back(arm_row(name, "Hz", "two masses, closed form", expected, value, ErrorKind::relative, limit));
+    rows.push_back(
+        arm_row(name, "Hz", "two masses, closed form", Kind::closed_form, expected, value, Limit::relative(limit)));
   };
   const ElasticArm one = one_joint_arm(H, B, DeflectionLaw::linear(K, 0.0));
   const VectorXd q = VectorXd::Zero(1);
@@ -211,9 +217,11 @@ std::vector<Row> rigid_limit_rows() {
     differences.push_back(history.report.usable() ? (history.samples.back().state.q - q).norm() : not_computed);
   }
   return {arm_row("stiff gears: difference to the rigid arm after 2 s at K = 1e6 N m/rad", "rad",
-                  "rigid double pendulum", 0.0, differences[2], ErrorKind::absolute, 1e-4),
-          arm_row("stiff gears: that difference at K = 1e5 over that at 1e6", "", "first order in 1/K", 10.0,
-                  differences[1] / differences[2], ErrorKind::relative, 0.05)};
+                  "rigid double pendulum", Kind::independent_code, 0.0, differences[2],
+                  Limit::absolute(
+                      1e-4, "zero reference: a distance between two solutions; the joints turn by about a radian")),
+          arm_row("stiff gears: that difference at K = 1e5 over that at 1e6", "", "first order in 1/K",
+                  Kind::closed_form, 10.0, differences[1] / differences[2], Limit::relative(0.05))};
 }
 
 // T = 4 int_0^A dx / sqrt(2 (U(A) - U(x))/H), x = A sin s.
@@ -238,8 +246,8 @@ std::vector<Row> amplitude_rows() {
     run.initial.q[0] = A;
     run.tolerances.coordinate = run.tolerances.rate = 1e-13;
     rows.push_back(arm_row(fmt::format("undamped Table 2, period at an amplitude of {:g} deg", amplitude), "s",
-                           "quadrature of the energy integral", period, mean_period(multibody::simulate(run), arm),
-                           ErrorKind::relative, 1e-4));
+                           "quadrature of the energy integral", Kind::closed_form, period,
+                           mean_period(multibody::simulate(run), arm), Limit::relative(1e-4)));
   }
   return rows;
 }
@@ -279,12 +287,12 @@ std::vector<Row> floating_base_rows() {
   };
   const Vector2d moved = -m1 / (m0 + m1) * (between(turn, q_end) - between(0.0, 0.0));
   const double usable = history.report.usable() ? 0.0 : not_computed;
-  return {arm_row("floating base: turn after a motion of its link", "rad", "momentum of zero, quadrature", turn,
-                  found + usable, ErrorKind::relative, 1e-6),
-          arm_row("floating base: way of its centre along x", "m", "centre of mass stays", moved.x(),
-                  last.q[0] + usable, ErrorKind::relative, 1e-6),
-          arm_row("floating base: way of its centre along y", "m", "centre of mass stays", moved.y(),
-                  last.q[1] + usable, ErrorKind::relative, 1e-6)};
+  return {arm_row("floating base: turn after a motion of its link", "rad", "momentum of zero, quadrature",
+                  Kind::closed_form, turn, found + usable, Limit::relative(1e-6)),
+          arm_row("floating base: way of its centre along x", "m", "centre of mass stays", Kind::closed_form, moved.x(),
+                  last.q[0] + usable, Limit::relative(1e-6)),
+          arm_row("floating base: way of its centre along y", "m", "centre of mass stays", Kind::closed_form, moved.y(),
+                  last.q[1] + usable, Limit::relative(1e-6))};
 }
 
 std::vector<Row> jump_rows() {
@@ -307,14 +315,15 @@ std::vector<Row> jump_rows() {
     const double usable = history.report.usable() ? 0.0 : not_computed;
     // A ramp is left at two ends.
     const double events = static_cast<double>(history.events.size()) / (c.width > 0.0 ? 2.0 : 1.0);
-    rows.push_back(arm_row(name + "events a passage of a jump, in 60 s", "", "passages by Runge and Kutta", 1.0,
-                           events / plain.passages + usable, ErrorKind::absolute, 1e-12));
+    rows.push_back(arm_row(name + "events a passage of a jump, in 60 s", "", "passages by Runge and Kutta",
+                           Kind::independent_code, 1.0, events / plain.passages + usable, Limit::relative(1e-12)));
     rows.push_back(
-        arm_row(name + "integrator's steps an event", "", "no thrashing", 0.0,
+        arm_row(name + "integrator's steps an event", "", "no thrashing", Kind::convergence, 0.0,
                 static_cast<double>(history.statistics.steps) / static_cast<double>(history.events.size()) + usable,
-                ErrorKind::absolute, 60.0));
+                Limit::absolute(60.0, "a bound of the work: any number of steps below it is fine")));
   }
   // A load of 10 N m between the torques of the literal jump (0.5 and 19 N m): Filippov's solution rests at the jump.
+  constexpr double at_jump = 0.04 * degree;
   for (const double w : {width, 0.1 * width}) {
     auto run = at_rest(one_joint_arm(0.01 * inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)),
                        Drive::locked(), 20.0, 1e-7);
@@ -323,13 +332,14 @@ std::vector<Row> jump_rows() {
     const ArmHistory history = multibody::simulate(run);
     const double usable = history.report.usable() ? 0.0 : not_computed;
     const std::string name = fmt::format("10 N m on a literal jump of Table 2, ramp of {:g} deg: ", w / degree);
-    rows.push_back(arm_row(name + "deflection at rest", "deg", "Filippov: at the jump", 0.04,
-                           history.samples.back().deflection[0] / degree + usable, ErrorKind::absolute,
-                           0.5 * w / degree));
-    rows.push_back(arm_row(name + "torque at rest", "N m", "the load", 10.0,
-                           history.samples.back().joint_torque[0] + usable, ErrorKind::relative, 1e-3));
-    rows.push_back(arm_row(name + "integrator's steps in 20 s", "", "no thrashing", 0.0,
-                           static_cast<double>(history.statistics.steps) + usable, ErrorKind::absolute, 10000.0));
+    rows.push_back(arm_row(name + "deflection at rest", "deg", "Filippov: at the jump", Kind::closed_form,
+                           at_jump / degree, history.samples.back().deflection[0] / degree + usable,
+                           Limit::relative(0.5 * w / at_jump)));
+    rows.push_back(arm_row(name + "torque at rest", "N m", "the load", Kind::closed_form, 10.0,
+                           history.samples.back().joint_torque[0] + usable, Limit::relative(1e-3)));
+    rows.push_back(arm_row(name + "integrator's steps in 20 s", "", "no thrashing", Kind::convergence, 0.0,
+                           static_cast<double>(history.statistics.steps) + usable,
+                           Limit::absolute(10000.0, "a bound of the work: any number of steps below it is fine")));
   }
   return rows;
 }
@@ -353,19 +363,21 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
     for (std::size_t i = 0; i < 4; ++i) {
       const bool there = history.report.usable() && i < found.size() && i < expected.size();
       const std::string name = fmt::format("JEMRMS joint step of 0.5 deg, swing {}: ", i + 1);
-      rows.push_back(arm_row(name + "end", "s", "Table 2 by Runge and Kutta", there ? expected[i].end : 1.0,
-                             there ? found[i].end : not_computed, ErrorKind::relative, 1e-3));
-      rows.push_back(arm_row(name + "frequency", "Hz", "Table 2 by Runge and Kutta",
+      rows.push_back(arm_row(name + "end", "s", "Table 2 by Runge and Kutta", Kind::independent_code,
+                             there ? expected[i].end : 1.0, there ? found[i].end : not_computed,
+                             Limit::relative(1e-3)));
+      rows.push_back(arm_row(name + "frequency", "Hz", "Table 2 by Runge and Kutta", Kind::independent_code,
                              there ? 0.5 / (expected[i].end - expected[i].begin) : 1.0,
-                             there ? found[i].frequency() : not_computed, ErrorKind::relative, 1e-3));
-      rows.push_back(arm_row(name + "peak", "deg", "Table 2 by Runge and Kutta", there ? expected[i].peak : 1.0,
-                             there ? found[i].peak / degree : not_computed, ErrorKind::relative, 1e-3));
+                             there ? found[i].frequency() : not_computed, Limit::relative(1e-3)));
+      rows.push_back(arm_row(name + "peak", "deg", "Table 2 by Runge and Kutta", Kind::independent_code,
+                             there ? expected[i].peak : 1.0, there ? found[i].peak / degree : not_computed,
+                             Limit::relative(1e-3)));
     }
     const bool there = !found.empty() && found.size() == expected.size();
     rows.push_back(arm_row(
-        "JEMRMS joint step: last frequency over the first", "", "Table 2 by Runge and Kutta",
+        "JEMRMS joint step: last frequency over the first", "", "Table 2 by Runge and Kutta", Kind::independent_code,
         there ? (expected[0].end - expected[0].begin) / (expected.back().end - expected.back().begin) : 1.0,
-        there ? found.back().frequency() / found.front().frequency() : not_computed, ErrorKind::relative, 5e-3));
+        there ? found.back().frequency() / found.front().frequency() : not_computed, Limit::relative(5e-3)));
   }
   // All six joints on Table 2 as printed: loads hold joints at the jump for a while.
   for (multibody::ElasticJoint& joint : arm.arm.joints)
@@ -376,16 +388,18 @@ std::vector<Row> joint_step_rows(const std::filesystem::path& arms) {
     run.tolerances.coordinate = run.tolerances.rate = 1e-8;
     const ArmHistory history = multibody::simulate(run);
     const std::string name = fmt::format("literal Table 2 at all six joints, step of joint {}: ", k + 1);
-    rows.push_back(arm_row(name + "time reached", "s", "to the end", 60.0, history.samples.back().time,
-                           ErrorKind::absolute, 1e-9));
-    rows.push_back(arm_row(name + "events in 60 s", "", "no thrashing", 0.0, static_cast<double>(history.events.size()),
-                           ErrorKind::absolute, 2000.0));
-    rows.push_back(arm_row(name + "steps an event", "", "no thrashing", 0.0,
+    rows.push_back(arm_row(name + "time reached", "s", "to the end", Kind::convergence, 60.0,
+                           history.samples.back().time, Limit::relative(1e-11)));
+    rows.push_back(arm_row(name + "events in 60 s", "", "no thrashing", Kind::convergence, 0.0,
+                           static_cast<double>(history.events.size()),
+                           Limit::absolute(2000.0, "a bound of the work: any number of events below it is fine")));
+    rows.push_back(arm_row(name + "steps an event", "", "no thrashing", Kind::convergence, 0.0,
                            static_cast<double>(history.statistics.steps) /
                                std::max<double>(1.0, static_cast<double>(history.events.size())),
-                           ErrorKind::absolute, 100.0));
+                           Limit::absolute(100.0, "a bound of the work: any number of steps below it is fine")));
     rows.push_back(
-        arm_row(name + "energy balance", "", "conservation", 0.0, history.energy_error, ErrorKind::absolute, 1e-3));
+        arm_row(name + "energy balance", "", "conservation", Kind::closed_form, 0.0, history.energy_error,
+                Limit::absolute(1e-3, "zero reference; the value is a share of the largest energy or work")));
   }
   return rows;
 }
@@ -404,11 +418,14 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
     const double away = (history.samples.back().state.q - history.samples.front().state.q).norm() + usable;
     if (hold == scenario::Hold::as_described) {
       rows.push_back(arm_row("SSRMS held by its servos, 60 s after 200 N s at the tip: joints away", "rad",
-                             "comes back", 0.0, away, ErrorKind::absolute, 1e-3));
+                             "comes back", Kind::closed_form, 0.0, away,
+                             Limit::absolute(1e-3, "zero reference; the angles of the arm's pose are about a radian")));
     }
-    rows.push_back(arm_row(fmt::format("SSRMS {} after 200 N s at the tip: energy balance",
-                                       hold == scenario::Hold::limp ? "limp" : "held"),
-                           "", "conservation", 0.0, history.energy_error + usable, ErrorKind::absolute, 1e-4));
+    rows.push_back(
+        arm_row(fmt::format("SSRMS {} after 200 N s at the tip: energy balance",
+                            hold == scenario::Hold::limp ? "limp" : "held"),
+                "", "conservation", Kind::closed_form, 0.0, history.energy_error + usable,
+                Limit::absolute(1e-4, "zero reference; the value is a share of the largest energy or work")));
   }
   // Limp without friction. A push much shorter than the gears' periods moves the links alone: E = p H^-1 p/2, p = J^T P;
   // when the gears have come to rest links and motors turn together: E = p (H + B)^-1 p/2.
@@ -434,9 +451,11 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
   }
   const double usable = history.report.usable() ? 0.0 : not_computed;
   rows.push_back(arm_row("SSRMS limp without friction, 0.58 N s in 10 us at the tip: work of the push", "J",
-                         "p H^-1 p/2", links, history.samples.back().work.loads + usable, ErrorKind::relative, 1e-3));
-  rows.push_back(arm_row("the same 30 s later: energy left", "J", "p (H + B)^-1 p/2", 0.5 * p.dot(mass.ldlt().solve(p)),
-                         history.samples.back().energy + usable, ErrorKind::relative, 1e-2));
+                         "p H^-1 p/2, H of this code", Kind::closed_form, links,
+                         history.samples.back().work.loads + usable, Limit::relative(1e-3)));
+  rows.push_back(arm_row("the same 30 s later: energy left", "J", "p (H + B)^-1 p/2, H of this code", Kind::closed_form,
+                         0.5 * p.dot(mass.ldlt().solve(p)), history.samples.back().energy + usable,
+                         Limit::relative(1e-2)));
   return rows;
 }
 

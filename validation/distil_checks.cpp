@@ -77,7 +77,8 @@ std::vector<Row> published_rows() {
          fmt::format("quadratic of the traced wire at s = {:g} mm: rms to the published one over its scatter, "
                      "at most 1",
                      1e3 * law.position),
-         "", "Abiko et al., Table 4", 0.0, std::sqrt(apart) / scatter, ErrorKind::absolute, 1.0});
+         "", "Abiko et al., Table 4", Kind::published_measurement, 0.0, std::sqrt(apart) / scatter,
+         Limit::absolute(1.0, "an upper bound; the value is a multiple of the scatter of the published readings")});
     stiffness.push_back(force.back() / recorded_range);
     double falls = 0.0;
     for (std::size_t i = 1; i < d.size(); ++i) {
@@ -86,11 +87,13 @@ std::vector<Row> published_rows() {
     rows.push_back(
         {group,
          fmt::format("larger penetration, larger stiffness at s = {:g} mm: points that fall", 1e3 * law.position), "",
-         "Abiko et al., section 4", 0.0, falls, ErrorKind::absolute, 0.5});
+         "Abiko et al., section 4", Kind::published_measurement, 0.0, falls,
+         Limit::absolute(0.5, "a number of points, of which there should be none")});
   }
   const bool ordered = stiffness[0] > stiffness[1] && stiffness[1] > stiffness[2];
   rows.push_back({group, "stiffness falls from s = 40 over 65 to 90 mm at 4 mm (1: yes)", "",
-                  "Abiko et al., Table 4 and Fig. 11", 1.0, ordered ? 1.0 : 0.0, ErrorKind::absolute, 0.5});
+                  "Abiko et al., Table 4 and Fig. 11", Kind::published_measurement, 1.0, ordered ? 1.0 : 0.0,
+                  Limit::relative(0.5)});
   return rows;
 }
 
@@ -124,9 +127,11 @@ std::vector<Row> table_rows() {
   }
   const double range = built.loading_error.force_range;
   return {{"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force", "",
-           "full wire, solved anew on a finer mesh", 0.0, worst / range, ErrorKind::absolute, 0.005},
+           "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / range,
+           Limit::absolute(0.005, "zero reference; the value is a share of the range of the force")},
           {"distilled laws", "the same over the bound that the table states", "",
-           "full wire, solved anew on a finer mesh", 0.0, worst / built.loading_error.bound, ErrorKind::absolute, 1.0}};
+           "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / built.loading_error.bound,
+           Limit::absolute(1.0, "an upper bound; the value is a share of the bound that the table states")}};
 }
 
 std::vector<Row> closed_form_rows() {
@@ -137,17 +142,17 @@ std::vector<Row> closed_form_rows() {
   const auto exact = coupling::stretched_wire_law(middle);
   const auto linear = coupling::stretched_wire_linearised(middle);
   const std::string honda = "Honda et al., eqs 1 and 2, evaluated by hand";
-  rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, 60810.0, linear->stiffness(p, 1e-3),
-                  ErrorKind::relative, 1e-4});  // printed to four digits
-  rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, 1.068,
-                  exact->force(p, 1e-3) / linear->force(p, 1e-3), ErrorKind::absolute, 5e-4});
-  rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda, 1.74,
-                  exact->force(p, 1e-2) / linear->force(p, 1e-2), ErrorKind::absolute, 5e-3});
+  rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, Kind::closed_form, 60810.0,
+                  linear->stiffness(p, 1e-3), Limit::relative(1e-4)});  // printed to four digits
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, Kind::closed_form, 1.068,
+                  exact->force(p, 1e-3) / linear->force(p, 1e-3), Limit::relative(4.6e-4)});
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda, Kind::closed_form, 1.74,
+                  exact->force(p, 1e-2) / linear->force(p, 1e-2), Limit::relative(2.8e-3)});
   for (const double s : {0.04, 0.065, 0.09}) {
     rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s), "N/m",
-                    "w'''' - m^2 w'' = 0 on both sides, solved by itself",
+                    "w'''' - m^2 w'' = 0 on both sides, solved by itself", Kind::closed_form,
                     tensioned_clamped_stiffness(0.04796, 50.0, 0.175, s),
-                    coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, ErrorKind::relative, 1e-9});
+                    coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, Limit::relative(1e-9)});
   }
   return rows;
 }
@@ -178,29 +183,33 @@ std::vector<Row> snare_rows() {
     return path.points.back().force.dot(u) / u.squaredNorm();
   };
   const double x = stiffness({1e-5, 0.0, 0.0});
-  rows.push_back({group, "stiffness in y over that in x", "", "three wires at 120 degrees", 1.0,
-                  stiffness({0.0, 1e-5, 0.0}) / x, ErrorKind::absolute, 0.01});
+  rows.push_back({group, "stiffness in y over that in x", "", "three wires at 120 degrees", Kind::closed_form, 1.0,
+                  stiffness({0.0, 1e-5, 0.0}) / x, Limit::relative(0.01)});
   for (const int axis : {0, 1, 2}) {
     const char* name = axis == 0 ? "x" : axis == 1 ? "y" : "z";
     const reduction::JointCycle cycle = reduction::cycle_snare(snare, axis, axis == 2 ? 0.010 : 0.003, 120);
     if (!cycle.report.usable()) throw std::runtime_error(cycle.report.message);
     // The slip between two points counts as one straight step.
     rows.push_back({group, fmt::format("{}: dissipation over the loop's area", name), "",
-                    "energy balance of a closed cycle", 1.0, cycle.dissipated / cycle.loop, ErrorKind::absolute,
-                    0.005});
+                    "energy balance of a closed cycle", Kind::closed_form, 1.0, cycle.dissipated / cycle.loop,
+                    Limit::relative(0.005)});
     const double width = cycle.half_width / cycle.force_range;
     if (axis < 2) {
-      rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper, 1.0, cycle.linear_r2,
-                      ErrorKind::absolute, 0.05});
+      rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper,
+                      Kind::published_measurement, 1.0, cycle.linear_r2, Limit::relative(0.05)});
       rows.push_back({group, fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "",
-                      paper, 0.0, width, ErrorKind::absolute, 0.1});
+                      paper, Kind::published_measurement, 0.0, width,
+                      Limit::absolute(0.1, "an upper bound for \"slight\"; the value is a share of the force")});
     } else {
+      rows.push_back({group, "z: R^2 of a straight line, not linear", "", paper, Kind::published_measurement, 0.0,
+                      cycle.linear_r2,
+                      Limit::absolute(0.8, "an upper bound for \"not linear\"; R^2 is a share of the variance")});
+      rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper,
+                      Kind::published_measurement, 0.5, width, Limit::relative(0.2)});
       rows.push_back(
-          {group, "z: R^2 of a straight line, not linear", "", paper, 0.0, cycle.linear_r2, ErrorKind::absolute, 0.8});
-      rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper, 0.5, width,
-                      ErrorKind::absolute, 0.1});
-      rows.push_back({group, "z: rms error of constant friction over the force", "", paper, 0.0,
-                      cycle.rms_error / cycle.force_range, ErrorKind::absolute, 0.05});
+          {group, "z: rms error of constant friction over the force", "", paper, Kind::published_measurement, 0.0,
+           cycle.rms_error / cycle.force_range,
+           Limit::absolute(0.05, "an upper bound for \"constant friction\"; the value is a share of the force")});
     }
   }
   return rows;

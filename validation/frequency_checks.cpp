@@ -27,9 +27,9 @@ using Eigen::VectorXd;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-Row frequency_row(const std::string& name, const std::string& unit, const std::string& source, double reference,
-                  double value, ErrorKind kind, double limit) {
-  return {"capture", name, unit, source, reference, value, kind, limit};
+Row frequency_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind,
+                  double reference, double value, const Limit& limit) {
+  return {"capture", name, unit, source, kind, reference, value, limit};
 }
 
 /// Exponents [1/s] of the sum of decaying oscillations that signals (channels x samples), `interval` [s] apart, consist of: the shift between two
@@ -58,7 +58,8 @@ struct Watch {
   std::function<VectorXd(const MotionSample&)> see;
 };
 
-/// What a pulse makes of a motion from a state on: with it less without it, every column a time.
+/// What a pulse makes of a motion from a state on, every column a time: half the difference of a pulse and its opposite, without the terms
+/// that go with the square of the pulse. With them the swing of one period a record, damped by 8.5e-4, appears damped by 3.3e-3.
 MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState& state, coupling::FrameLoad load,
                 const Watch& watch) {
   coupling::MotionOptions options = asked.options;
@@ -71,7 +72,15 @@ MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState&
   options.max_order = 5;
   coupling::MotionState from = state;
   from.sums.samples = std::lround(state.time / watch.every);  // outputs so far, by the new interval
-  const auto run = [&](const coupling::Motion& motion) {
+  load.times = {state.time, state.time + 0.5 * watch.pulse, state.time + watch.pulse};
+  const Eigen::Vector3d force = load.forces.col(0), moment = load.moments.col(0);
+  const auto run = [&](double sign) {
+    load.forces = Eigen::Matrix3Xd::Zero(3, 3);
+    load.moments = Eigen::Matrix3Xd::Zero(3, 3);
+    load.forces.col(1) = sign * force;
+    load.moments.col(1) = sign * moment;
+    coupling::Motion motion = asked.motion;
+    motion.loads.push_back(load);
     std::vector<VectorXd> seen;
     const coupling::MotionResult result = coupling::simulate(
         motion, options,
@@ -82,25 +91,27 @@ MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState&
         &from);
     return result.report.usable() ? seen : std::vector<VectorXd>{};
   };
-  coupling::Motion pushed = asked.motion;
-  load.times = {state.time, state.time + 0.5 * watch.pulse, state.time + watch.pulse};
-  const Eigen::Vector3d force = load.forces.col(0), moment = load.moments.col(0);
-  load.forces = Eigen::Matrix3Xd::Zero(3, 3);
-  load.moments = Eigen::Matrix3Xd::Zero(3, 3);
-  load.forces.col(1) = force;
-  load.moments.col(1) = moment;
-  pushed.loads.push_back(load);
-  const std::vector<VectorXd> with = run(pushed), without = run(asked.motion);
-  const std::size_t count = std::min(with.size(), without.size());
+  const std::vector<VectorXd> there = run(1.0), back = run(-1.0);
+  const std::size_t count = std::min(there.size(), back.size());
   if (count == 0) return {};
-  MatrixXd difference(with[0].size(), static_cast<Index>(count));
-  for (std::size_t k = 0; k < count; ++k) difference.col(static_cast<Index>(k)) = with[k] - without[k];
+  MatrixXd difference(there[0].size(), static_cast<Index>(count));
+  for (std::size_t k = 0; k < count; ++k) difference.col(static_cast<Index>(k)) = 0.5 * (there[k] - back[k]);
   return difference;
 }
 
+/// Largest relative errors of a mode.
+struct Agreement {
+  double frequency, damping;
+};
+// A held visitor swings linearly: the parts of the third order in the pulse and the integrator's errors stay.
+constexpr Agreement linear{1e-4, 1e-3};
+// In strings the state drifts while it is watched, and the answer depends on the size of the pulse: 2 and 2.5 percent of the damping at a
+// third of the pulse and at the whole.
+constexpr Agreement drifting{0.01, 0.05};
+
 /// A row for each of these frequencies [Hz] by eigenvalues: that of the answer which is nearest.
 void compare(const std::string& what, const std::vector<coupling::MotionMode>& modes, double lowest, double highest,
-             const MatrixXd& signals, const Watch& watch, std::vector<Row>& rows) {
+             const MatrixXd& signals, const Watch& watch, const Agreement& agreement, std::vector<Row>& rows) {
   Eigen::VectorXcd found;
   if (signals.size() > 0) found = exponents(signals, watch.every, watch.keep);
   for (const coupling::MotionMode& m : modes) {
@@ -111,10 +122,10 @@ void compare(const std::string& what, const std::vector<coupling::MotionMode>& m
     for (const std::complex<double>& lambda : found)
       if (!(std::abs(nearest - expected) <= std::abs(lambda - expected))) nearest = lambda;
     const std::string name = fmt::format("{}, {} swings: ", what, m.shares.empty() ? "all" : m.shares[0].first);
-    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", std::abs(nearest) / two_pi,
-                                 m.frequency, ErrorKind::relative, 0.01));
-    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated",
-                                 -nearest.real() / std::abs(nearest), m.damping, ErrorKind::absolute, 0.01));
+    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", Kind::convergence,
+                                 std::abs(nearest) / two_pi, m.frequency, Limit::relative(agreement.frequency)));
+    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated", Kind::convergence,
+                                 -nearest.real() / std::abs(nearest), m.damping, Limit::relative(agreement.damping)));
   }
 }
 
@@ -154,10 +165,10 @@ std::vector<Row> held_frequency_rows(const std::filesystem::path& data) {
       answer(run.asked, run.result.last,
              push_on_body(run.asked.motion, "htv", {200.0, 150.0, 100.0}, {5000.0, 3000.0, -4000.0}), watch);
   std::vector<Row> rows;
-  compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, rows);
+  compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, linear, rows);
   if (!run.result.report.usable() || rows.empty())
     rows.push_back(frequency_row("visitor of 16 t held on the arm, modes below 1 Hz", "", "six freedoms of the visitor",
-                                 6.0, not_computed, ErrorKind::absolute, 0.5));
+                                 Kind::closed_form, 6.0, not_computed, Limit::relative(0.1)));
   return rows;
 }
 
@@ -173,7 +184,7 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
   compare("visitor of 16 t in strings", modes, 2.5, 4.0,
           answer(run.asked, run.result.last,
                  push_on_body(run.asked.motion, "htv", {50.0, 50.0, 50.0}, {500.0, 300.0, -400.0}), slow),
-          slow, rows);
+          slow, drifting, rows);
   const coupling::MotionArm& arm = run.asked.motion.arms[0];
   const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0, arm.arm.tree.find_frame("snare::turning")};
   const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5, [](const MotionSample& s) -> VectorXd {
@@ -181,7 +192,8 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
                      return (VectorXd(2) << a.q[a.q.size() - 1], a.v[a.v.size() - 1]).finished();
                    }};
   compare("visitor of 16 t in strings", modes, 200.0, 600.0,
-          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, rows);
+          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, drifting,
+          rows);
   return rows;
 }
 
@@ -209,12 +221,13 @@ std::vector<Row> bushing_frequency_rows(const std::filesystem::path& data) {
     return std::log(roll(joints, 1.05 * K) / roll(joints, K / 1.05)) / (2.0 * std::log(1.05));
   };
   const std::string name = "roll of a held visitor of 16 t, joints of ";
-  return {frequency_row(name + "1e12 N m/rad", "Hz", "(K_GF/I)^1/2/(2 pi)", std::sqrt(K / I) / two_pi, roll(1e12, K),
-                        ErrorKind::relative, 1e-3),
-          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", 0.5, sensitivity(1e12),
-                        ErrorKind::absolute, 1e-3),
-          frequency_row(name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", 0.0,
-                        sensitivity(1e6), ErrorKind::absolute, 0.01)};
+  return {frequency_row(name + "1e12 N m/rad", "Hz", "(K_GF/I)^1/2/(2 pi)", Kind::closed_form,
+                        std::sqrt(K / I) / two_pi, roll(1e12, K), Limit::relative(1e-3)),
+          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", Kind::closed_form, 0.5,
+                        sensitivity(1e12), Limit::relative(2e-3)),
+          frequency_row(name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", Kind::closed_form,
+                        0.0, sensitivity(1e6),
+                        Limit::absolute(0.01, "zero reference; the exponent is 1/2 where the bushing gives alone"))};
 }
 
 std::vector<Check> frequency_checks(const std::filesystem::path& data) {

@@ -110,8 +110,9 @@ std::vector<Row> incline_rows() {
   motion.gravity = tilted_gravity(0.9 * friction_angle);
   // The block rings on its bristle at 280 Hz and decays by exp(-15 t/s): after a second 3e-7 of 1 um is left.
   const Travel rest = travel(motion, 1.0, 11.0);
-  rows.push_back({"friction", "block at 0.9 of the friction angle, creep in 10 s", "m", "Coulomb: rest", 0.0,
-                  std::abs(rest.late - rest.early), ErrorKind::absolute, 1e-9});
+  rows.push_back({"friction", "block at 0.9 of the friction angle, creep in 10 s", "m", "Coulomb: rest",
+                  Kind::closed_form, 0.0, std::abs(rest.late - rest.early),
+                  Limit::absolute(1e-9, "zero reference; a thousandth of the displacement of the bristle")});
   // The smooth law carries mu_static cos(a) m g only while it slides at static_speed x, x (3 - x^2)/2 = tan(a)/mu_s.
   {
     motion.contacts[0].friction.law = coupling::ContactFriction::smooth;
@@ -119,8 +120,8 @@ std::vector<Row> incline_rows() {
     for (int k = 0; k < 50; ++k)
       x -= (0.5 * x * (3.0 - x * x) - std::tan(0.9 * friction_angle) / 0.3) / (1.5 * (1.0 - x * x));
     const Travel creeping = travel(motion, 0.1, 1.1);
-    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic", 0.01 * x,
-                    creeping.late - creeping.early, ErrorKind::relative, 1e-3});
+    rows.push_back({"friction", "the same with the smooth law, creep in 1 s", "m", "root of its cubic",
+                    Kind::closed_form, 0.01 * x, creeping.late - creeping.early, Limit::relative(1e-3)});
   }
   for (const double angle : {20.0 * degree, 35.0 * degree}) {
     motion.contacts[0].friction = two_coefficients(0.3, 0.1);
@@ -133,8 +134,8 @@ std::vector<Row> incline_rows() {
       return false;
     });
     rows.push_back({"friction", fmt::format("acceleration down {:.0f} degrees", angle / degree), "m/s^2",
-                    "g (sin a - mu cos a)", g * (std::sin(angle) - 0.1 * std::cos(angle)),
-                    r.report.usable() ? (late - early) / 0.1 : not_computed, ErrorKind::relative, 1e-4});
+                    "g (sin a - mu cos a)", Kind::closed_form, g * (std::sin(angle) - 0.1 * std::cos(angle)),
+                    r.report.usable() ? (late - early) / 0.1 : not_computed, Limit::relative(1e-4)});
   }
   return rows;
 }
@@ -150,13 +151,14 @@ std::vector<Row> stopping_block_rows() {
   const double back = motion.contacts[0].friction.bristle_displacement;
   const Travel t = travel(motion, 1.0, 11.0);
   std::vector<Row> rows;
-  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give", path - back,
-                  t.late, ErrorKind::relative, 1e-4});
-  rows.push_back({"friction", "and then moves in 10 s by", "m", "rest", 0.0, std::abs(t.late - t.early),
-                  ErrorKind::absolute, 1e-9});
+  rows.push_back({"friction", "block at 0.2 m/s, way to rest", "m", "v^2/(2 mu g) less the bristle's give",
+                  Kind::closed_form, path - back, t.late, Limit::relative(1e-4)});
+  rows.push_back({"friction", "and then moves in 10 s by", "m", "rest", Kind::closed_form, 0.0,
+                  std::abs(t.late - t.early),
+                  Limit::absolute(1e-9, "zero reference; a thousandth of the displacement of the bristle")});
   const double energy = 0.5 * speed * speed;
-  rows.push_back({"friction", "and has turned into heat, of its kinetic energy", "", "conservation", 1.0,
-                  t.result.energy.dissipated / energy, ErrorKind::absolute, 1e-3});
+  rows.push_back({"friction", "and has turned into heat, of its kinetic energy", "", "conservation", Kind::closed_form,
+                  1.0, t.result.energy.dissipated / energy, Limit::relative(1e-3)});
   return rows;
 }
 
@@ -181,8 +183,8 @@ std::vector<Row> rolling_rows() {
   });
   const double expected = g * std::sin(angle) / (1.0 + inertia / (radius * radius));
   const double found = r.report.usable() && sticks ? (late - early) / 0.05 : not_computed;
-  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))", expected,
-           found, ErrorKind::relative, 1e-3}};
+  return {{"friction", "cylinder rolls down a wire, acceleration", "m/s^2", "g sin a / (1 + I/(m R^2))",
+           Kind::closed_form, expected, found, Limit::relative(1e-3)}};
 }
 
 // A mass on a belt, held by a spring K: seen from the belt, the spring's far end moves at v. In the slip the mass swings
@@ -238,14 +240,14 @@ std::vector<Row> stick_slip_rows() {
   }
   const bool fine = r.report.usable() && slips.size() == 4;
   const double nothing = not_computed;
-  return {{"friction", "mass on a belt, period of stick and slip", "s", "piecewise linear oscillator", period,
-           fine ? (slips[3] - slips[0]) / 3.0 : nothing, ErrorKind::relative, 1e-3},
-          {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", amplitude,
-           fine ? 0.5 * (most - least) : nothing, ErrorKind::relative, 1e-3},
-          {"friction", "mass on a belt, heat", "J", "mu_d N times the way slid", sliding * g * travel,
-           fine ? heat : nothing, ErrorKind::relative, 1e-3},
-          {"friction", "mass on a belt, heat", "J", "area of force over way", area, fine ? heat : nothing,
-           ErrorKind::relative, 2e-3}};
+  return {{"friction", "mass on a belt, period of stick and slip", "s", "piecewise linear oscillator",
+           Kind::closed_form, period, fine ? (slips[3] - slips[0]) / 3.0 : nothing, Limit::relative(1e-3)},
+          {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", Kind::closed_form, amplitude,
+           fine ? 0.5 * (most - least) : nothing, Limit::relative(1e-3)},
+          {"friction", "mass on a belt, heat", "J", "mu_d N times the way slid", Kind::closed_form,
+           sliding * g * travel, fine ? heat : nothing, Limit::relative(1e-3)},
+          {"friction", "mass on a belt, heat", "J", "area of force over way", Kind::closed_form, area,
+           fine ? heat : nothing, Limit::relative(2e-3)}};
 }
 
 namespace {
@@ -322,7 +324,9 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
     rows.push_back(
         {"friction",
          fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at", d / mm),
-         "", "static wire", curve.points[k].force / range, force / range, ErrorKind::absolute, 1e-3});
+         "", "static wire", Kind::convergence, curve.points[k].force / range, force / range,
+         Limit::absolute(1e-3,
+                         "a share of the largest force of the push: on the way back the force passes through zero")});
   }
   return rows;
 }

@@ -80,9 +80,9 @@ double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected
 /// Material damping that quiets what the step does not resolve and moves a frequency f by (pi f tau)^2/2, below 1e-6.
 constexpr double faint = 1e-7;
 
-Row frequency_row(const std::string& group, const std::string& name, const std::string& source, double reference,
-                  double value) {
-  return {group, name, "Hz", source, reference, value, ErrorKind::relative, 1e-3};
+Row frequency_row(const std::string& group, const std::string& name, const std::string& source, Kind kind,
+                  double reference, double value) {
+  return {group, name, "Hz", source, kind, reference, value, Limit::relative(1e-3)};
 }
 
 }  // namespace
@@ -105,7 +105,8 @@ std::vector<Row> clamped_frequency_rows() {
     }
     const double expected = b * b / (span * span) * std::sqrt(w.bending_stiffness() / w.mass_per_length()) / (2.0 * pi);
     rows.push_back(frequency_row("free vibration", fmt::format("clamped beam, mode {}", k + 1), "Euler-Bernoulli",
-                                 expected, measured_frequency(straight(rod), shape, expected, 0.01)));
+                                 Kind::closed_form, expected,
+                                 measured_frequency(straight(rod), shape, expected, 0.01)));
   }
   return rows;
 }
@@ -126,7 +127,7 @@ std::vector<Row> tensioned_frequency_rows() {
     const double mass = w.mass_per_length() / stretch;
     const double expected = number * std::sqrt((tension + w.bending_stiffness() * number * number) / mass) / (2.0 * pi);
     rows.push_back(frequency_row("free vibration", fmt::format("pinned beam under 50 N, mode {}", k),
-                                 "Euler-Bernoulli with tension", expected,
+                                 "Euler-Bernoulli with tension", Kind::closed_form, expected,
                                  measured_frequency(straight(rod), shape, expected, 0.01)));
   }
   return rows;
@@ -161,7 +162,7 @@ std::vector<Row> buckled_frequency_rows() {
     Motion quiet = motion;
     quiet.wires[0].rod.damping.bending_time = quiet.wires[0].rod.damping.axial_time = faint;
     rows.push_back(frequency_row("free vibration", fmt::format("buckled wire, mode {} in its plane", m + 1),
-                                 "eigenvalue of the static tangent", expected,
+                                 "eigenvalue of the static tangent", Kind::convergence, expected,
                                  measured_frequency(quiet, shape, expected, 0.001)));
   }
   return rows;
@@ -176,7 +177,8 @@ std::vector<Row> axial_wave_rows() {
   const double speed = std::sqrt(w.axial_stiffness() / w.mass_per_length());
   const double expected = speed / (2.0 * span);
   const double f = measured_frequency(straight(rod), shape, expected, 0.01);
-  return {{"waves", "speed of axial waves", "m/s", "sqrt(EA/m)", speed, 2.0 * span * f, ErrorKind::relative, 1e-3}};
+  return {{"waves", "speed of axial waves", "m/s", "sqrt(EA/m)", Kind::closed_form, speed, 2.0 * span * f,
+           Limit::relative(1e-3)}};
 }
 
 std::vector<Row> gravity_rows() {
@@ -200,7 +202,7 @@ std::vector<Row> gravity_rows() {
       }
       const double expected = 0.5 * roots[k] * std::sqrt(g / 0.5) / (2.0 * pi);
       rows.push_back(frequency_row("gravity", fmt::format("hanging chain, mode {}", k + 1),
-                                   "Bernoulli: J0(2 w sqrt(L/g)) = 0", expected,
+                                   "Bernoulli: J0(2 w sqrt(L/g)) = 0", Kind::closed_form, expected,
                                    measured_frequency(motion, shape, expected, 1e-2, 2)));
     }
   }
@@ -233,7 +235,7 @@ std::vector<Row> gravity_rows() {
     });
     if (!result.report.usable()) passed = not_computed;
     rows.push_back({"gravity", "falling rod, time from the horizontal to the vertical", "s",
-                    "physical pendulum, elliptic integral", quarter, passed, ErrorKind::relative, 1e-3});
+                    "physical pendulum, elliptic integral", Kind::closed_form, quarter, passed, Limit::relative(1e-3)});
   }
   return rows;
 }
@@ -281,8 +283,8 @@ std::vector<Row> slow_push_rows() {
   if (!result.report.usable()) last = not_computed;
   std::vector<Row> rows;
   const double reference = curve.points.size() == 2 ? curve.points[1].force : not_computed;
-  rows.push_back({"quasi-static limit", "ball at 5 mm/s, force at 2 mm", "N", "static curve of a cylinder", reference,
-                  last, ErrorKind::relative, 1e-3});
+  rows.push_back({"quasi-static limit", "ball at 5 mm/s, force at 2 mm", "N", "static curve of a cylinder",
+                  Kind::convergence, reference, last, Limit::relative(1e-3)});
   return rows;
 }
 
@@ -330,20 +332,22 @@ std::vector<Row> impact_rows() {
   options.duration = 0.04;
   const double energy = 0.5 * 8.9 * 0.01;
   const Impact usual = impact(60, options, 0.0);
-  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "", "conservation", 0.0,
-                  usual.result.energy.integrator / energy, ErrorKind::absolute, 1e-3});
-  rows.push_back({"impact", "penetration", "m", "non-penetration", 0.0, usual.result.largest_penetration,
-                  ErrorKind::absolute, 1e-6});
+  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "", "conservation",
+                  Kind::closed_form, 0.0, usual.result.energy.integrator / energy,
+                  Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
+  rows.push_back({"impact", "penetration", "m", "non-penetration", Kind::closed_form, 0.0,
+                  usual.result.largest_penetration, Limit::absolute(1e-6, "zero reference; the wire is 1.5 mm thick")});
   std::array<Impact, 3> meshes;
   constexpr std::array<int, 3> elements{50, 100, 200};
   for (std::size_t k = 0; k < 3; ++k) meshes[k] = impact(elements[k], options, 1e-6);
   for (std::size_t k = 0; k < 2; ++k) {
     rows.push_back({"impact", fmt::format("impulse with {} elements", elements[k]), "N s", "with 200 elements",
-                    meshes[2].result.impulse[0].y(), meshes[k].result.impulse[0].y(), ErrorKind::relative, 5e-3});
+                    Kind::convergence, meshes[2].result.impulse[0].y(), meshes[k].result.impulse[0].y(),
+                    Limit::relative(5e-3)});
     rows.push_back({"impact", fmt::format("rebound velocity with {} elements", elements[k]), "m/s", "with 200 elements",
-                    meshes[2].velocity, meshes[k].velocity, ErrorKind::relative, 5e-3});
+                    Kind::convergence, meshes[2].velocity, meshes[k].velocity, Limit::relative(5e-3)});
     rows.push_back({"impact", fmt::format("rebound spin with {} elements", elements[k]), "rad/s", "with 200 elements",
-                    meshes[2].spin, meshes[k].spin, ErrorKind::relative, 5e-3});
+                    Kind::convergence, meshes[2].spin, meshes[k].spin, Limit::relative(5e-3)});
   }
   return rows;
 }

@@ -20,8 +20,9 @@ double relative_error(const identification::MotionStage& stage) {
   return stage.errors.empty() ? not_computed : stage.errors.front().relative;
 }
 
-Row yes(const std::string& group, const std::string& name, const std::string& source, bool value) {
-  return {group, name, "", source, 1.0, value ? 1.0 : 0.0, ErrorKind::absolute, 0.5};
+/// A row that asks whether something is so: 1 for yes.
+Row yes(const std::string& group, const std::string& name, const std::string& source, Kind kind, bool value) {
+  return {group, name, "", source, kind, 1.0, value ? 1.0 : 0.0, Limit::relative(0.5)};
 }
 
 bool names(const MotionTrace& trace, const std::string& effect) {
@@ -63,19 +64,21 @@ std::vector<Row> drive_rows(const std::filesystem::path& file, const std::filesy
   // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes by 0.05 % of the force.
   return {{group,
            "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of it)",
-           "", source, 0.17, relative_error(t.base), ErrorKind::absolute, 0.015},
+           "", source, Kind::published_computation, 0.17, relative_error(t.base), Limit::relative(0.088)},
           {group, "force with what was found, of the readings: at most as published with asymmetric friction", "",
-           source, 0.0, relative_error(t.final), ErrorKind::absolute, 0.0311},
-          yes(group, "dry friction is named first", source,
+           source, Kind::published_computation, 0.0, relative_error(t.final),
+           Limit::absolute(0.0311, "an upper bound: the published error, a share of the force")},
+          yes(group, "dry friction is named first", source, Kind::published_computation,
               !t.selected.empty() && t.selected.front().starts_with("joint_coulomb_friction (")),
-          yes(group, "asymmetry of the friction is named, and nothing else", source,
+          yes(group, "asymmetry of the friction is named, and nothing else", source, Kind::published_computation,
               t.selected.size() == 2 && (names(t, "joint_viscous_asymmetry") || names(t, "joint_friction_asymmetry"))),
-          yes(group, "partly explained: what is left is said", source,
+          yes(group, "partly explained: what is left is said", source, Kind::published_measurement,
               t.kind == identification::VerdictKind::partly_explained),
-          {group, "what is left of the force is no noise: its correlation with itself one cycle later", "", source, 1.0,
-           repeats(t, set), ErrorKind::absolute, 0.05},
-          {group, "position under its own control after over before, simulated: at most a half", "", source, 0.0,
-           after / before, ErrorKind::absolute, 0.5}};
+          {group, "what is left of the force is no noise: its correlation with itself one cycle later", "", source,
+           Kind::published_measurement, 1.0, repeats(t, set), Limit::relative(0.05)},
+          {group, "position under its own control after over before, simulated: at most a half", "", source,
+           Kind::published_measurement, 0.0, after / before,
+           Limit::absolute(0.5, "an upper bound of a ratio of two errors")}};
 }
 
 std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::filesystem::path& csv) {
@@ -85,17 +88,21 @@ std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::fil
   const MotionTrace t = identification::trace_records(set);
   const double declared = t.declared.heldout_rmse,
                last = t.with_partial ? t.with_partial->heldout_rmse : t.final.heldout_rmse;
-  return {
-      yes(group, "a constant loss is named, or helps without explaining", source, names(t, "joint_coulomb_friction")),
-      yes(group, "a quadratic loss is named, or helps without explaining", source, names(t, "joint_quadratic_drag")),
-      {group, "error of the parts held out over that of the authors' model: at most a half", "", source, 0.0,
-       last / declared, ErrorKind::absolute, 0.5}};
+  return {yes(group, "a constant loss is named, or helps without explaining", source, Kind::published_measurement,
+              names(t, "joint_coulomb_friction")),
+          yes(group, "a quadratic loss is named, or helps without explaining", source, Kind::published_measurement,
+              names(t, "joint_quadratic_drag")),
+          {group, "error of the parts held out over that of the authors' model: at most a half", "", source,
+           Kind::published_computation, 0.0, last / declared,
+           Limit::absolute(0.5, "an upper bound of a ratio of two errors")}};
 }
 
 /// What a flight was made with: data/records/flight.toml and flight_rods.toml.
 struct FlightTruth {
   const char *file, *how, *wire;  // key of the wire's stiffness
   double stiffness;               // in the unit of that key
+  Kind kind;                      // of the program that made the flight
+  const char* maker;
 };
 constexpr double made_gf = 9.3e7;        // N m/rad
 constexpr double made_ring_rate = 55.0;  // deg/s
@@ -118,7 +125,8 @@ bool not_identifiable(const MotionTrace& trace, const std::string& key) {
 
 std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTruth& truth) {
   const std::string group = "numbers of a capture from three rates of a flight";
-  const std::string source = "Honda et al. 2014, sections 4 and 5; its telemetry is not public";
+  const std::string source =
+      fmt::format("made with, by {}; the question of Honda et al. 2014, sections 4 and 5", truth.maker);
   const std::string name = std::string(", ") + truth.how;
   const MotionTrace t =
       identification::trace_records(identification::read_records(folder / truth.file), {.effects = false});
@@ -127,14 +135,15 @@ std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTr
   const auto* wire = number_of(t.base, truth.wire);
   double heldout = t.base.heldout.empty() ? not_computed : 0.0;
   for (const identification::ChannelError& e : t.base.heldout) heldout = std::max(heldout, e.rmse / e.sigma);
-  return {
-      {group, "stiffness of the fixture's attachment" + name, "N m/rad", source, made_gf, value_of(gf),
-       ErrorKind::relative, 0.01},
-      {group, "rate of the ring" + name, "deg/s", source, made_ring_rate, value_of(rate), ErrorKind::relative, 0.01},
-      yes(group, "its interval holds the stiffness of the wire" + name, source,
-          wire != nullptr && wire->lower && *wire->lower <= truth.stiffness && truth.stiffness <= *wire->upper),
-      {group, "second flight with the numbers of the first, over the noise" + name, "", source, 0.0, heldout,
-       ErrorKind::absolute, 3.0}};
+  return {{group, "stiffness of the fixture's attachment" + name, "N m/rad", source, truth.kind, made_gf, value_of(gf),
+           Limit::relative(0.01)},
+          {group, "rate of the ring" + name, "deg/s", source, truth.kind, made_ring_rate, value_of(rate),
+           Limit::relative(0.01)},
+          yes(group, "its interval holds the stiffness of the wire" + name, source, truth.kind,
+              wire != nullptr && wire->lower && *wire->lower <= truth.stiffness && truth.stiffness <= *wire->upper),
+          {group, "second flight with the numbers of the first, over the noise" + name, "", source, truth.kind, 0.0,
+           heldout,
+           Limit::absolute(3.0, "an upper bound; the value is a multiple of the standard deviation of the noise")}};
 }
 
 /// Until just behind the first touch a flight shows the ring's rate at most.
@@ -144,7 +153,7 @@ std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const Fl
   const auto* wire = number_of(t.base, truth.wire);
   return {yes("numbers of a capture from three rates of a flight",
               "0.2 s behind the first touch: the wire's stiffness is called not identifiable, its interval holds it",
-              "Honda et al. 2014: little effect in the early phase",
+              fmt::format("made by {}; Honda et al. 2014: little effect in the early phase", truth.maker), truth.kind,
               not_identifiable(t, truth.wire) && wire != nullptr && wire->lower && *wire->lower <= truth.stiffness &&
                   truth.stiffness <= *wire->upper)};
 }
@@ -152,7 +161,8 @@ std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const Fl
 /// Flights on an arm whose attachment gives, and on one that is rigid as declared: data/records/flight_attachment.toml.
 std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
   const std::string group = "an attachment of the arm that gives, traced in a flight";
-  const std::string source = "Honda et al. 2014, section 4.3: the amplitude in roll, the attachment taken as rigid";
+  const std::string source =
+      "made by snare simulate; the question of Honda et al. 2014, section 4.3: the amplitude in roll";
   constexpr double made = 1.0 / 1.25e6;  // rad/(N m)
   const MotionTrace soft =
       identification::trace_records(identification::read_records(folder / "flight_attachment.toml"));
@@ -161,11 +171,11 @@ std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
       {{"records[1].file", "\"flight_rigid_1.csv\""}, {"records[2].file", "\"flight_rigid_2.csv\""}}));
   const double found = value_of(number_of(soft.final, "bushings[attachment].rotational_compliance_rad_Nm"));
   return {
-      yes(group, "it is named, and nothing else, and all is explained", source,
+      yes(group, "it is named, and nothing else, and all is explained", source, Kind::convergence,
           soft.kind == identification::VerdictKind::explained &&
               soft.selected == std::vector<std::string>{"bushing_stiffness (attachment.rotational_stiffness_Nm_rad)"}),
-      {group, "what it gives", "rad/(N m)", source, made, found, ErrorKind::relative, 0.02},
-      yes(group, "where it is rigid nothing is named", source,
+      {group, "what it gives", "rad/(N m)", source, Kind::convergence, made, found, Limit::relative(0.02)},
+      yes(group, "where it is rigid nothing is named", source, Kind::convergence,
           rigid.kind == identification::VerdictKind::nothing_missing && rigid.selected.empty())};
 }
 
@@ -182,15 +192,16 @@ std::vector<Row> air_table_rows(const std::filesystem::path& folder) {
   const Eigen::VectorXd& measured = set.records[0].channels[0].values;
   const Eigen::VectorXd& simulated = lagging.declared.predictions.at(0).channels.at(0);
   const double found = value_of(number_of(lagging.final, "sensor_lag[force_N]"));
-  return {{group, "impulse as declared over that of the readings", "", source, 1.0, simulated.sum() / measured.sum(),
-           ErrorKind::absolute, 0.01},
+  return {{group, "impulse as declared over that of the readings", "", source, Kind::independent_code, 1.0,
+           simulated.sum() / measured.sum(), Limit::relative(0.01)},
           yes(group, "peak as declared is a tenth larger than that of the readings, or more", source,
-              simulated.maxCoeff() > 1.1 * measured.maxCoeff()),
+              Kind::independent_code, simulated.maxCoeff() > 1.1 * measured.maxCoeff()),
           yes(group, "the lag of the force sensor is named, and nothing else, and all is explained", source,
+              Kind::independent_code,
               lagging.kind == identification::VerdictKind::explained &&
                   lagging.selected == std::vector<std::string>{"sensor_lag (force_N)"}),
-          {group, "lag", "s", source, made, found, ErrorKind::relative, 0.01},
-          yes(group, "without a lag nothing is named", source,
+          {group, "lag", "s", source, Kind::independent_code, made, found, Limit::relative(0.01)},
+          yes(group, "without a lag nothing is named", source, Kind::independent_code,
               plain.kind == identification::VerdictKind::nothing_missing && plain.selected.empty())};
 }
 
@@ -211,10 +222,12 @@ std::vector<Check> record_checks(const std::filesystem::path& shipped, const std
                       there ? "" : fmt::format("the measured file {} is not in {}", one.csv, measured.string())});
   }
   const std::filesystem::path records = shipped / "records";
-  static constexpr FlightTruth full{"flight.toml", "full wires fitted by strings",
-                                    "snares[snare].wire.axial_stiffness_N", 6.0e4};
-  static constexpr FlightTruth rods{"flight_rods.toml", "rods by other equations",
-                                    "snares[snare].wire.rod.half_stiffness_N_m", 6.0e5};
+  static constexpr FlightTruth full{
+      "flight.toml",     "full wires fitted by strings",  "snares[snare].wire.axial_stiffness_N", 6.0e4,
+      Kind::convergence, "snare simulate with full wires"};
+  static constexpr FlightTruth rods{
+      "flight_rods.toml",     "rods by other equations",       "snares[snare].wire.rod.half_stiffness_N_m", 6.0e5,
+      Kind::independent_code, "tests/blind_records/capture.py"};
   checks.push_back({"a flight with full wires", [records] { return flight_rows(records, full); }, ""});
   checks.push_back({"a flight with turning rods", [records] { return flight_rows(records, rods); }, ""});
   checks.push_back({"an attachment that gives", [records] { return attachment_rows(records); }, ""});

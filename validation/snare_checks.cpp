@@ -20,9 +20,9 @@ using base::at;
 using coupling::MotionCarrier;
 using Eigen::Vector3d;
 
-Row snare_row(const std::string& name, const std::string& unit, const std::string& source, double reference,
-              double value, ErrorKind kind, double limit) {
-  return {"capture", name, unit, source, reference, value, kind, limit};
+Row snare_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind, double reference,
+              double value, const Limit& limit) {
+  return {"capture", name, unit, source, kind, reference, value, limit};
 }
 
 /// A machine that takes a point round the z axis: the mount of a wire, on no ring.
@@ -135,12 +135,14 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   // Contacts of the wires with the pin, which come first, or where laws stand for the wires alone.
   for (std::size_t k = 0; k < wires.size(); ++k) {
     const std::string name = fmt::format("ring as a joint, {} wires, {}: ", model, wires[k].name);
-    rows.push_back(snare_row(name + "tension", "N", source, coupling::end_tension(machines.last, k),
-                             coupling::end_tension(joint.last, k) + usable, ErrorKind::relative, 1e-4));
-    rows.push_back(snare_row(name + "peak force on the pin", "N", source, machines.result.peak_force[k],
-                             joint.result.peak_force[k] + usable, ErrorKind::relative, 1e-4));
-    rows.push_back(snare_row(name + "impulse on the pin", "N s", source, machines.result.impulse[k].norm(),
-                             joint.result.impulse[k].norm() + usable, ErrorKind::relative, 1e-4));
+    rows.push_back(snare_row(name + "tension", "N", source, Kind::convergence, coupling::end_tension(machines.last, k),
+                             coupling::end_tension(joint.last, k) + usable, Limit::relative(1e-4)));
+    rows.push_back(snare_row(name + "peak force on the pin", "N", source, Kind::convergence,
+                             machines.result.peak_force[k], joint.result.peak_force[k] + usable,
+                             Limit::relative(1e-4)));
+    rows.push_back(snare_row(name + "impulse on the pin", "N s", source, Kind::convergence,
+                             machines.result.impulse[k].norm(), joint.result.impulse[k].norm() + usable,
+                             Limit::relative(1e-4)));
   }
   return rows;
 }
@@ -162,13 +164,13 @@ std::vector<Row> bench_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   for (const double delay : {0.001, 0.002, 0.004}) {
     const std::string name = fmt::format("hardware in the loop, {:g} ms late, restitution ", 1e3 * delay);
-    rows.push_back(snare_row(name + "on a rigid arm", "", "exp(pi omega tau/2)",
+    rows.push_back(snare_row(name + "on a rigid arm", "", "exp(pi omega tau/2)", Kind::closed_form,
                              std::exp(0.5 * pi * std::sqrt(k / m) * delay), restitution(delay, true),
-                             ErrorKind::relative, 0.02));
+                             Limit::relative(0.02)));
     const double omega = std::sqrt(k * (1.0 / m + 1.0 / 50.0));
-    rows.push_back(snare_row(name + "on a passive arm", "", "exp(pi k tau/(2 m omega))",
+    rows.push_back(snare_row(name + "on a passive arm", "", "exp(pi k tau/(2 m omega))", Kind::closed_form,
                              std::exp(pi * k * delay / (2.0 * m * omega)), restitution(delay, false),
-                             ErrorKind::relative, 0.02));
+                             Limit::relative(0.02)));
   }
   return rows;
 }
@@ -200,10 +202,11 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
   constexpr double pull = 5.0, friction = 0.3, static_speed = 1e-4;
   double x = 0.0;
   for (int k = 0; k < 60; ++k) x = 2.0 * pull / (friction * creeps.normal) / (3.0 - x * x);
-  return {snare_row("shaft held by three wires, way from 60 to 120 s, stick_slip", "m", "rests", 0.0,
-                    sticks.most - sticks.least, ErrorKind::absolute, 1e-5),
+  return {snare_row("shaft held by three wires, way from 60 to 120 s, stick_slip", "m", "rests", Kind::closed_form, 0.0,
+                    sticks.most - sticks.least,
+                    Limit::absolute(1e-5, "zero reference; the smooth law creeps by the way of the next row")),
           snare_row("shaft held by three wires, way from 60 to 120 s, smooth", "m", "mu N x (3 - x^2)/2 = F",
-                    60.0 * static_speed * x, creeps.at_120 - creeps.at_60, ErrorKind::relative, 0.05)};
+                    Kind::closed_form, 60.0 * static_speed * x, creeps.at_120 - creeps.at_60, Limit::relative(0.05))};
 }
 
 // Sliding back through the middle along its axis, the pin feels nothing but the friction of what the wires press it with.
@@ -235,12 +238,15 @@ std::vector<Row> constraint_test_rows(const std::filesystem::path& data) {
   constexpr double friction = 0.1;
   const Reading sliding = half.size() > middle ? half[middle] : Reading{};
   const std::string source = "similarity of all terms at the same speeds and stresses";
-  return {snare_row("constraint test at full scale, force less 4 times that at half, over its peak", "", source, 0.0,
-                    force / most_force + usable, ErrorKind::absolute, 5e-3),
-          snare_row("constraint test at full scale, moment less 8 times that at half, over its peak", "", source, 0.0,
-                    moment / most_moment + usable, ErrorKind::absolute, 5e-3),
+  return {snare_row("constraint test at full scale, force less 4 times that at half, over its peak", "", source,
+                    Kind::convergence, 0.0, force / most_force + usable,
+                    Limit::absolute(5e-3, "zero reference; the value is a share of the peak force")),
+          snare_row("constraint test at full scale, moment less 8 times that at half, over its peak", "", source,
+                    Kind::convergence, 0.0, moment / most_moment + usable,
+                    Limit::absolute(5e-3, "zero reference; the value is a share of the peak moment")),
           snare_row("constraint test, force along the pin as it slides through the middle", "N", "mu sum N",
-                    friction * sliding.normal, std::abs(sliding.sensor.force.z()) + usable, ErrorKind::relative, 1e-3)};
+                    Kind::closed_form, friction * sliding.normal, std::abs(sliding.sensor.force.z()) + usable,
+                    Limit::relative(1e-3))};
 }
 
 std::vector<Check> snare_checks(const std::filesystem::path& data) {

@@ -30,12 +30,12 @@ std::vector<Row> blind_rows() {
     options.intervals = false;
     const identification::Trace t = identification::trace(set.experiment, options);
     const std::string source = "continuous wire by collocation, with the effect put in";
-    rows.push_back({"tracing of blind sets", fmt::format("right answer, inside: {}", effect), "", source, 1.0,
-                    right(set, t), ErrorKind::absolute, 0.5});
+    rows.push_back({"tracing of blind sets", fmt::format("right answer, inside: {}", effect), "", source,
+                    Kind::independent_code, 1.0, right(set, t), Limit::relative(0.5)});
     if (set.effect == "drift") continue;
     // 234 readings: chi2 over its degrees of freedom has a standard deviation of 0.09.
     rows.push_back({"tracing of blind sets", fmt::format("chi2 a degree of freedom after, inside: {}", effect), "",
-                    source, 1.0, t.final.chi2_dof, ErrorKind::absolute, 0.3});
+                    source, Kind::independent_code, 1.0, t.final.chi2_dof, Limit::relative(0.3)});
   }
   return rows;
 }
@@ -80,20 +80,21 @@ Row scatter_row(const identification::Trace& t, const std::string& group, const 
                         t.base.rmse / sigma, t.base_tests.lack_of_fit),
             "",
             source,
+            Kind::published_measurement,
             1.0,
             t.base_tests.like_noise() ? 1.0 : 0.0,
-            ErrorKind::absolute,
-            0.5};
+            Limit::relative(0.5)};
   }
-  return {"tracing of measured strands",
-          fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most {}", group,
-                      t.base.rmse / sigma, most_over_scatter),
-          "",
-          source,
-          0.0,
-          t.final.rmse / sigma,
-          ErrorKind::absolute,
-          most_over_scatter};
+  return {
+      "tracing of measured strands",
+      fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most {}", group,
+                  t.base.rmse / sigma, most_over_scatter),
+      "",
+      source,
+      Kind::published_measurement,
+      0.0,
+      t.final.rmse / sigma,
+      Limit::absolute(most_over_scatter, "an upper bound; the value is a multiple of the scatter of the replicates")};
 }
 
 std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group,
@@ -107,10 +108,10 @@ std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, 
   // replicates are alike.
   const bool told = t.kind != identification::VerdictKind::not_explained;
   const bool one_of_the_strands = t.selected.empty() || t.selected == std::vector<std::string>{"strand_hysteresis"};
-  return {{"tracing of measured strands", fmt::format("{}: {} ({})", group, to_string(t.kind), answer), "", source, 1.0,
-           told ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
-          {"tracing of measured strands", fmt::format("{}: no culprit but the strands", group), "", source, 1.0,
-           one_of_the_strands ? 1.0 : 0.0, ErrorKind::absolute, 0.5},
+  return {{"tracing of measured strands", fmt::format("{}: {} ({})", group, to_string(t.kind), answer), "", source,
+           Kind::published_measurement, 1.0, told ? 1.0 : 0.0, Limit::relative(0.5)},
+          {"tracing of measured strands", fmt::format("{}: no culprit but the strands", group), "", source,
+           Kind::published_measurement, 1.0, one_of_the_strands ? 1.0 : 0.0, Limit::relative(0.5)},
           scatter_row(t, group, source)};
 }
 

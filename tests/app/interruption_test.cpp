@@ -106,6 +106,12 @@ TEST_F(Interruption, ValidateSaysThatItIsAPart) {
   EXPECT_TRUE(result["interrupted"].get<bool>());
   EXPECT_LT(result["checks"]["done"].get<int>(), result["checks"]["asked"].get<int>());
   EXPECT_NE(contents("here/report.html").find("was interrupted"), std::string::npos);
+  // The page explains the kinds of references; finished rows have their kind, absolute limits their reason.
+  EXPECT_NE(contents("here/report.html").find("Kinds of references"), std::string::npos);
+  for (const nlohmann::json& row : result["rows"]) {
+    EXPECT_FALSE(row["kind"].get<std::string>().empty()) << row;
+    EXPECT_EQ(row["error_kind"] == "absolute", !row["limit_reason"].get<std::string>().empty()) << row;
+  }
 }
 
 TEST_F(Interruption, ReproduceSaysThatItIsAPart) {

@@ -28,6 +28,10 @@ class LongResults(unittest.TestCase):
             document = json.loads((pathlib.Path(folder) / "validation.json").read_text())
         self.assertGreater(len(document["rows"]), 0)
         self.assertEqual(mistakes(document, schemas()["snare-validation/1"]), [])
+        for row in document["rows"]:  # a limit is relative to a reference that is not zero, or has a reason
+            absolute = row["error_kind"] == "absolute"
+            self.assertEqual(absolute, row["limit_reason"] != "", row)
+            self.assertTrue(absolute or row["reference"] != 0.0, row)
 
 
 if __name__ == "__main__":
