@@ -14,7 +14,7 @@ import shutil
 import subprocess
 
 NUMBER = re.compile(r"(?<![\w#.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.]*\w)")
-COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b")
+COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b|\bcurrentColor\b")
 TIMES = re.compile(r"(^|[._])(version|wall_s|seconds)$")
 MOST_LINES = 20  # of differences that are printed
 MAKERS = {}
@@ -203,7 +203,7 @@ def reproduce(snare, root, folder):
     """
     printed = run([snare, "reproduce", "--out", folder], root)
     result = json.loads((folder / "reproduce.json").read_text(encoding="utf-8"))
-    kept = {key: result[key] for key in ("schema", "version", "models", "summary_statistics", "verdicts")}
+    kept = {key: result[key] for key in ("schema", "version", "interrupted", "models", "summary_statistics", "verdicts")}
     kept["trace"] = {key: result["trace"][key] for key in ("verdict", "verdict_kind", "explained", "selected")}
     last = result["models"][-1]["name"]
     kept["series"] = [{"name": s["name"], "contact_position_mm": s["contact_position_mm"], "sigma_N": s["published"]["sigma_N"],
@@ -283,6 +283,31 @@ def htv_envelope_fine(snare, root, folder):
 def htv_order(snare, root, folder):
     """Which wire touches first, by the place of the shaft: cases."""
     return {results("htv_order.csv"): sweep(snare, root, folder, "htv_order")}
+
+
+# ---- the impact of docs/results/speed.md ----
+
+COUNTERS = ("peak_force_error", "impulse_error", "quasi_static_peak_N", "undamped_quasi_static_peak_N", "steps", "jacobians", "energy_error", "momentum_error")
+
+
+# Errors are of 1e-5 to 5e-2; other last digits change steps by a twentieth, the impulse by 1e-4 and the peak by 3e-4.
+@maker(results("motion.json"), relative=1e-3, absolute=1e-9,
+       named=((r"impulse_error$", (0.0, 1e-4)), (r"peak_force_error$", (0.0, 3e-4)), (r"(steps|jacobians)$", (0.05, 5.0)),
+              (r"(energy|momentum)_error$", (0.0, 1e-3))))
+def impact(snare, root, folder):
+    """Errors of peak and impulse and the steps of the head-on impact, by motion_benchmark; its times stay as they were stored."""
+    program = snare.parent / "benchmarks/motion_benchmark"
+    if not program.is_file():
+        raise Skipped(f"{program.name} was not built")
+    out = folder / "motion.json"
+    run([program, "--benchmark_filter=^case_h/", f"--benchmark_out={out}", "--benchmark_out_format=json"], root)
+    measured = {row["name"]: row for row in json.loads(out.read_text(encoding="utf-8"))["benchmarks"]}
+    stored = json.loads((root / results("motion.json")).read_text(encoding="utf-8"))
+    for row in stored["benchmarks"]:
+        new = measured.get(row["name"].removesuffix("_median"))
+        if new and row.get("aggregate_name") == "median":
+            row.update({name: new[name] for name in COUNTERS if name in row})
+    return {results("motion.json"): json.dumps(stored, indent=1) + "\n"}
 
 
 # ---- pictures ----
