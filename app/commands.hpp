@@ -16,7 +16,8 @@ using namespace results;
 [[nodiscard]] ExitStatus run_push(const std::filesystem::path& experiment, const CommonOptions& options,
                                   Console& console);
 
-/// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json, report.html.
+/// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json, report.html,
+/// traced_wire.toml.
 /// `experiment` empty: the shipped file of the published tests.
 [[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
                                        Console& console);

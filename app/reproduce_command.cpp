@@ -4,7 +4,9 @@
 #include "app/report/reproduce_report.hpp"
 #include "app/reproduce_json.hpp"
 #include "app/result_folder.hpp"
+#include "app/traced_wire.hpp"
 #include "base/files.hpp"
+#include "base/one_line.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
 #include "results/curves.hpp"
@@ -32,6 +34,8 @@ using identification::Prediction;
 using identification::Series;
 using identification::Trace;
 using Progress = std::function<bool(const std::string& stage)>;
+
+constexpr const char* traced_wire_file = "traced_wire.toml";
 
 struct ModelWords {
   const char* name;
@@ -304,6 +308,22 @@ void write_all_curves(const std::filesystem::path& file, const Reproduction& res
   write_curves(file, series, declared, columns);
 }
 
+/// The command with its overrides, as it would be typed.
+std::string command_line(const CommonOptions& options) {
+  std::string line = options.command;
+  for (const std::string& change : options.overrides) line += " --set " + base::shell_word(change);
+  return line;
+}
+
+/// Writes traced_wire.toml; without a tracing takes away that of an earlier run, which is not this result.
+void write_traced_wire(const CommonOptions& options, const Reproduction& result) {
+  const std::filesystem::path file = options.out / traced_wire_file;
+  if (result.trace && result.trace->report.usable())
+    base::write_text(file, traced_wire_toml(result, command_line(options)));
+  else
+    std::filesystem::remove(file);
+}
+
 void write_files(const CommonOptions& options, Reproduction& result) {
   for (const ReproducedModel& model : result.models) {
     const std::vector<std::string> more = push_warnings(result.experiment.series, model.predictions, model.label);
@@ -311,6 +331,7 @@ void write_files(const CommonOptions& options, Reproduction& result) {
   }
   write_all_curves(options.out / "curves.csv", result);
   base::write_text(options.out / "report.html", reproduce_report_html(result, version()));
+  write_traced_wire(options, result);
   write_result(options, "reproduce.json", reproduce_json(result));
 }
 
@@ -364,7 +385,7 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
           {experiment.file.string(), 0, "series[" + series.name + "]", "", "must have readings or a law to reproduce"});
     }
   }
-  const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html"});
+  const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html", traced_wire_file});
   Finished finished(options);
   result.assumptions = assumptions(experiment);
   result.models.push_back(declared_model(experiment, console));
@@ -431,7 +452,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   for (const RangeVerdict& v : result.verdicts) {
     console.say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict));
   }
-  console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html", options.out.string()));
+  console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html{1}", options.out.string(),
+                          result.trace ? fmt::format(", {}/{}", options.out.string(), traced_wire_file) : ""));
   return status;
 }
 

@@ -1,6 +1,6 @@
 """A capture: the ring of a snare turns until its three wires are tight round the shaft of a visitor.
 
-The wires are strings here, a hundred times faster than the full rod; `snare compare` says what that changes.
+The wires are strings here, much faster than the full rod; `snare compare` says what that costs and changes.
 
 usage: capture.py SCENARIO.toml [PICTURE.png]
 """

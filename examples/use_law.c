@@ -6,9 +6,13 @@
 
 #include <stdio.h>
 
+#ifndef SLACK
+#define SLACK 0.597e-3 /* of this wire: its length less the span [m] */
+#endif
+
 int main(void) {
-  const double mass = 8.9, speed = 0.05, step = 1e-5;    /* kg, m/s, s */
-  const double middle = 87.5e-3, slack = 0.49e-3;        /* of this wire [m] */
+  const double mass = 8.9, speed = 0.05, step = 1e-5; /* kg, m/s, s */
+  const double middle = 87.5e-3, slack = SLACK;
   double travel = 0.0, velocity = speed, deepest = 0.0;
   while (travel >= 0.0) { /* the leapfrog method; beyond the wire there is no force */
     velocity -= 0.5 * step * wire_force(travel, middle, slack) / mass;

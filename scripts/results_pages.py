@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
 """Writes the numbers of README.md and docs/results/ from the stored results in benchmarks/results/.
 
-usage: results_pages.py [--check | --reproduce SNARE] [REPOSITORY]
+usage: results_pages.py [--check | --reproduce SNARE | --remake NAMES SNARE | --compare NAMES SNARE] [REPOSITORY]
 
 A page marks what is written: everything between `<!-- numbers: NAME -->` and `<!-- end of numbers -->` is the text that the
-function registered under NAME below makes of the stored results. Without --check the pages are rewritten. With --check
-nothing is written; each region that differs is printed and the exit status is 1. With --reproduce the command SNARE first
-reproduces the published test, and benchmarks/results/reproduce.json and reproduce.txt are stored again.
+function registered under NAME below makes of the stored results. Without --check the pages are rewritten, and the pictures that
+are drawn from stored results. With --check nothing is written; each region and picture that differs is printed and the exit
+status is 1.
+
+What the command gives is made by the makers of shipped.py. --remake runs those of NAMES (separated by commas; `all` but the long ones) with the command
+SNARE, stores what comes out, and rewrites the pages. --compare runs them and stores nothing: what differs from what is stored by
+more than the maker's tolerance is printed and the exit status is 1; 77 where something that a maker needs is not installed.
+--reproduce SNARE is --remake reproduce SNARE. The makers:
+
+MAKERS
 """
 
 import argparse
@@ -15,10 +22,14 @@ import json
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 import tempfile
+import time
 
+import shipped
+from curve_picture import curve_picture
+
+SKIPPED = 77
 REGION = re.compile(r"(<!-- numbers: ([a-z_]+) -->\n)(.*?)(<!-- end of numbers -->)", re.S)
 WRITERS = {}
 
@@ -158,6 +169,12 @@ def published_parameters(stored):
     return table(["number", "declared", "fitted", "unit"], rows)
 
 
+@region
+def traced_wire(stored):
+    kind = stored.json("reproduce.json")["trace"]["verdict_kind"].replace("_", " ")
+    return (f"`snare reproduce` writes this wire as `traced_wire.toml`; `data/wires/traced_published.toml` is a copy. Verdict of the tracing: {kind}.\n")
+
+
 # ---- docs/results/tracing.md ----
 
 
@@ -234,6 +251,16 @@ def capture_speed(stored):
     return table(["wires as", "elements", "discretisation", "times real time", "while holding", "steps"],
                  [[words[r["model"]], r["elements"], words[r["formulation"]], number(r["real_time_factor"]), number(r["holding"]),
                    r["steps"]] for r in stored.json("capture_speed.json")["runs"]])
+
+
+@region
+def string_speed(stored):
+    runs = {(r["model"], r["elements"], r["formulation"]): r for r in stored.json("capture_speed.json")["runs"]}
+    string = runs["stretched", 40, "higher_order"]
+    rows = [[words, number(string["real_time_factor"] / runs[model, 40, "higher_order"]["real_time_factor"]),
+             number(string["holding"] / runs[model, 40, "higher_order"]["holding"])]
+            for words, model in (("quasi-static wires", "quasi_static"), ("full wires", "full"))]
+    return table(["strings are faster than", "whole minute, times", "while holding, times"], rows)
 
 
 def by_drift(stored, file):
@@ -357,7 +384,9 @@ def memory_use(stored):
 
 
 def pages(root):
-    return [root / "README.md"] + sorted((root / "docs/results").glob("*.md"))
+    """README.md and the pages under docs/ that have a region."""
+    found = [root / "README.md"] + sorted((root / "docs").rglob("*.md"))
+    return [page for page in found if REGION.search(page.read_text(encoding="utf-8"))]
 
 
 def written(text, stored, name):
@@ -370,19 +399,62 @@ def written(text, stored, name):
     return REGION.sub(replace, text)
 
 
-def store_reproduction(snare, root):
-    """Stores the result of `snare reproduce` without its curves, and the first lines that it prints."""
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([snare, "reproduce", "--out", folder], cwd=root, capture_output=True, text=True, check=True)
-        result = json.loads((pathlib.Path(folder) / "reproduce.json").read_text(encoding="utf-8"))
-    kept = {key: result[key] for key in ("schema", "version", "models", "summary_statistics", "verdicts")}
-    kept["series"] = [{"name": s["name"], "contact_position_mm": s["contact_position_mm"], "sigma_N": s["published"]["sigma_N"],
-                       "rmse_N": {name: m["rmse_N"] for name, m in s["models"].items()}} for s in result["series"]]
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("warning: ")]
-    head = [i for i, line in enumerate(lines) if line.startswith("rms distance")][0]
-    results = root / "benchmarks/results"
-    (results / "reproduce.json").write_text(json.dumps(kept, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    (results / "reproduce.txt").write_text("\n".join(lines[head:head + 4]) + "\n", encoding="utf-8")
+def pictures(stored):
+    """Pictures that are drawn from stored results, by their path."""
+    return {"docs/gallery/reproduce.svg": curve_picture(stored.json("reproduce.json"))}
+
+
+def update_picture(root, path, made, check):
+    """Draws a picture again, or says that it would change; whether it would."""
+    file = root / path
+    if file.is_file() and file.read_text(encoding="utf-8") == made:
+        return False
+    if check:
+        print(f"{path}: differs from what the stored results give")
+    else:
+        file.write_text(made, encoding="utf-8")
+        print(path)
+    return True
+
+
+def chosen(names):
+    if names == "all":
+        return [name for name, maker in shipped.MAKERS.items() if not maker.long]
+    unknown = [name for name in names.split(",") if name not in shipped.MAKERS]
+    if unknown:
+        raise SystemExit(f"no maker is called {', '.join(unknown)}; there are {', '.join(shipped.MAKERS)}")
+    return names.split(",")
+
+
+def remake(names, snare, root, keep):
+    """Runs makers; stores what comes out, or with keep prints how it differs from what is stored. Status of the script."""
+    status = 0
+    for name in chosen(names):
+        maker = shipped.MAKERS[name]
+        begin = time.monotonic()
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                made = maker.function(snare, root, pathlib.Path(folder))
+            assert set(made) == set(maker.files), f"{name} makes {sorted(made)}"
+            for path, content in made.items():
+                content = content if isinstance(content, bytes) else content.encode()
+                old = (root / path).read_bytes() if (root / path).is_file() else None
+                found = shipped.differences(path, old, content, maker)
+                for line in found[:shipped.MOST_LINES]:
+                    print(f"{path}: {line}")
+                if len(found) > shipped.MOST_LINES:
+                    print(f"{path}: and {len(found) - shipped.MOST_LINES} more")
+                if found and keep:
+                    status = 1
+                # What differs by less than the tolerance stays as it is, so that only changes are changes.
+                elif found:
+                    (root / path).write_bytes(content)
+                    print(f"{path}: stored")
+        except shipped.Skipped as reason:
+            print(f"{name}: skipped: {reason}")
+            status = status or SKIPPED
+        print(f"{name}: {time.monotonic() - begin:.0f} s", flush=True)
+    return status
 
 
 def update(page, stored, check, root):
@@ -402,17 +474,25 @@ def update(page, stored, check, root):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    about = __doc__.replace("MAKERS", "\n".join(f"  {name:18} {m.what}" for name, m in shipped.MAKERS.items()))
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
-    parser.add_argument("--reproduce", type=pathlib.Path, metavar="SNARE")
+    parser.add_argument("--reproduce", metavar="SNARE")
+    parser.add_argument("--remake", nargs=2, metavar=("NAMES", "SNARE"))
+    parser.add_argument("--compare", nargs=2, metavar=("NAMES", "SNARE"))
     parser.add_argument("repository", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).parents[1])
     options = parser.parse_args()
     root = options.repository.resolve()
-    if options.reproduce:
-        store_reproduction(options.reproduce.resolve(), root)
+    wanted = options.remake or options.compare or (["reproduce", options.reproduce] if options.reproduce else None)
+    status = 0
+    if wanted:
+        status = remake(wanted[0], pathlib.Path(wanted[1]).resolve(), root, keep=bool(options.compare))
+        if options.compare:
+            return status
     stored = Stored(root / "benchmarks/results")
     stale = sum(update(page, stored, options.check, root) for page in pages(root))
-    return 1 if options.check and stale else 0
+    stale += sum(update_picture(root, path, made, options.check) for path, made in pictures(stored).items())
+    return 1 if options.check and stale else status
 
 
 if __name__ == "__main__":

@@ -222,6 +222,17 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
   EXPECT_LT(json["models"][1]["rmse_N"].get<double>(), 1.0);
   const std::string csv = contents("here/curves.csv");
   EXPECT_NE(csv.substr(0, csv.find('\n')).find("measured_N,base_N,final_N"), std::string::npos);
+  // The traced wire is the last model's, and distil reads it.
+  const std::string wire = contents("here/traced_wire.toml");
+  EXPECT_NE(wire.find("schema = \"snare-wire/1\""), std::string::npos) << wire;
+  const std::string kind = json["trace"]["verdict_kind"];
+  EXPECT_EQ(wire.find("do not rely") != std::string::npos, kind == "not_explained" || kind == "cannot_tell") << wire;
+  EXPECT_EQ(run("distil here/traced_wire.toml --out law --quiet --set table.points=[4,2,2] --set "
+                "table.most_points=[4,2,2] --set "
+                "solver.elements=16")
+                .status,
+            0)
+      << contents("err.txt");
   const std::string page = contents("here/report.html");
   for (const nlohmann::json& model : json["models"]) {
     EXPECT_NE(page.find("Error of the " + model["label"].get<std::string>()), std::string::npos) << model["label"];

@@ -248,7 +248,7 @@ class Positions(unittest.TestCase):
     def test_every_export_holds_over_the_positions_that_were_asked_for(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
-            text = (setting.SOURCE / "data/wires/traced_published.toml").read_text().split("[ranges]")[0].split("[damping]")[0]
+            text = setting.FITTED_WIRE.read_text().split("[ranges]")[0].split("[damping]")[0]
             (out / "wire.toml").write_text(text + "[ranges]\ntravel_mm = 2.0\nposition_mm = [20.0, 150.0]\nslack_mm = [0.4, 0.6]\n"
                                            "[table]\npoints = [10, 9, 2]\nmost_points = [10, 9, 2]\n[laws]\npositions_mm = [30.0, 120.0]\n")
             setting.run_command("distil", str(out / "wire.toml"), "--out", folder)

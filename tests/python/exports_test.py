@@ -80,7 +80,7 @@ class Exports(unittest.TestCase):
         out.mkdir()
         wire = setting.small_wire(out, "\n[table]\npoints = [12, 4, 3]\nmost_points = [12, 4, 3]\n")
         setting.run_command("distil", str(wire), "--out", str(out), "--set", 'exports.name="wire"')
-        subprocess.run(["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-I", str(out),
+        subprocess.run(["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-DSLACK=0.49e-3", "-I", str(out),
                         str(setting.SOURCE / "examples/use_law.c"), str(out / "law.c"), "-lm", "-o", str(out / "run")], check=True)
         said = subprocess.run([out / "run"], check=True, capture_output=True, text=True).stdout
         deepest, back = (float(line.split(": ")[1].split()[0]) for line in said.strip().splitlines())

@@ -36,7 +36,7 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   }
 }
 
-// The default table of the traced wire against the full wire solved anew at 1000 places, each from the straight wire:
+// The default table of the fitted wire against the full wire solved anew at 1000 places, each from the straight wire:
 // 0.5 % of the range of the force, and never beyond the bound that the table states.
 TEST(SlowTable, AThousandRandomPoints) {
   WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");

@@ -26,7 +26,7 @@ direction = "outward"
 )";
 }
 
-/// A wire file of the wire that the tracing of the published tests ends with; `more` tables stand at its end.
+/// A wire file of a fitted wire near that of the published tests; `more` tables stand at its end.
 inline std::string traced_wire_text(const std::string& title, const std::string& more) {
   return "schema = \"snare-wire/1\"\ntitle = \"" + title + "\"\n" +
          wire_tables("175.49", "bending_stiffness_Nm2 = 0.0094\naxial_stiffness_N = 19300.0\n") + more;

@@ -1,0 +1,389 @@
+"""What is shipped and comes out of the command: made again, stored, or compared with what is stored.
+
+A maker runs the command (or an example) in a folder of its own and returns the stored files by their path in the repository. results_pages.py calls the
+makers by name: `--remake` stores what they return, `--compare` holds it against what is stored, each within the tolerance of its maker.
+"""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+NUMBER = re.compile(r"(?<![\w#.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.]*\w)")
+COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b|\bcurrentColor\b")
+TIMES = re.compile(r"(^|[._])(version|wall_s|seconds)$")
+MOST_LINES = 20  # of differences that are printed
+MAKERS = {}
+
+
+class Skipped(Exception):
+    """What a maker needs is not installed."""
+
+
+# Pictures without numbers: their SVG is their source.
+DRAWN_BY_HAND = {f"docs/drawings/{name}.svg" for name in ("arm_frames", "clamp_half_cell", "contact_frame", "rod_stencil")}
+
+
+class Maker:
+    """Makes files again. relative: largest difference of a number over its size; absolute: that is passed over; pixels: mean difference
+    of pictures, of 0 to 1; named: tolerances (relative, absolute) of numbers by a pattern of their key in a JSON file,
+    of their line in a text; long: it takes more than
+    some minutes, and is made only where it is named."""
+
+    def __init__(self, function, files, relative, absolute, pixels, named, long):
+        self.function, self.files, self.long = function, files, long
+        self.relative, self.absolute, self.pixels, self.named = relative, absolute, pixels, named
+        self.what = function.__doc__.splitlines()[0]
+
+    def tolerance(self, name):
+        """Relative and absolute, of the number of this key or of the numbers of this line."""
+        return next((t for pattern, t in self.named if re.search(pattern, name)), (self.relative, self.absolute))
+
+
+def maker(*files, relative=1e-3, absolute=1e-9, pixels=0.01, named=(), long=False):
+    """Registers a function as the maker of files, by their path in the repository."""
+    def register(function):
+        MAKERS[function.__name__] = Maker(function, files, relative, absolute, pixels, named, long)
+        return function
+    return register
+
+
+def results(name):
+    return f"benchmarks/results/{name}"
+
+
+def gallery(name):
+    return f"docs/gallery/{name}"
+
+
+def run(command, root, python=None):
+    """Standard output and error of a command that succeeds. python: the folder of the module."""
+    environment = {**os.environ, "MPLBACKEND": "agg", "PYTHONDONTWRITEBYTECODE": "1", "SNARE_SOURCE_DIR": str(root)}
+    if python:
+        environment["PYTHONPATH"] = str(python)
+    done = subprocess.run([str(word) for word in command], cwd=root, env=environment, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join(str(word) for word in command)} ended with status {done.returncode}:\n{done.stderr}")
+    return done.stdout + done.stderr
+
+
+# ---- comparison ----
+
+
+def flat(value, key=""):
+    """(key, leaf) of a JSON document."""
+    if isinstance(value, dict):
+        for name, one in value.items():
+            yield from flat(one, f"{key}.{name}" if key else name)
+    elif isinstance(value, list):
+        for k, one in enumerate(value):
+            yield from flat(one, f"{key}[{k}]")
+        yield f"{key}.length", len(value)
+    else:
+        yield key, value
+
+
+def close(a, b, relative, absolute):
+    return abs(a - b) <= absolute + relative * max(abs(a), abs(b))
+
+
+def json_differences(stored, made, maker_):
+    """Lines: keys of which the values differ."""
+    old, new = dict(flat(stored)), dict(flat(made))
+    found = [f"{key} is {'not stored' if key in new else 'stored and not made'}" for key in sorted(old.keys() ^ new.keys())]
+    for key in sorted(old.keys() & new.keys()):
+        if TIMES.search(key):
+            continue
+        a, b = old[key], new[key]
+        if all(isinstance(x, (int, float)) and not isinstance(x, bool) for x in (a, b)):
+            if close(a, b, *maker_.tolerance(key)):
+                continue
+        elif isinstance(a, str) and isinstance(b, str):
+            if not text_differences(a, b, maker_):
+                continue
+        elif a == b and type(a) is type(b):
+            continue
+        found.append(f"{key}: stored {a}, made {b}")
+    return found
+
+
+def text_differences(stored, made, maker_):
+    """Lines that differ in more than their numbers, or of which a number differs by more than the tolerance. Colours may differ."""
+    found = []
+    old, new = stored.splitlines(), made.splitlines()
+    if len(old) != len(new):
+        return [f"{len(old)} lines stored, {len(new)} made"]
+    for k, (a, b) in enumerate(zip(old, new), 1):
+        if a == b:
+            continue
+        words, others = (NUMBER.sub("0", COLOUR.sub("colour", x)) for x in (a, b))
+        relative, absolute = maker_.tolerance(a)
+        pairs = zip(NUMBER.findall(a), NUMBER.findall(b))
+        if words != others or not all(close(float(x), float(y), relative, absolute + last_place(x, y)) for x, y in pairs):
+            found.append(f"line {k}: stored `{a}`, made `{b}`")
+    return found
+
+
+def last_place(*numbers):
+    """One in the last printed place of numbers with few digits, by which a rounding differs; 0 of those with six digits or more."""
+    places = []
+    for text in numbers:
+        digits, _, exponent = text.lower().partition("e")
+        if len(re.sub(r"\D", "", digits).lstrip("0")) < 6:
+            places.append(10.0 ** (int(exponent or 0) - len(digits.partition(".")[2])))
+    return max(places, default=0.0) if "." in "".join(numbers) else 0.0
+
+
+def picture_differences(stored, made, maker_):
+    try:
+        import matplotlib.image
+    except ImportError:
+        raise Skipped("pictures are compared by matplotlib: apt-get install python3-matplotlib")
+    old, new = (matplotlib.image.imread(io.BytesIO(data), format="png")[..., :3] for data in (stored, made))
+    if old.shape != new.shape:
+        return [f"{old.shape[1]} x {old.shape[0]} stored, {new.shape[1]} x {new.shape[0]} made"]
+    mean = float(abs(old - new).mean())
+    return [f"pictures differ by {mean:.4f} in the mean, at most {maker_.pixels}"] if mean > maker_.pixels else []
+
+
+def csv_differences(stored, made, maker_):
+    """Rows by their place; a cell is a number or a text."""
+    old, new = (list(csv.reader(text.splitlines())) for text in (stored, made))
+    if len(old) != len(new) or old[0] != new[0]:
+        return [f"{len(old)} rows {old[0]} stored, {len(new)} rows {new[0]} made"]
+    found = []
+    for k, (a, b) in enumerate(zip(old, new)):
+        for name, x, y in zip(old[0], a, b):
+            if x != y and text_differences(x, y, maker_):
+                found.append(f"row {k}, {name}: stored {x}, made {y}")
+    return found
+
+
+def differences(path, stored, made, maker_):
+    """Lines that say how what is stored under a path (bytes) differs from what was made."""
+    if stored is None:
+        return ["is not stored"]
+    if stored == made:
+        return []
+    if path.endswith(".png"):
+        return picture_differences(stored, made, maker_)
+    old, new = stored.decode(), made.decode()
+    if path.endswith(".json"):
+        return json_differences(json.loads(old), json.loads(new), maker_)
+    if path.endswith(".jsonl"):
+        return [f"line {k}: {d}" for k, (a, b) in enumerate(zip(old.splitlines(), new.splitlines()), 1)
+                for d in json_differences(json.loads(a), json.loads(b), maker_)]
+    return (csv_differences if path.endswith(".csv") else text_differences)(old, new, maker_)
+
+
+# ---- the published test ----
+
+
+def with_chosen_tables(made, stored):
+    """A made wire file, and the end of the stored one from the first table on that a tracing does not give."""
+    found = [m for m in re.finditer(r"^\[(\w+)\]$", stored, re.M) if f"\n[{m.group(1)}]\n" not in made]
+    return made + ("\n" + stored[found[0].start():] if found else "")
+
+
+TRACED = "data/wires/traced_published.toml"
+
+
+@maker(results("reproduce.json"), results("reproduce.txt"), TRACED,
+       relative=2e-3, absolute=1e-6, named=((r"(^|\.)p$", (0.0, 0.02)), (r"chi2|deviance", (1e-2, 1e-2)), (r"stderr$", (1e-2, 1e-6)),
+              (r"length_mm", (2e-5, 0.0)), (r"(_N|rmse_N\.\w+)(\[\d+\])?$", (2e-3, 2e-3))))
+def reproduce(snare, root, folder):
+    """The published static test: summary, first lines on the console, the traced wire.
+
+    P is that of a bootstrap of 299 rows or more: 0.02 is some six of them. Fitted numbers are known to some per cent and fits end within a hundredth of that;
+    the length to 3.5 micrometres, a tenth of its standard error and half a per cent of the slack.
+    """
+    printed = run([snare, "reproduce", "--out", folder], root)
+    result = json.loads((folder / "reproduce.json").read_text(encoding="utf-8"))
+    kept = {key: result[key] for key in ("schema", "version", "interrupted", "models", "summary_statistics", "verdicts")}
+    kept["trace"] = {key: result["trace"][key] for key in ("verdict", "verdict_kind", "explained", "selected")}
+    last = result["models"][-1]["name"]
+    kept["series"] = [{"name": s["name"], "contact_position_mm": s["contact_position_mm"], "sigma_N": s["published"]["sigma_N"],
+                       "rmse_N": {name: m["rmse_N"] for name, m in s["models"].items()}, "displacement_mm": s["displacement_mm"],
+                       "published_N": s["published_N"], "computed_N": s["models"][last]["force_N"]} for s in result["series"]]
+    lines = [line for line in printed.splitlines() if not line.startswith("warning: ")]
+    head = [i for i, line in enumerate(lines) if line.startswith("rms distance")][0]
+    traced = with_chosen_tables((folder / "traced_wire.toml").read_text(encoding="utf-8"), (root / TRACED).read_text(encoding="utf-8"))
+    return {results("reproduce.json"): json.dumps(kept, indent=1, sort_keys=True) + "\n",
+            results("reproduce.txt"): "\n".join(lines[head:head + 4]) + "\n", TRACED: traced}
+
+
+# ---- sweeps ----
+
+
+def sweep(snare, root, folder, name, stored=None, changes=()):
+    """cases.csv of a shipped sweep, or another of its files. changes: of the file, KEY=VALUE."""
+    overrides = [word for change in changes for word in ("--set", change)]
+    run([snare, "sweep", root / f"data/sweeps/{name}.toml", "--out", folder, "--quiet", *overrides], root)
+    return (folder / (stored or "cases.csv")).read_text(encoding="utf-8")
+
+
+def map_of(folder, title):
+    """The map of a sweep's page that has this title, as a file of its own."""
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    for found in re.findall(r"<svg\b.*?</svg>", page, re.S):
+        if f">{title}</text>" in found:
+            return found.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1).replace("currentColor", "#333333") + "\n"
+    raise SystemExit(f"{folder}/report.html: no map is called {title}")
+
+
+# Steps of a motion follow last digits: peaks of captures differ by up to half a per cent between machines, times by a millisecond.
+CAPTURE = dict(relative=1e-2, absolute=1e-3)
+
+
+@maker(results("pin_offsets.csv"), gallery("pin_offsets.svg"), **CAPTURE)
+def pin_offsets(snare, root, folder):
+    """A pin off the axis of a snare: cases and map."""
+    return {results("pin_offsets.csv"): sweep(snare, root, folder, "pin_offsets"),
+            gallery("pin_offsets.svg"): map_of(folder, "mean of peak_N")}
+
+
+@maker(results("rigidizing.csv"), **CAPTURE)
+def rigidizing(snare, root, folder):
+    """The blow at the end of the pull: cases."""
+    return {results("rigidizing.csv"): sweep(snare, root, folder, "rigidizing")}
+
+
+@maker(results("push_sensitivity.json"), relative=1e-3, absolute=1e-4)
+def push_sensitivity(snare, root, folder):
+    """What the force of a push depends on: Sobol indices."""
+    return {results("push_sensitivity.json"): sweep(snare, root, folder, "push_sensitivity", "summary.json")}
+
+
+@maker(results("htv_envelope.csv"), gallery("htv_envelope.svg"), **CAPTURE)
+def htv_envelope(snare, root, folder):
+    """The envelope of a capture, strings: cases and map."""
+    return {results("htv_envelope.csv"): sweep(snare, root, folder, "htv_envelope"),
+            gallery("htv_envelope.svg"): map_of(folder, "mean of tension_N")}
+
+
+@maker(results("htv_envelope_wires.csv"), gallery("htv_envelope_wires.svg"), long=True, **CAPTURE)
+def htv_envelope_wires(snare, root, folder):
+    """The envelope of a capture, quasi-static wires: cases and map; takes a quarter of an hour."""
+    return {results("htv_envelope_wires.csv"): sweep(snare, root, folder, "htv_envelope_wires"),
+            gallery("htv_envelope_wires.svg"): map_of(folder, "mean of caught")}
+
+
+@maker(results("htv_envelope_fine.csv"), gallery("htv_envelope_fine.svg"), long=True, **CAPTURE)
+def htv_envelope_fine(snare, root, folder):
+    """The same of 41 x 41 starts, refined where the outcome changes; takes hours."""
+    cases = sweep(snare, root, folder, "htv_envelope_wires", changes=("vary[1].points=41", "vary[2].points=41", "refine.of=caught"))
+    return {results("htv_envelope_fine.csv"): cases, gallery("htv_envelope_fine.svg"): map_of(folder, "mean of caught")}
+
+
+@maker(results("htv_order.csv"), **CAPTURE)
+def htv_order(snare, root, folder):
+    """Which wire touches first, by the place of the shaft: cases."""
+    return {results("htv_order.csv"): sweep(snare, root, folder, "htv_order")}
+
+
+# ---- the impact of docs/results/speed.md ----
+
+COUNTERS = ("peak_force_error", "impulse_error", "quasi_static_peak_N", "undamped_quasi_static_peak_N", "steps", "jacobians", "energy_error", "momentum_error")
+
+
+# Errors are of 1e-5 to 5e-2; other last digits change steps by a twentieth, the impulse by 1e-4 and the peak by 3e-4.
+@maker(results("motion.json"), relative=1e-3, absolute=1e-9,
+       named=((r"impulse_error$", (0.0, 1e-4)), (r"peak_force_error$", (0.0, 3e-4)), (r"(steps|jacobians)$", (0.05, 5.0)),
+              (r"(energy|momentum)_error$", (0.0, 1e-3))))
+def impact(snare, root, folder):
+    """Errors of peak and impulse and the steps of the head-on impact, by motion_benchmark; its times stay as they were stored."""
+    program = snare.parent / "benchmarks/motion_benchmark"
+    if not program.is_file():
+        raise Skipped(f"{program.name} was not built")
+    out = folder / "motion.json"
+    run([program, "--benchmark_filter=^case_h/", f"--benchmark_out={out}", "--benchmark_out_format=json"], root)
+    measured = {row["name"]: row for row in json.loads(out.read_text(encoding="utf-8"))["benchmarks"]}
+    stored = json.loads((root / results("motion.json")).read_text(encoding="utf-8"))
+    for row in stored["benchmarks"]:
+        new = measured.get(row["name"].removesuffix("_median"))
+        if new and row.get("aggregate_name") == "median":
+            row.update({name: new[name] for name in COUNTERS if name in row})
+    return {results("motion.json"): json.dumps(stored, indent=1) + "\n"}
+
+
+# ---- pictures ----
+
+
+def module_of(snare):
+    """The folder of the Python module that was built with the command."""
+    python = snare.parent / "python"
+    if not list(python.glob("snare/_core*.so")):
+        raise Skipped("the Python module was not built")
+    return python
+
+
+# The picture of an example and its arguments.
+EXAMPLES = {"python_trace": ["trace_csv.py", "data/starter/experiment.toml"],
+            "use_law": ["use_law.py", "data/wires/traced_published.toml"],
+            "three_point_bending": ["three_point_bending.py"],
+            "sphere_meets_wires": ["sphere_meets_wires.py", "data/scenarios/ball_into_net.toml"],
+            "capture_forces": ["capture.py", "data/scenarios/ssrms_htv_capture.toml"],
+            "sweep_indices": ["sweep.py"]}
+
+
+def picture_of(snare, root, folder, name, program, *arguments):
+    target = folder / f"{name}.png"
+    run(["/usr/bin/python3", root / "examples" / program, *arguments, target], root, module_of(snare))
+    return {gallery(f"{name}.png"): target.read_bytes()}
+
+
+@maker(*(gallery(f"{name}.png") for name in EXAMPLES))
+def examples(snare, root, folder):
+    """Pictures that the examples in Python draw."""
+    made = {}
+    for name, arguments in EXAMPLES.items():
+        made.update(picture_of(snare, root, folder, name, *arguments))
+    return made
+
+
+@maker(gallery("bench_to_odds.png"))
+def bench_to_odds(snare, root, folder):
+    """The picture of the odds of 2000 captures; takes minutes."""
+    return picture_of(snare, root, folder, "bench_to_odds", "bench_to_odds.py", "data")
+
+
+def screenshot(page, target, width, height, options=("--disable-gpu",)):
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        raise Skipped("chromium is not installed")
+    run([chromium, "--headless", "--no-sandbox", "--hide-scrollbars", *options, "--force-device-scale-factor=1",
+         f"--user-data-dir={page.parent / 'profile'}", "--virtual-time-budget=5000", f"--screenshot={target}", f"--window-size={width},{height}",
+         page.as_uri()], page.parent)
+
+
+@maker(gallery("fit.png"), pixels=0.02)
+def fit_page(snare, root, folder):
+    """The page of a fit, in a browser."""
+    run([snare, "fit", root / "examples/push.toml", "--out", folder, "--quiet"], root)
+    screenshot(folder / "report.html", folder / "fit.png", 1280, 1600)
+    return {gallery("fit.png"): (folder / "fit.png").read_bytes()}
+
+
+# Shows the scene of a page alone: the wires at the time of its last mark.
+SCENE_ALONE = """<style>body > * { display: none } figure.scene { display: block; position: fixed; inset: 0; margin: 0; z-index: 9; background: #fff }
+figure.scene > *:not(.stage) { display: none } figure.scene .stage { width: 100vw }</style>
+<script>addEventListener('load', () => setTimeout(() => {
+  const scene = document.querySelector('figure.scene'); document.body.append(scene); dispatchEvent(new Event('resize'));
+  scene.querySelectorAll('.marks button')[scene.querySelectorAll('.marks button').length - 1].click(); scene.querySelector('.near').click();
+}, 200));</script>"""
+
+
+@maker(gallery("capture.png"), pixels=0.03)
+def capture_page(snare, root, folder):
+    """The three wires tight around the shaft, from the page of the shipped capture, in a browser with WebGL."""
+    run([snare, "simulate", root / "data/scenarios/ssrms_htv_capture.toml", "--set", 'snares[snare].wire.model="stretched"', "--out", folder, "--quiet"],
+        root)
+    page = folder / "report.html"
+    text = page.read_text(encoding="utf-8")
+    page.write_text(text.replace("</head>", SCENE_ALONE + "</head>", 1), encoding="utf-8")
+    screenshot(page, folder / "capture.png", 640, 397, ("--use-angle=swiftshader", "--enable-unsafe-swiftshader"))
+    return {gallery("capture.png"): (folder / "capture.png").read_bytes()}
