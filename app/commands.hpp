@@ -17,7 +17,7 @@ using namespace results;
                                   Console& console);
 
 /// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json, report.html,
-/// traced_wire.toml.
+/// traced.toml.
 /// `experiment` empty: the shipped file of the published tests.
 [[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
                                        Console& console);

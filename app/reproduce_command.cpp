@@ -35,7 +35,7 @@ using identification::Series;
 using identification::Trace;
 using Progress = std::function<bool(const std::string& stage)>;
 
-constexpr const char* traced_wire_file = "traced_wire.toml";
+constexpr const char* traced_wire_file = "traced.toml";
 
 struct ModelWords {
   const char* name;
@@ -315,7 +315,7 @@ std::string command_line(const CommonOptions& options) {
   return line;
 }
 
-/// Writes traced_wire.toml; without a tracing takes away that of an earlier run, which is not this result.
+/// Writes traced.toml; without a tracing takes away that of an earlier run, which is not this result.
 void write_traced_wire(const CommonOptions& options, const Reproduction& result) {
   const std::filesystem::path file = options.out / traced_wire_file;
   if (result.trace && result.trace->report.usable())

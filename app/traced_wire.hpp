@@ -6,7 +6,7 @@
 
 namespace snare::app {
 
-/// Returns traced_wire.toml: the wire, mounts and pusher of the final model of a reproduction's tracing as a `snare-wire/1` file
+/// Returns traced.toml: the wire, mounts and pusher of the final model of a reproduction's tracing as a `snare-wire/1` file
 /// (docs/wire_file.md). Comments state what was traced, the verdict, the command and every fitted number with its standard error;
 /// title and comments say so where no model is accepted.
 ///

@@ -172,7 +172,7 @@ def published_parameters(stored):
 @region
 def traced_wire(stored):
     kind = stored.json("reproduce.json")["trace"]["verdict_kind"].replace("_", " ")
-    return (f"`snare reproduce` writes this wire as `traced_wire.toml`; `data/wires/traced_published.toml` is a copy. Verdict of the tracing: {kind}.\n")
+    return (f"`snare reproduce` writes this wire as `traced.toml`; `data/wires/traced_published.toml` is a copy. Verdict of the tracing: {kind}.\n")
 
 
 # ---- docs/results/tracing.md ----

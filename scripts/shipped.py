@@ -211,7 +211,7 @@ def reproduce(snare, root, folder):
                        "published_N": s["published_N"], "computed_N": s["models"][last]["force_N"]} for s in result["series"]]
     lines = [line for line in printed.splitlines() if not line.startswith("warning: ")]
     head = [i for i, line in enumerate(lines) if line.startswith("rms distance")][0]
-    traced = with_chosen_tables((folder / "traced_wire.toml").read_text(encoding="utf-8"), (root / TRACED).read_text(encoding="utf-8"))
+    traced = with_chosen_tables((folder / "traced.toml").read_text(encoding="utf-8"), (root / TRACED).read_text(encoding="utf-8"))
     return {results("reproduce.json"): json.dumps(kept, indent=1, sort_keys=True) + "\n",
             results("reproduce.txt"): "\n".join(lines[head:head + 4]) + "\n", TRACED: traced}
 

@@ -223,11 +223,11 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
   const std::string csv = contents("here/curves.csv");
   EXPECT_NE(csv.substr(0, csv.find('\n')).find("measured_N,base_N,final_N"), std::string::npos);
   // The traced wire is the last model's, and distil reads it.
-  const std::string wire = contents("here/traced_wire.toml");
+  const std::string wire = contents("here/traced.toml");
   EXPECT_NE(wire.find("schema = \"snare-wire/1\""), std::string::npos) << wire;
   const std::string kind = json["trace"]["verdict_kind"];
   EXPECT_EQ(wire.find("do not rely") != std::string::npos, kind == "not_explained" || kind == "cannot_tell") << wire;
-  EXPECT_EQ(run("distil here/traced_wire.toml --out law --quiet --set table.points=[4,2,2] --set "
+  EXPECT_EQ(run("distil here/traced.toml --out law --quiet --set table.points=[4,2,2] --set "
                 "table.most_points=[4,2,2] --set "
                 "solver.elements=16")
                 .status,

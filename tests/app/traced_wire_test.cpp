@@ -37,7 +37,7 @@ Reproduction traced_reproduction(VerdictKind kind) {
 TEST(TracedWire, IsAWireFileOfTheFinalModel) {
   const std::string text =
       traced_wire_toml(traced_reproduction(VerdictKind::nothing_missing), "snare reproduce test.toml");
-  const reduction::WireFile file = reduction::parse_wire_file("traced_wire.toml", text);
+  const reduction::WireFile file = reduction::parse_wire_file("traced.toml", text);
   ASSERT_EQ(file.cases.size(), 1u);
   const reduction::WireCase& wire = file.cases.front();
   constexpr double roundings = 1e-12;  // of a logarithm and its exponential
