@@ -1,5 +1,7 @@
+#include "coupling/statics/push_path.hpp"
 #include "coupling/statics/push_solver.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +10,8 @@
 namespace snare::coupling {
 
 namespace {
+
+constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them: their
 /// balance holds after extrapolation as it does on every mesh.
@@ -62,24 +66,83 @@ struct CoarseCurve {
   std::vector<CoarsePoint> points;
 };
 
+/// Of a coarse mesh only the curve is wanted, in the steps of the finest.
+PushOptions coarse(const PushOptions& options, const PushCurve& finest) {
+  PushOptions result = options;
+  result.steps = finest.steps;
+  result.shapes_at.clear();
+  result.progress = nullptr;
+  result.examine_out_of_plane = false;
+  result.examine_rates = false;
+  return result;
+}
+
+/// Without the variations, and every second of the steps left out.
+CoarseCurve with_longer_steps(const PushProblem& test, PushOptions options) {
+  options.variations.clear();
+  for (std::vector<double>& leg : options.steps) {
+    std::vector<double> ends;
+    for (std::size_t k = 1; k < leg.size(); k += 2) ends.push_back(leg[k]);
+    if (leg.size() % 2 == 1) ends.push_back(leg.back());
+    leg = std::move(ends);
+  }
+  return CoarseCurve(solve_push(test, options, coarsest));
+}
+
+// Index of the next point at a travel, searched from an index on; the number of points where the search fails.
+std::size_t find(const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
+  while (from < points.size() && points[from].travel != travel) ++from;
+  return from;
+}
+
+// The path is of first order in its steps: the change of its force in steps twice as long estimates its error. Errors are
+// remembered by the path, so the largest one up to a point counts.
+void add_path_error(const CoarseCurve& steps, const CoarseCurve& longer, ExtrapolatedCurve& result) {
+  double largest = 0.0;
+  std::size_t in_steps = 0;
+  std::size_t in_longer = 0;
+  for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
+    const double travel = result.curve.points[i].travel;
+    const std::size_t j = find(steps.points, in_steps, travel);
+    const std::size_t k = find(longer.points, in_longer, travel);
+    if (j < steps.points.size() && k < longer.points.size()) {
+      in_steps = j + 1;
+      in_longer = k + 1;
+      largest = std::max(largest, std::abs(steps.points[j].values[0] - longer.points[k].values[0]));
+    }
+    result.discretisation_error[i] += largest;
+  }
+}
+
 }  // namespace
+
+ExtrapolatedCurve solve_push_with_path_error(const PushProblem& test, const PushOptions& options) {
+  ExtrapolatedCurve result;
+  result.curve = solve_push(test, options);
+  result.discretisation_error.assign(result.curve.points.size(), 0.0);
+  if (result.curve.steps.empty() || result.curve.report.termination == numerics::Termination::interrupted)
+    return result;
+  PushOptions same_steps = coarse(options, result.curve);
+  same_steps.variations.clear();
+  const CoarseCurve steps(solve_push(test, same_steps, coarsest));
+  const CoarseCurve longer = with_longer_steps(test, same_steps);
+  result.curve.newton_iterations += steps.newton_iterations + longer.newton_iterations;
+  add_path_error(steps, longer, result);
+  return result;
+}
 
 ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
   ExtrapolatedCurve result;
   result.curve = solve_push(test, options);
   result.discretisation_error.assign(result.curve.points.size(), 0.0);
   if (result.curve.report.termination == numerics::Termination::interrupted) return result;
-  PushOptions coarse_options = options;
-  coarse_options.shapes_at.clear();
-  coarse_options.progress = nullptr;
-  coarse_options.examine_out_of_plane = false;
-  coarse_options.examine_rates = false;
-  const CoarseCurve half(solve_push(test, coarse_options, 2));
-  const CoarseCurve quarter(solve_push(test, coarse_options, 4));
+  const PushOptions on_coarse = coarse(options, result.curve);
+  const CoarseCurve half(solve_push(test, on_coarse, 2));
+  const CoarseCurve quarter(solve_push(test, on_coarse, coarsest));
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
-  for (const CoarseCurve* coarse : {&half, &quarter}) {
-    if (coarse->report.termination != numerics::Termination::interrupted) continue;
-    result.curve.report = coarse->report;  // the forces of the fine mesh stay as they are
+  for (const CoarseCurve* other : {&half, &quarter}) {
+    if (other->report.termination != numerics::Termination::interrupted) continue;
+    result.curve.report = other->report;  // the forces of the fine mesh stay as they are
     return result;
   }
   const auto extrapolated = [](double fine, double half_value, double quarter_value) {
@@ -94,10 +157,6 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
   std::size_t in_half = 0;
   std::size_t in_quarter = 0;
-  const auto find = [](const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
-    while (from < points.size() && points[from].travel != travel) ++from;
-    return from;
-  };
   for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
     PushPoint& p = result.curve.points[i];
     const std::size_t j = find(half.points, in_half, p.travel);
@@ -119,6 +178,11 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
       p.force_by[v] = extrapolated(p.force_by[v], h.force_by[v], q.force_by[v]);
     }
     result.discretisation_error[i] = 2.0 * std::abs(p.force - third_order);
+  }
+  if (!result.curve.steps.empty()) {
+    const CoarseCurve longer = with_longer_steps(test, on_coarse);
+    result.curve.newton_iterations += longer.newton_iterations;
+    add_path_error(quarter, longer, result);
   }
   return result;
 }
