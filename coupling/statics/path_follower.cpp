@@ -76,8 +76,12 @@ numerics::SolveReport OwnSteps::advance(RememberingPath& path, double target, co
     const double length = std::abs(to - from);
     const std::function<void()> back = path.checkpoint();
     double tried = length;
-    StepOutcome outcome = path.step_to(to);
-    if (outcome.kind == Kind::taken && length > lengths_.finest) {
+    const bool at_once = length <= lengths_.finest;
+    StepOutcome outcome = at_once ? path.step_to(to) : path.try_step_to(to);
+    if (outcome.kind == Kind::elsewhere && !at_once) {
+      back();
+      outcome = path.step_to(to);
+    } else if (outcome.kind == Kind::taken && !at_once) {
       const RememberingPath::Measures whole = path.measures();
       back();
       tried = 0.5 * length;

@@ -196,6 +196,13 @@ StepOutcome PlanarPush::step_to(double travel) {
   return {StepOutcome::Kind::taken};
 }
 
+StepOutcome PlanarPush::try_step_to(double travel) {
+  trying_ = true;
+  StepOutcome outcome = step_to(travel);
+  trying_ = false;
+  return outcome;
+}
+
 numerics::SolveReport PlanarPush::without_steps(double target, const numerics::SolveReport& last) {
   if (system_.wrapped.empty() && system_.mounts.empty()) return follow_arc(target);
   return ended(last.termination, last.message);
@@ -206,7 +213,7 @@ void PlanarPush::accept(const ContactStates& states_before) {
   const double before = point_.parameter;
   const std::vector<PushEvent::Kind> events = contact_events(states_before, system_);
   dissipated_ += friction_work(system_, point_, trial_);
-  if (sensitivity_ && own_steps_) {
+  if (sensitivity_ && own_steps_ && !trying_) {
     sensitivity_->carry_sections(states_before.sections, system_, trial_.parameter);
     differentiate(trial_);
   }

@@ -20,6 +20,7 @@ class PlanarPush final : public PushPath {
   PlanarPush(PushSetup setup, const PushProblem& test, const PushOptions& options);
 
   [[nodiscard]] StepOutcome step_to(double travel) override;
+  [[nodiscard]] StepOutcome try_step_to(double travel) override;
   /// Along the path's arc; not with a wrapped wire or a slipping mount, whose states would change on the way.
   [[nodiscard]] numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) override;
   [[nodiscard]] std::function<void()> checkpoint() override;
@@ -60,6 +61,7 @@ class PlanarPush final : public PushPath {
   std::optional<PushSensitivity> sensitivity_;
   std::optional<double> differentiated_at_;
   bool settling_ = false;  // at first touch
+  bool trying_ = false;    // a step that is taken back
   ContactMemory memory_;
   numerics::PathPoint trial_;
   numerics::PathPoint pressed_;  // last solution in which the pusher pressed
