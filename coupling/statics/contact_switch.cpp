@@ -39,7 +39,7 @@ bool settle_friction(SlidingContact& contact, const VertexTangent& v, const Vect
 }
 
 bool settle_mount(std::size_t which, PushSystem& system, const numerics::PathPoint& point,
-                  const ContactTolerance& tolerance) {
+                  const ContactTolerance& tolerance, ContactMemory& memory) {
   SlippingMount& mount = system.mounts[which];
   if (mount.follows) return false;
   const double drive = system.mount_drive(which, point);
@@ -47,6 +47,8 @@ bool settle_mount(std::size_t which, PushSystem& system, const numerics::PathPoi
     if (std::abs(drive) <= mount.limit + tolerance.force) return false;
     mount.slips = true;
     mount.slip_sign = drive > 0.0 ? 1.0 : -1.0;
+    const double before = mount.slip_sign * mount.last_drive - mount.limit;
+    if (before < -tolerance.force) memory.at_fraction(crossing(before, std::abs(drive) - mount.limit));
     return true;
   }
   // A pull (drive > 0) brings wire in.
@@ -90,7 +92,7 @@ void release_pusher(PushSystem& system, numerics::PathPoint& point, const PinFor
 bool change_state(PushSystem& system, numerics::PathPoint& point, ContactMemory& memory) {
   const ContactTolerance tolerance = contact_tolerance(system);
   for (std::size_t k = 0; k < system.mounts.size(); ++k) {
-    if (settle_mount(k, system, point, tolerance)) return true;
+    if (settle_mount(k, system, point, tolerance, memory)) return true;
   }
   const SlidingContact& pusher = system.sliding[0];
   if (pusher.status == ContactStatus::wrapped) return settle_wrap(system, point, tolerance);
@@ -160,8 +162,13 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
     contact.last_radial = (wire::vertex(state, contact.node) - centre).normalized();
     contact.last_force = point.border.segment<2>(system.wrapped_rows(k).force);
   }
-  for (std::size_t k = 0; k < system.mounts.size(); ++k) system.mounts[k].last = system.mount_place(k, point);
-  if (system.rod().has_memory()) system.sections = system.rod().remembered(state);
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    system.mounts[k].last = system.mount_place(k, point);
+    system.mounts[k].last_drive = system.mount_drive(k, point);
+  }
+  if (!system.rod().has_memory()) return;
+  system.sections = system.rod().remembered(state);
+  system.follow_drift(state.controls, point.parameter);
 }
 
 }  // namespace snare::coupling

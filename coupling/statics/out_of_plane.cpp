@@ -22,7 +22,7 @@ wire::SpatialEnd spatial_end(const wire::PlanarEnd& end) {
 
 }  // namespace
 
-wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness, double weight_across) {
+wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness) {
   const wire::PlanarRodProperties& p = planar.properties();
   wire::SpatialRodProperties properties;
   properties.bending_stiffness = p.bending_stiffness;
@@ -31,14 +31,14 @@ wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_sti
   properties.axial_stiffness = p.axial_stiffness;
   // With the clamps' director along y and no twist, kappa_1 is the curvature in the plane, up to its sign.
   properties.natural_curvature = {p.natural_curvature, 0.0};
-  properties.weight = {p.weight.x(), p.weight.y(), weight_across};
+  properties.weight = {p.weight.x(), p.weight.y(), 0.0};
   properties.left = spatial_end(p.left);
   properties.right = spatial_end(p.right);
   return {planar.mesh(), properties};
 }
 
 int out_of_plane_modes(const wire::PlanarRod& planar, const wire::PlanarState& state, double torsional_stiffness) {
-  const wire::SpatialRod rod = spatial_rod(planar, torsional_stiffness, 0.0);
+  const wire::SpatialRod rod = spatial_rod(planar, torsional_stiffness);
   const wire::SpatialState s = wire::in_space(rod, state);
   wire::RodAssembly assembly;
   rod.assemble(s, {false, false, false}, assembly);

@@ -6,9 +6,8 @@
 namespace snare::coupling {
 
 /// The rod of a planar push in space: same mesh, mounts, stiffnesses; isotropic in bending.
-/// weight_across: weight along z per unit length [N/m].
-[[nodiscard]] wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness,
-                                           double weight_across);
+/// Its weight acts in the plane. torsional_stiffness: GJ [N m^2], > 0.
+[[nodiscard]] wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_stiffness);
 
 /// Negative eigenvalues of the rod's tangent stiffness out of the plane at a planar state: modes in which the
 /// wire leaves the plane while the pusher, free along its axis, holds its point of contact in the plane. The

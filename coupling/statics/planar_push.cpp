@@ -21,14 +21,45 @@ constexpr int history_length = 4;  // points behind the predictor: a cubic
 }  // namespace
 
 PlanarPush::PlanarPush(PushSetup setup, const PushProblem& test, const PushOptions& options)
-    : PushPath(options, StepMeasure::attempted),
+    : PushPath(test, options, StepMeasure::attempted),
       setup_(std::move(setup)),
       system_(*setup_.system),
       torsional_stiffness_(test.wire.torsional_stiffness()) {
   point_ = setup_.start;
-  if (options.variations.empty()) return;
-  sensitivity_.emplace(test, setup_.rod->mesh(), options.variations);
-  remembers_ = test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
+  if (!options.variations.empty()) sensitivity_.emplace(test, setup_.rod->mesh(), options.variations);
+}
+
+std::function<void()> PlanarPush::checkpoint() {
+  const auto memories = sensitivity_ ? sensitivity_->memories() : PushSensitivity::Memories();
+  return [this, memories, point = point_, past = past_, states = system_.contact_states(), unstable = unstable_,
+          dissipated = dissipated_, differentiated_at = differentiated_at_, events = curve_.events.size()] {
+    point_ = point;
+    past_ = past;
+    system_.restore(states);
+    unstable_ = unstable;
+    dissipated_ = dissipated;
+    differentiated_at_ = differentiated_at;
+    if (sensitivity_) sensitivity_->restore(memories);
+    curve_.events.resize(events);
+    assembled_at_.reset();
+  };
+}
+
+// The force on the pusher, the material at the contact, and the places of the mounts that slip.
+RememberingPath::Measures PlanarPush::measures() {
+  const wire::PlanarRodProperties& p = system_.rod().properties();
+  const auto& reaction = system_.mount_reactions();
+  const double force = p.bending_stiffness / (span_ * span_) + reaction[0].norm() + reaction[1].norm();
+  const auto mounts = static_cast<Eigen::Index>(system_.mounts.size());
+  Measures m{Eigen::VectorXd(3 + mounts), Eigen::VectorXd(3 + mounts)};
+  m.values.head<2>() = system_.pusher_force(point_);
+  m.allowed.head<2>().setConstant(options_.path_tolerance * force);
+  // A pusher that is apart keeps abreast of some material; which one is of no consequence.
+  const bool apart = system_.sliding[0].status == ContactStatus::open;
+  m.values[2] = apart ? 0.0 : point_.border[system_.pusher_rows().coordinate];
+  for (Eigen::Index k = 0; k < mounts; ++k) m.values[3 + k] = system_.mounts[static_cast<std::size_t>(k)].last;
+  m.allowed.tail(1 + mounts).setConstant(0.01 * options_.path_tolerance * span_);
+  return m;
 }
 
 numerics::SolveReport PlanarPush::start() {
@@ -40,6 +71,39 @@ numerics::SolveReport PlanarPush::start() {
   pusher.status = pusher.friction > 0.0 && !pusher.holds_material ? ContactStatus::stick : ContactStatus::slip;
   remember_contact(system_, point_);
   past_.push_back(point_);
+  settling_ = true;
+  numerics::SolveReport settled = settle_mounts();
+  settling_ = false;
+  return settled;
+}
+
+// The loose wire was found between mounts that hold. One that does not hold it slips at first touch, the pusher standing
+// still: its limit falls from the force there, in steps that are halved when they fail.
+numerics::SolveReport PlanarPush::settle_mounts() {
+  constexpr double smallest_share = 1e-4;
+  const std::vector<SlippingMount> wanted = system_.mounts;
+  const auto slips = [](const SlippingMount& m) { return !m.follows && std::abs(m.last_drive) > m.limit; };
+  if (std::none_of(wanted.begin(), wanted.end(), slips)) return {};
+  double share = 0.0;
+  double step = 1.0;
+  while (share < 1.0) {
+    const double next = std::min(1.0, share + step);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const double excess = slips(wanted[k]) ? std::abs(wanted[k].last_drive) - wanted[k].limit : 0.0;
+      system_.mounts[k].limit = wanted[k].limit + (1.0 - next) * excess;
+    }
+    const StepOutcome outcome = step_to(point_.parameter);
+    if (outcome.kind == StepOutcome::Kind::stopped) return outcome.report;
+    if (outcome.kind != StepOutcome::Kind::failed) {
+      share = next;
+      continue;
+    }
+    step *= 0.5;
+    if (step < smallest_share) {
+      return ended(outcome.report.termination,
+                   "the mounts do not hold the loose wire, and no shape in which they do was found");
+    }
+  }
   return {};
 }
 
@@ -76,6 +140,8 @@ numerics::PathPoint PlanarPush::predict(double travel) {
 // Solves at one travel and settles the contact there. `trial_` is the result.
 numerics::SolveReport PlanarPush::solve(double travel) {
   trial_ = predict(travel);
+  // Else the sliders would stay behind by the material that moves in this step: an error of first order.
+  if (system_.rod().has_memory()) system_.carry_sections(travel);
   const Eigen::VectorXd predicted = trial_.band;
   const double predicted_move = (predicted - point_.band).lpNorm<Eigen::Infinity>();
   numerics::SolveReport report;
@@ -130,6 +196,13 @@ StepOutcome PlanarPush::step_to(double travel) {
   return {StepOutcome::Kind::taken};
 }
 
+StepOutcome PlanarPush::try_step_to(double travel) {
+  trying_ = true;
+  StepOutcome outcome = step_to(travel);
+  trying_ = false;
+  return outcome;
+}
+
 numerics::SolveReport PlanarPush::without_steps(double target, const numerics::SolveReport& last) {
   if (system_.wrapped.empty() && system_.mounts.empty()) return follow_arc(target);
   return ended(last.termination, last.message);
@@ -140,11 +213,14 @@ void PlanarPush::accept(const ContactStates& states_before) {
   const double before = point_.parameter;
   const std::vector<PushEvent::Kind> events = contact_events(states_before, system_);
   dissipated_ += friction_work(system_, point_, trial_);
-  if (sensitivity_ && remembers_) differentiate(trial_);
+  if (sensitivity_ && own_steps_ && !trying_) {
+    sensitivity_->carry_sections(states_before.sections, system_, trial_.parameter);
+    differentiate(trial_);
+  }
   const bool same_contact = !memory_.changed() && trial_.border.size() == point_.border.size();
   const bool turned = !past_.empty() && past_.size() >= 2 &&
                       (trial_.parameter - before) * (before - past_[past_.size() - 2].parameter) < 0.0;
-  if (!same_contact || turned) past_.clear();
+  if (!same_contact || turned || trial_.parameter == before) past_.clear();
   if (past_.size() >= 2 &&
       std::abs(trial_.parameter - before) < 1e-2 * std::abs(before - past_[past_.size() - 2].parameter)) {
     past_.pop_back();
@@ -166,10 +242,14 @@ void PlanarPush::begin_again_at(const numerics::PathPoint& point) {
   point_ = point;
   past_.push_back(point_);
   remember_contact(system_, point_);
+  system_.drift.rate = {};
 }
 
 void PlanarPush::differentiate(const numerics::PathPoint& at) {
-  sensitivity_->advance(system_, at, workspace_);
+  if (settling_)
+    sensitivity_->advance_at_touch(system_, at, workspace_);
+  else
+    sensitivity_->advance(system_, at, workspace_);
   differentiated_at_ = at.parameter;
 }
 
@@ -195,7 +275,7 @@ double PlanarPush::viscous_stiffness() {
 
 void PlanarPush::record(double travel) {
   if (sensitivity_) {
-    if (differentiated_at_ != point_.parameter || !remembers_) differentiate(point_);
+    if (differentiated_at_ != point_.parameter || !own_steps_) differentiate(point_);
     assembled_at_.reset();
   }
   const SlidingContact& pusher = system_.sliding[0];

@@ -6,6 +6,7 @@
 #include "coupling/statics/push_setup.hpp"
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,11 +20,15 @@ class PlanarPush final : public PushPath {
   PlanarPush(PushSetup setup, const PushProblem& test, const PushOptions& options);
 
   [[nodiscard]] StepOutcome step_to(double travel) override;
+  [[nodiscard]] StepOutcome try_step_to(double travel) override;
   /// Along the path's arc; not with a wrapped wire or a slipping mount, whose states would change on the way.
   [[nodiscard]] numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) override;
+  [[nodiscard]] std::function<void()> checkpoint() override;
+  [[nodiscard]] Measures measures() override;
 
  private:
   [[nodiscard]] numerics::SolveReport start() override;
+  [[nodiscard]] numerics::SolveReport settle_mounts();
   void record(double travel) override;
 
   // Steps (planar_push.cpp).
@@ -54,8 +59,9 @@ class PlanarPush final : public PushPath {
   std::deque<numerics::PathPoint> past_;  // accepted ones with the same contact, newest last
   numerics::PathWorkspace workspace_;
   std::optional<PushSensitivity> sensitivity_;
-  bool remembers_ = false;  // friction or a slipping mount: derivatives go from point to point
   std::optional<double> differentiated_at_;
+  bool settling_ = false;  // at first touch
+  bool trying_ = false;    // a step that is taken back
   ContactMemory memory_;
   numerics::PathPoint trial_;
   numerics::PathPoint pressed_;  // last solution in which the pusher pressed

@@ -75,9 +75,12 @@ struct PushCurve {
   std::vector<PushPoint> points;
   std::vector<PushEvent> events;
   std::vector<PushShape> shapes;
-  double natural_height = 0.0;   ///< of the wire at the contact before the push [m]
-  double touch_height = 0.0;     ///< of the pusher's centre at first touch [m]
-  int newton_iterations = 0;     ///< all, with those of the initial shape
+  double natural_height = 0.0;  ///< of the wire at the contact before the push [m]
+  double touch_height = 0.0;    ///< of the pusher's centre at first touch [m]
+  int newton_iterations = 0;    ///< all, with those of the initial shape
+  /// Travels at which the steps of the path's own ended [m], one list from each turning point to the next. Empty where the
+  /// points are the steps
+  std::vector<std::vector<double>> steps;
   numerics::SolveReport report;  ///< why it ended; `points` hold what was reached
 };
 

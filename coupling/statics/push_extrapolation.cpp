@@ -1,3 +1,4 @@
+#include "coupling/statics/push_path.hpp"
 #include "coupling/statics/push_solver.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 namespace snare::coupling {
 
 namespace {
+
+constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them, and are
 /// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh.
@@ -70,7 +73,6 @@ struct Refinement {
   double fine, half, quarter;
 
   [[nodiscard]] double extrapolated() const { return (64.0 * fine - 20.0 * half + quarter) / 45.0; }  // theory.md (W.11)
-  [[nodiscard]] double last_change() const { return fine - half; }
   [[nodiscard]] double largest_change() const { return std::max(std::abs(fine - half), std::abs(half - quarter)); }
   /// Whether the change falls as it does with a power of h between 1 and 5.
   [[nodiscard]] bool in_order() const {
@@ -109,24 +111,83 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
   return 2.0 * std::abs(p.force - third_order);
 }
 
+/// Of a coarse mesh only the curve is wanted, in the steps of the finest.
+PushOptions coarse(const PushOptions& options, const PushCurve& finest) {
+  PushOptions result = options;
+  result.steps = finest.steps;
+  result.shapes_at.clear();
+  result.progress = nullptr;
+  result.examine_out_of_plane = false;
+  result.examine_rates = false;
+  return result;
+}
+
+/// Without the variations, and every second of the steps left out.
+CoarseCurve with_longer_steps(const PushProblem& test, PushOptions options) {
+  options.variations.clear();
+  for (std::vector<double>& leg : options.steps) {
+    std::vector<double> ends;
+    for (std::size_t k = 1; k < leg.size(); k += 2) ends.push_back(leg[k]);
+    if (leg.size() % 2 == 1) ends.push_back(leg.back());
+    leg = std::move(ends);
+  }
+  return CoarseCurve(solve_push(test, options, coarsest));
+}
+
+// Index of the next point at a travel, searched from an index on; the number of points where the search fails.
+std::size_t find(const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
+  while (from < points.size() && points[from].travel != travel) ++from;
+  return from;
+}
+
+// The path is of first order in its steps: the change of its force in steps twice as long estimates its error. Errors are
+// remembered by the path, so the largest one up to a point counts.
+void add_path_error(const CoarseCurve& steps, const CoarseCurve& longer, ExtrapolatedCurve& result) {
+  double largest = 0.0;
+  std::size_t in_steps = 0;
+  std::size_t in_longer = 0;
+  for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
+    const double travel = result.curve.points[i].travel;
+    const std::size_t j = find(steps.points, in_steps, travel);
+    const std::size_t k = find(longer.points, in_longer, travel);
+    if (j < steps.points.size() && k < longer.points.size()) {
+      in_steps = j + 1;
+      in_longer = k + 1;
+      largest = std::max(largest, std::abs(steps.points[j].values[0] - longer.points[k].values[0]));
+    }
+    result.discretisation_error[i] += largest;
+  }
+}
+
 }  // namespace
+
+ExtrapolatedCurve solve_push_with_path_error(const PushProblem& test, const PushOptions& options) {
+  ExtrapolatedCurve result;
+  result.curve = solve_push(test, options);
+  result.discretisation_error.assign(result.curve.points.size(), 0.0);
+  if (result.curve.steps.empty() || result.curve.report.termination == numerics::Termination::interrupted)
+    return result;
+  PushOptions same_steps = coarse(options, result.curve);
+  same_steps.variations.clear();
+  const CoarseCurve steps(solve_push(test, same_steps, coarsest));
+  const CoarseCurve longer = with_longer_steps(test, same_steps);
+  result.curve.newton_iterations += steps.newton_iterations + longer.newton_iterations;
+  add_path_error(steps, longer, result);
+  return result;
+}
 
 ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options) {
   ExtrapolatedCurve result;
   result.curve = solve_push(test, options);
   result.discretisation_error.assign(result.curve.points.size(), 0.0);
   if (result.curve.report.termination == numerics::Termination::interrupted) return result;
-  PushOptions coarse_options = options;
-  coarse_options.shapes_at.clear();
-  coarse_options.progress = nullptr;
-  coarse_options.examine_out_of_plane = false;
-  coarse_options.examine_rates = false;
-  const CoarseCurve half(solve_push(test, coarse_options, 2));
-  const CoarseCurve quarter(solve_push(test, coarse_options, 4));
+  const PushOptions on_coarse = coarse(options, result.curve);
+  const CoarseCurve half(solve_push(test, on_coarse, 2));
+  const CoarseCurve quarter(solve_push(test, on_coarse, coarsest));
   result.curve.newton_iterations += half.newton_iterations + quarter.newton_iterations;
-  for (const CoarseCurve* coarse : {&half, &quarter}) {
-    if (coarse->report.termination != numerics::Termination::interrupted) continue;
-    result.curve.report = coarse->report;  // the forces of the fine mesh stay as they are
+  for (const CoarseCurve* other : {&half, &quarter}) {
+    if (other->report.termination != numerics::Termination::interrupted) continue;
+    result.curve.report = other->report;  // the forces of the fine mesh stay as they are
     return result;
   }
   if (half.report.usable() && quarter.report.usable()) {
@@ -138,10 +199,6 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
   std::size_t in_half = 0;
   std::size_t in_quarter = 0;
-  const auto find = [](const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
-    while (from < points.size() && points[from].travel != travel) ++from;
-    return from;
-  };
   for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
     PushPoint& p = result.curve.points[i];
     const std::size_t j = find(half.points, in_half, p.travel);
@@ -153,6 +210,11 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     const CoarsePoint& q = quarter.points[k];
     p.iterations += h.iterations + q.iterations;
     if (h.same_state(p) && q.same_state(p)) result.discretisation_error[i] = extrapolate(p, h, q);
+  }
+  if (!result.curve.steps.empty()) {
+    const CoarseCurve longer = with_longer_steps(test, on_coarse);
+    result.curve.newton_iterations += longer.newton_iterations;
+    add_path_error(quarter, longer, result);
   }
   return result;
 }

@@ -26,6 +26,12 @@ struct PushOptions {
   Instability instability = Instability::follow_path;
   int max_iterations = 12;      ///< Newton iterations a step
   double smallest_step = 1e-9;  ///< of the travel [m]
+  double largest_step = 0.05;   ///< of the travel, as a share of the span [-], > 0
+  /// Error of one step of a path with steps of its own, as a share of the forces on the wire [-], > 0
+  double path_tolerance = 1e-3;
+  /// PushCurve::steps of another mesh or of a test that differs little, to be taken instead of steps of its own: forces are
+  /// then smooth functions of the numbers of the test
+  std::vector<std::vector<double>> steps;
   /// Count the modes that leave the plane (a spatial factorisation a point)
   bool examine_out_of_plane = false;
   bool examine_rates = false;  ///< fill viscous_stiffness (planar pushes)

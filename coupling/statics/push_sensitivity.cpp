@@ -75,6 +75,79 @@ PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMe
   force_by_.assign(varied_.size(), 0.0);
 }
 
+PushSensitivity::Memories PushSensitivity::memories() const {
+  Memories result;
+  result.of_variations.reserve(varied_.size());
+  for (const Varied& varied : varied_) result.of_variations.push_back(varied.memory);
+  result.force_by = force_by_;
+  return result;
+}
+
+void PushSensitivity::restore(const Memories& memories) {
+  for (std::size_t k = 0; k < varied_.size(); ++k) varied_[k].memory = memories.of_variations[k];
+  force_by_ = memories.force_by;
+}
+
+// Derivatives of the controls at the last accepted point.
+wire::Controls PushSensitivity::controls_by(const PushSystem& system, const Varied& varied) {
+  const Memory& memory = varied.memory;
+  wire::Controls by{};
+  by[2] = (varied.sides[1].controls[2] - varied.sides[0].controls[2]) / (2.0 * varied.step);
+  if (system.sliding.size() > 1) by[2] = 0.0;  // supports: a contact's coordinate, below
+  for (std::size_t k = 0; k < system.sliding.size(); ++k) {
+    by[static_cast<std::size_t>(system.sliding[k].control)] += memory.coordinate[k];
+  }
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    if (system.mounts[k].feeds()) by[static_cast<std::size_t>(system.mounts[k].control())] = memory.mounts[k];
+  }
+  return by;
+}
+
+// Slips of the system's sections, and the material that they belong to, with the constants of the changed test.
+void PushSensitivity::put_sections(const wire::SectionMemory& sections, const PushSystem& system, const Varied& varied,
+                                   Side& side) const {
+  const Memory& memory = varied.memory;
+  wire::SectionMemory& changed = side.system->sections;
+  changed = sections;
+  const auto shift = [&side](std::vector<double>& values, const std::vector<double>& rates) {
+    for (std::size_t i = 0; i < rates.size() && i < values.size(); ++i) values[i] += side.amount * rates[i];
+  };
+  shift(changed.bending, memory.bending);
+  shift(changed.axial, memory.axial);
+  const wire::Controls by = controls_by(system, varied);
+  for (std::size_t k = 0; k < 3; ++k) changed.controls[k] += side.amount * (by[k] + memory.moved[k]);
+}
+
+void PushSensitivity::carry_sections(const wire::SectionMemory& before, const PushSystem& system, double travel) {
+  if (!system.rod().has_memory()) return;
+  const double step = travel - system.drift.travel;
+  for (Varied& varied : varied_) {
+    Memory& memory = varied.memory;
+    wire::Controls moved{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      moved[k] = step * memory.rate[k] + (varied.travel - memory.change.parameter) * system.drift.rate[k];
+    }
+    std::array<wire::SectionMemory, 2> carried;
+    for (std::size_t k = 0; k < 2; ++k) {
+      Side& side = varied.sides[k];
+      put_sections(before, system, varied, side);
+      wire::Controls to = side.system->sections.controls;
+      for (std::size_t c = 0; c < 3; ++c) {
+        to[c] += system.sections.controls[c] - before.controls[c] + side.amount * moved[c];
+      }
+      side.system->carry_sections(to);
+      carried[k] = side.system->sections;
+    }
+    const auto rates = [&varied](const std::vector<double>& from, const std::vector<double>& to,
+                                 std::vector<double>& rate) {
+      for (std::size_t i = 0; i < rate.size() && i < to.size(); ++i) rate[i] = (to[i] - from[i]) / (2.0 * varied.step);
+    };
+    rates(carried[0].bending, carried[1].bending, memory.bending);
+    rates(carried[0].axial, carried[1].axial, memory.axial);
+    memory.moved = moved;
+  }
+}
+
 // The states of the system's contacts with the constants of the changed test.
 void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side& side) const {
   side.system->restore(system.contact_states());
@@ -95,23 +168,9 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
     const auto known = memory.radial.find(contact.node);
     if (known != memory.radial.end()) contact.last_radial = turned(contact.last_radial, side.amount * known->second);
   }
-  const auto shift = [&side](std::vector<double>& values, const std::vector<double>& rates) {
-    for (std::size_t i = 0; i < rates.size() && i < values.size(); ++i) values[i] += side.amount * rates[i];
-  };
-  shift(states.sections.bending, memory.bending);
-  shift(states.sections.axial, memory.axial);
-  // The material that the sliders were remembered of.
-  wire::Controls& controls = states.sections.controls;
-  controls[2] += 0.5 * (side.amount > 0.0 ? 1.0 : -1.0) * (varied.sides[1].controls[2] - varied.sides[0].controls[2]);
-  // Supports: a contact's coordinate, below
-  if (states.sliding.size() > 1) controls[2] = system.sections.controls[2];
-  for (std::size_t k = 0; k < states.sliding.size(); ++k) {
-    controls[static_cast<std::size_t>(states.sliding[k].control)] += side.amount * memory.coordinate[k];
-  }
+  put_sections(system.sections, system, varied, side);
   for (std::size_t k = 0; k < states.mounts.size(); ++k) {
     SlippingMount& mount = states.mounts[k];
-    const auto control = static_cast<std::size_t>(mount.control());
-    if (mount.feeds()) controls[control] = system.sections.controls[control] + side.amount * memory.mounts[k];
     mount.limit = side.mounts[k].limit;
     mount.compliance = side.mounts[k].compliance + side.amount * varied.mount_compliance;
     mount.last += side.amount * memory.mounts[k];
@@ -130,6 +189,14 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
     if (held[0]) change.band[0] -= varied.mount_compliance * reactions[0].x();
     if (held[1]) change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
   }
+  // The differences begin with the change at the point before. A slider that has slipped by less than its memory differs would
+  // turn back on one side if the unknowns did not go along.
+  const numerics::PathPoint& last = varied.memory.change;
+  if (system.rod().has_memory() && last.band.size() == at.band.size() && last.border.size() == at.border.size()) {
+    const Eigen::Index inner = at.band.size() - 4;
+    change.band.segment(2, inner) = last.band.segment(2, inner);
+    change.border = last.border;
+  }
   Eigen::VectorXd band = Eigen::VectorXd::Zero(at.band.size());
   Eigen::VectorXd border = Eigen::VectorXd::Zero(at.border.size());
   for (Side& side : varied.sides) {
@@ -140,7 +207,7 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
   }
   workspace.solver.solve(workspace.system, band, border);
   change.band += band;
-  change.border = border;
+  change.border += border;
   return change;
 }
 
@@ -179,6 +246,14 @@ void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at,
   }
 }
 
+void PushSensitivity::advance_at_touch(PushSystem& system, const numerics::PathPoint& at,
+                                       numerics::PathWorkspace& workspace) {
+  std::vector<double> travels;
+  for (Varied& varied : varied_) travels.push_back(std::exchange(varied.travel, 0.0));
+  advance(system, at, workspace);
+  for (std::size_t k = 0; k < varied_.size(); ++k) varied_[k].travel = travels[k];
+}
+
 void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoint& at,
                                const numerics::PathPoint& change, Varied& varied) const {
   // Directions by central differences over the change of the whole state.
@@ -188,6 +263,7 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
   const numerics::PathPoint high = moved(at, change, varied.step);
   const wire::PlanarState low_state = minus.state(low);
   const wire::PlanarState high_state = plus.state(high);
+  const wire::Controls controls_before = controls_by(system, varied);
   for (std::size_t k = 0; k < system.sliding.size(); ++k) {
     varied.memory.coordinate[k] = change.border[system.sliding_rows(k).coordinate];
     varied.memory.angle[k] =
@@ -214,6 +290,19 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
   };
   varied.memory.bending = rates(before.bending, after.bending);
   varied.memory.axial = rates(before.axial, after.axial);
+  // (S - S_0) / (d - d_0)
+  const double step = at.parameter - system.drift.travel;
+  if (system.has_rate(step)) {
+    const wire::Controls now = system.state(at).controls;
+    const wire::Controls by = controls_by(system, varied);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double rate = (now[k] - system.drift.controls[k]) / step;
+      varied.memory.rate[k] =
+          (by[k] - controls_before[k] - rate * (change.parameter - varied.memory.change.parameter)) / step;
+    }
+  }
+  varied.memory.change = change;
+  varied.memory.moved = {};
 }
 
 }  // namespace snare::coupling

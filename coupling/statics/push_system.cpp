@@ -60,6 +60,31 @@ std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount
   return result;
 }
 
+void PushSystem::carry_sections(double travel) {
+  wire::Controls to = drift.controls;
+  for (std::size_t k = 0; k < 3; ++k) to[k] += (travel - drift.travel) * drift.rate[k];
+  carry_sections(to);
+}
+
+void PushSystem::follow_drift(const wire::Controls& controls, double travel) {
+  const double step = travel - drift.travel;
+  if (has_rate(step)) {
+    for (std::size_t k = 0; k < 3; ++k) drift.rate[k] = (controls[k] - drift.controls[k]) / step;
+  }
+  drift.controls = controls;
+  drift.travel = travel;
+}
+
+void PushSystem::carry_sections(const wire::Controls& to) {
+  const auto carry = [&](std::vector<double>& values, const std::vector<wire::SliderElement>& elements, bool of_edges) {
+    values =
+        wire::carried_over(rod_->mesh(), values, static_cast<int>(elements.size()), of_edges, sections.controls, to);
+  };
+  carry(sections.bending, rod_->properties().bending_sliders, false);
+  carry(sections.axial, rod_->properties().axial_sliders, true);
+  sections.controls = to;
+}
+
 wire::PlanarState PushSystem::state(const numerics::PathPoint& at) const {
   wire::PlanarState result{at.band, controls_};
   for (std::size_t k = 0; k < sliding.size(); ++k) {

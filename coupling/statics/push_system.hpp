@@ -24,8 +24,9 @@ struct SlippingMount {
   /// pusher the driving forces of both are equal whatever share each has.
   bool follows = false;
   bool slips = false;
-  double slip_sign = 0.0;  ///< of the driving force while it slips, +1: the wire pulls, or -1 [-]
-  double last = 0.0;       ///< S, or where the mount stands along the chord, at the last accepted state [m]
+  double slip_sign = 0.0;   ///< of the driving force while it slips, +1: the wire pulls, or -1 [-]
+  double last = 0.0;        ///< S, or where the mount stands along the chord, at the last accepted state [m]
+  double last_drive = 0.0;  ///< driving force there [N]
 
   /// The wire slips through it; else it slides with the wire.
   [[nodiscard]] bool feeds() const { return kind == wire::MountSlip::feeds; }
@@ -39,12 +40,20 @@ struct SlippingMount {
 [[nodiscard]] std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount, double friction,
                                                          const wire::Controls& controls);
 
+/// The material that the vertices stand for, and how fast it changes along the path.
+struct Drift {
+  wire::Controls controls{};  ///< at the last accepted point [m]
+  double travel = 0.0;        ///< there [m]
+  wire::Controls rate{};      ///< by the travel, over the last step [-]
+};
+
 /// Contacts and mount of a push, with what they remember of the last accepted state.
 struct ContactStates {
   std::vector<SlidingContact> sliding;  ///< the pusher first, then the supports
   std::vector<WrappedContact> wrapped;
   std::vector<SlippingMount> mounts;  ///< that can slip
   wire::SectionMemory sections;       ///< of a wire with sliders
+  Drift drift;                        ///< of a wire with sliders
 };
 
 /// Places of a sliding contact in the border: of its unknowns (columns), and of its equations (rows).
@@ -87,6 +96,15 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] const ContactStates& contact_states() const { return *this; }
   /// Puts back what `contact_states` gave.
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
+
+  /// Carries the slips of the sections over to the vertices at which their material will be at `travel` [m], at the rate of
+  /// the last step; or at which other controls put it.
+  void carry_sections(double travel);
+  void carry_sections(const wire::Controls& to);
+  /// Keeps the controls of an accepted point [m], at its travel [m], and their rate unless the step to it was too short for one.
+  void follow_drift(const wire::Controls& controls, double travel);
+  /// Whether a step of the travel [m] is long enough for a rate: in a shorter one that would be round-off.
+  [[nodiscard]] bool has_rate(double step) const { return std::abs(step) > 1e-5 * length_; }
 
   /// Columns of the border: unknowns of all contacts, and one of every mount that can slip.
   [[nodiscard]] int border_unknowns() const;

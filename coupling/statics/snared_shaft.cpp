@@ -80,7 +80,7 @@ numerics::SolveReport HeldWire::seat(const SnareSpecification& snare) {
   const Vector2d centre = setup.system->pusher_centre(at);
   pin.centre = {centre.x(), centre.y(), 0.0};
   pin.friction = snare.wire.pusher.friction;
-  contact_.emplace(setup, at, spatial_rod(*setup.rod, snare.wire.wire.torsional_stiffness(), 0.0), pin,
+  contact_.emplace(setup, at, spatial_rod(*setup.rod, snare.wire.wire.torsional_stiffness()), pin,
                    SlidingLength::stretched);
   point_ = contact_->start();
   numerics::SolveReport report = contact_->solve(point_, newton_iterations);

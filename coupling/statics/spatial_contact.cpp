@@ -32,6 +32,12 @@ SpatialContact::SpatialContact(const PushSetup& planar, const numerics::PathPoin
   start_.border[Rows::coordinate] = at.border[rows.coordinate];
 }
 
+void SpatialContact::set_weight_across(double weight) {
+  wire::SpatialRodProperties properties = rod_.properties();
+  properties.weight.z() = weight;
+  rod_ = wire::SpatialRod(rod_.mesh(), properties);
+}
+
 numerics::SolveReport SpatialContact::solve(numerics::PathPoint& trial, int max_iterations) {
   return numerics::correct(system_, trial, workspace_, max_iterations);
 }
@@ -102,6 +108,14 @@ void SpatialContact::accept(const numerics::PathPoint& point) {
   pin.last_coordinate = point.border[Rows::coordinate];
   pin.last_normal = g.normal;
   pin.last_zeta = g.zeta;
+}
+
+void SpatialContact::restore(const Memory& memory) {
+  system_.pin = memory.pin;
+  system_.restore(memory.accepted);
+  dissipated_ = memory.dissipated;
+  last_friction_ = memory.last_friction;
+  slides_ = memory.slides;
 }
 
 }  // namespace snare::coupling

@@ -31,6 +31,8 @@ class SpatialContact {
   [[nodiscard]] const SpatialPushSystem& system() const { return system_; }
   [[nodiscard]] SpatialPin& pin() { return system_.pin; }
   [[nodiscard]] const SpatialPin& pin() const { return system_.pin; }
+  /// Sets the weight per length across the plane [N/m].
+  void set_weight_across(double weight);
   /// The planar equilibrium in space, at parameter 0: to begin with, not accepted yet.
   [[nodiscard]] const numerics::PathPoint& start() const { return start_; }
 
@@ -51,6 +53,23 @@ class SpatialContact {
 
   /// Makes a solved point the one from which slip, frames and friction's work go on.
   void accept(const numerics::PathPoint& point);
+
+  /// What the next equilibrium depends on, to be put aside and given to `restore` where steps are taken back.
+  struct Memory {
+    SpatialPin pin;
+    wire::SpatialState accepted;
+    double dissipated = 0.0;                                  ///< [J]
+    Eigen::Vector2d last_friction = Eigen::Vector2d::Zero();  ///< on the wire in (c, a) [N]
+    bool slides = false;
+  };
+  [[nodiscard]] Memory memory() const {
+    return {system_.pin, system_.accepted(), dissipated_, last_friction_, slides_};
+  }
+  void restore(const Memory& memory);
+  /// Assembles and factorises at a point, where reactions and pivots are wanted and the last solution was elsewhere.
+  void assemble(const numerics::PathPoint& at) {
+    static_cast<void>(numerics::tangent(system_, at, workspace_, nullptr));
+  }
 
   /// Whether the wire slides over the pin at the accepted point.
   [[nodiscard]] bool slides() const { return slides_; }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace snare::coupling {
@@ -27,12 +28,14 @@ Vector3d axis_of(double tilt) {
 class SpatialPush final : public PushPath {
  public:
   SpatialPush(const PushProblem& test, const PushOptions& options, int coarsening)
-      : PushPath(options, StepMeasure::planned), test_(test), coarsening_(coarsening) {}
+      : PushPath(test, options, StepMeasure::planned), test_(test), coarsening_(coarsening) {}
 
   [[nodiscard]] StepOutcome step_to(double travel) override;
   [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
     return ended(last.termination, last.message);
   }
+  [[nodiscard]] std::function<void()> checkpoint() override;
+  [[nodiscard]] Measures measures() override;
 
  private:
   [[nodiscard]] numerics::SolveReport start() override;
@@ -42,7 +45,7 @@ class SpatialPush final : public PushPath {
 
   // The parts of start(), each a report that is usable or says why the push ends.
   [[nodiscard]] numerics::SolveReport seat_in_plane(double seat);
-  [[nodiscard]] numerics::SolveReport turn_pin();
+  [[nodiscard]] numerics::SolveReport leave_plane();
   [[nodiscard]] numerics::SolveReport find_first_touch(double seat);
 
   [[nodiscard]] numerics::SolveReport solve(numerics::PathPoint& trial);
@@ -59,6 +62,7 @@ class SpatialPush final : public PushPath {
   std::optional<SpatialContact> contact_;
   numerics::PathPoint before_;  // accepted one before, for the predictor
   bool has_before_ = false;
+  bool assembled_ = true;  // the last assembly was at the accepted point
 };
 
 numerics::SolveReport SpatialPush::interrupted() const {
@@ -74,12 +78,35 @@ numerics::SolveReport SpatialPush::solve(numerics::PathPoint& trial) {
 void SpatialPush::accept(const numerics::PathPoint& point) {
   const bool slid = contact_->slides();
   contact_->accept(point);
+  assembled_ = true;
   if (contact_->slides() != slid) {
     curve_.events.push_back({slid ? PushEvent::Kind::slip_ends : PushEvent::Kind::slip_begins, point.parameter});
   }
   before_ = point_;
   has_before_ = point_.band.size() > 0 && point.parameter != point_.parameter;
   point_ = point;
+}
+
+std::function<void()> SpatialPush::checkpoint() {
+  return [this, memory = contact_->memory(), point = point_, before = before_, has_before = has_before_,
+          events = curve_.events.size()] {
+    contact_->restore(memory);
+    point_ = point;
+    before_ = before;
+    has_before_ = has_before;
+    curve_.events.resize(events);
+    assembled_ = false;
+  };
+}
+
+RememberingPath::Measures SpatialPush::measures() {
+  const double bending = contact_->rod().properties().bending_stiffness;
+  const std::array<Vector3d, 2>& reaction = contact_->system().mount_reactions();
+  const double force = bending / (span_ * span_) + reaction[0].norm() + reaction[1].norm();
+  Measures m{Eigen::Vector4d(), Eigen::Vector4d::Constant(options_.path_tolerance * force)};
+  m.values << SpatialPushSystem::force(point_), point_.border[SpatialPushSystem::Rows::coordinate];
+  m.allowed[3] = 0.01 * options_.path_tolerance * span_;
+  return m;
 }
 
 // The planar push without friction to a small travel, taken into space.
@@ -104,82 +131,83 @@ numerics::SolveReport SpatialPush::seat_in_plane(double seat) {
   SpatialPin pin;
   pin.centre = {flat.centre.x(), flat.centre.y(), 0.0};
   pin.motion = {flat.motion.x(), flat.motion.y(), 0.0};
-  const double weight_across = test_.wire.mass_per_length() * test_.gravity[2];
-  contact_.emplace(setup, at, spatial_rod(*setup.rod, test_.wire.torsional_stiffness(), weight_across), pin,
-                   SlidingLength::material);
+  contact_.emplace(setup, at, spatial_rod(*setup.rod, test_.wire.torsional_stiffness()), pin, SlidingLength::material);
   point_ = contact_->start();
   point_.parameter = seat;
   return {};
 }
 
-// Turns the pin into its tilt with the travel held; a step that fails is halved.
-numerics::SolveReport SpatialPush::turn_pin() {
-  double tilt = 0.0;
-  double step = test_.pusher.tilt;
-  while (tilt != test_.pusher.tilt) {
-    const double next = std::abs(test_.pusher.tilt - tilt) <= std::abs(step) ? test_.pusher.tilt : tilt + step;
-    contact_->pin().axis = axis_of(next);
-    numerics::PathPoint trial = point_;
-    const numerics::SolveReport report = solve(trial);
-    if (!report.usable()) {
-      step *= 0.5;
-      if (std::abs(step) < 1e-5) return ended(report.termination, "the tilted pusher finds no equilibrium");
-      continue;
+// Turns the pin into its tilt, then lets the weight act across the plane, the travel held; a step that fails is halved.
+numerics::SolveReport SpatialPush::leave_plane() {
+  constexpr double smallest_share = 1e-4;
+  const auto in_steps = [&](const auto& set, const char* message) {
+    double share = 0.0;
+    double step = 1.0;
+    while (share < 1.0) {
+      const double next = std::min(1.0, share + step);
+      set(next);
+      numerics::PathPoint trial = point_;
+      numerics::SolveReport report = solve(trial);
+      if (!report.usable()) {
+        step *= 0.5;
+        if (step < smallest_share) return ended(report.termination, message);
+        continue;
+      }
+      share = next;
+      accept(trial);
     }
-    tilt = next;
-    accept(trial);
-  }
-  const numerics::SolveReport report = solve(point_);
-  if (!report.usable()) return ended(report.termination, "the weight across the plane finds no equilibrium");
-  accept(point_);
-  return {};
+    return numerics::SolveReport();
+  };
+  const auto tilt = [&](double share) { contact_->pin().axis = axis_of(share * test_.pusher.tilt); };
+  numerics::SolveReport report = in_steps(tilt, "the tilted pusher finds no equilibrium");
+  if (!report.usable() || test_.gravity[2] == 0.0) return report;
+  const double weight = test_.wire.mass_per_length() * test_.gravity[2];
+  return in_steps([&](double share) { contact_->set_weight_across(share * weight); },
+                  "the weight across the plane finds no equilibrium");
 }
 
-// Travel counts from where the force vanishes: the swung wire meets a tilted pin at another height. Goes down
-// to a hundredth of the seat, extrapolates the force to zero, and shifts the pin so that travel 0 is there.
+// Travel counts from where the force vanishes: the swung wire meets a tilted pin at another height, and a wire that
+// its weight pulls across the plane hangs there. Follows the path down by secants of the force, none of them much longer
+// than the last, and shifts the pin so that travel 0 is where the force is zero.
 numerics::SolveReport SpatialPush::find_first_touch(double seat) {
-  const auto failed = [this](const numerics::SolveReport& report) {
-    return ended(report.termination, "the tilted pusher does not come to its first touch");
-  };
-  double travel = seat;
-  for (int k = 0; k < 3; ++k) {
+  constexpr double left = 0.02;  // share of a secant that is not gone: without force a loose wire swings freely
+  const double finest = 1e-5 * seat;
+  double upper_force = force_along(point_);
+  double upper = point_.parameter;
+  double step = -0.5 * seat;
+  numerics::SolveReport last;
+  for (int count = 0; count < 400 && point_.parameter > -4.0 * span_; ++count) {
+    numerics::PathPoint trial = predict(point_.parameter + step);
+    last = solve(trial);
+    if (!last.usable()) {
+      step *= 0.5;
+      if (std::abs(step) < finest) break;
+      continue;
+    }
+    accept(trial);
     const double force = force_along(point_);
-    numerics::PathPoint lower = point_;
-    lower.parameter = travel - 0.5 * std::min(seat, std::abs(travel));
-    if (const numerics::SolveReport report = solve(lower); !report.usable()) return failed(report);
-    const double slope = (force - force_along(lower)) / (travel - lower.parameter);
-    const double zero = travel - force / slope;
-    numerics::PathPoint near = point_;
-    near.parameter = zero + 0.02 * (travel - zero);
-    near.band += (near.parameter - travel) / (lower.parameter - travel) * (lower.band - point_.band);
-    near.border += (near.parameter - travel) / (lower.parameter - travel) * (lower.border - point_.border);
-    if (const numerics::SolveReport report = solve(near); !report.usable()) return failed(report);
-    accept(near);
-    travel = near.parameter;
-    if (std::abs(force_along(near)) < 1e-4 * std::abs(force)) break;
+    const double slope = (upper_force - force) / (upper - point_.parameter);
+    const double to_zero = -force / slope;  // by the secant
+    upper = point_.parameter;
+    upper_force = force;
+    if (std::abs(to_zero) < finest) {
+      SpatialPin& pin = contact_->pin();
+      pin.centre += (point_.parameter + to_zero) * pin.motion;
+      curve_.touch_height = pin.centre.y();
+      point_.parameter = -to_zero;
+      return {};
+    }
+    // Where the force falls slower than the secant says, towards it in longer and longer steps.
+    const double longest = 2.0 * std::abs(step);
+    step = slope > 0.0 ? std::clamp((1.0 - left) * to_zero, -longest, longest) : -longest;
   }
-  // The last bit by the local stiffness; its iterations are not counted.
-  numerics::PathPoint next = point_;
-  next.parameter = travel + 0.01 * seat;
-  if (const numerics::SolveReport report = contact_->solve(next, start_iterations); !report.usable()) {
-    return failed(report);
-  }
-  const double f0 = force_along(point_);
-  const double f1 = force_along(next);
-  const double touch = travel - f0 * (next.parameter - travel) / (f1 - f0);
-  SpatialPin& pin = contact_->pin();
-  pin.centre += touch * pin.motion;
-  curve_.touch_height = pin.centre.y();
-  point_.parameter = travel - touch;
-  return {};
+  return ended(last.termination, "the pusher does not come to its first touch");
 }
 
 numerics::SolveReport SpatialPush::start() {
-  double first = 0.0;
-  for (const double t : test_.travel) first = first == 0.0 ? t : first;
-  const double seat = std::min(first > 0.0 ? first : 1e-4, 1e-4);
+  const double seat = 5e-4 * span_;
   if (numerics::SolveReport report = seat_in_plane(seat); !report.usable()) return report;
-  if (numerics::SolveReport report = turn_pin(); !report.usable()) return report;
+  if (numerics::SolveReport report = leave_plane(); !report.usable()) return report;
   if (numerics::SolveReport report = find_first_touch(seat); !report.usable()) return report;
   forget_before();
   contact_->pin().friction = test_.pusher.friction;
@@ -239,6 +267,8 @@ bool SpatialPush::record_touch() {
 }
 
 void SpatialPush::record(double travel) {
+  if (!assembled_) contact_->assemble(point_);
+  assembled_ = true;
   const SpatialPushSystem& system = contact_->system();
   const wire::SpatialState s = system.state(point_);
   const SpatialPin& pin = system.pin;

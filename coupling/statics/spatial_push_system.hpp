@@ -52,6 +52,9 @@ class SpatialPushSystem final : public numerics::PathProblem {
   [[nodiscard]] wire::SpatialState state(const numerics::PathPoint& at) const;
   /// Carries the frames to an accepted point, from which the next ones are transported.
   void accept(const numerics::PathPoint& at) { accepted_ = state(at); }
+  /// The state at the accepted point; to be given to `restore` where steps are taken back.
+  [[nodiscard]] const wire::SpatialState& accepted() const { return accepted_; }
+  void restore(const wire::SpatialState& accepted) { accepted_ = accepted; }
   [[nodiscard]] const wire::SpatialRod& rod() const { return *rod_; }
   /// Force of the pin on the wire [N].
   [[nodiscard]] static Eigen::Vector3d force(const numerics::PathPoint& at) {

@@ -150,12 +150,8 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   push.examine_out_of_plane = options.examine_out_of_plane;
   push.variations = options.variations;
   push.examine_rates = flows || options.examine_rates;
-  if (solver.extrapolate) {
-    result.curve = coupling::solve_push_extrapolated(test, push);
-  } else {
-    result.curve.curve = coupling::solve_push(test, push);
-    result.curve.discretisation_error.assign(result.curve.curve.points.size(), 0.0);
-  }
+  result.curve = solver.extrapolate ? coupling::solve_push_extrapolated(test, push)
+                                    : coupling::solve_push_with_path_error(test, push);
   // Points that the path passed between the asked ones (arcs through folds) have no reading.
   std::vector<const coupling::PushPoint*> at(result.before_touch, nullptr);
   for (const coupling::PushPoint& p : result.curve.curve.points) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -102,6 +104,108 @@ TEST(PathFollower, EndsWhereThePathEnds) {
   EXPECT_FALSE(follow(path, 1.0, {}).usable());
   EXPECT_FALSE(path.gave_up);
   EXPECT_EQ(path.asked.size(), 1u);
+}
+
+/// y' = rate(t, y) by the implicit method of first order, with a linear rate: y follows cos t, behind by what has been.
+class LaggingPath final : public RememberingPath {
+ public:
+  [[nodiscard]] double parameter() const override { return at; }
+  [[nodiscard]] StepOutcome step_to(double to) override {
+    const double h = to - at;
+    value = (value + h * lag * std::cos(to)) / (1.0 + h * lag);
+    at = to;
+    ++count;
+    return {};
+  }
+  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+    return last;
+  }
+  [[nodiscard]] std::function<void()> checkpoint() override {
+    return [this, now = at, y = value] {
+      at = now;
+      value = y;
+    };
+  }
+  [[nodiscard]] Measures measures() override {
+    return {Eigen::VectorXd::Constant(1, value), Eigen::VectorXd::Constant(1, tolerance)};
+  }
+
+  static constexpr double lag = 5.0;
+  double at = 0.0;
+  double value = 0.0;
+  double tolerance = 1e-4;
+  int count = 0;
+};
+
+// Of y' = k (cos t - y), y(0) = 0:  y = k/(k^2 + 1) (k cos t + sin t - k exp(-k t)).
+double lagging(double t) {
+  constexpr double k = LaggingPath::lag;
+  return k / (k * k + 1.0) * (k * std::cos(t) + std::sin(t) - k * std::exp(-k * t));
+}
+
+double error_of_own_steps(double tolerance, std::vector<double>* ends = nullptr) {
+  LaggingPath path;
+  path.tolerance = tolerance;
+  OwnSteps steps({1e-3, 1e-6, 1e-9, 1.0});
+  const auto keep = [&](double from, double to, const std::function<void()>& back) {
+    const double at = path.at;
+    const double value = path.value;
+    back();
+    EXPECT_EQ(path.at, from);
+    EXPECT_LT(from, to);
+    path.at = at;
+    path.value = value;
+    if (ends != nullptr) ends->push_back(to);
+    return numerics::SolveReport();
+  };
+  while (path.at < 3.0) EXPECT_TRUE(steps.advance(path, 3.0, keep).usable());
+  return std::abs(path.value - lagging(3.0));
+}
+
+TEST(OwnSteps, FollowTheirErrorEstimate) {
+  std::vector<double> ends;
+  const double coarse = error_of_own_steps(1e-4, &ends);
+  EXPECT_EQ(ends.back(), 3.0);
+  EXPECT_TRUE(std::is_sorted(ends.begin(), ends.end()));
+  EXPECT_LT(coarse, 1e-3);  // a handful of errors of 1e-4 that decay
+  // The error of a step goes with the square of its length, that of the path with the length: a tenth for a hundredth.
+  EXPECT_NEAR(error_of_own_steps(1e-6) / coarse, 0.1, 0.05);
+}
+
+TEST(OwnSteps, EndAtAnEventAndGoOnAsBefore) {
+  // Whatever passes 0.7 is an event there.
+  class WithEvent final : public RememberingPath {
+   public:
+    [[nodiscard]] double parameter() const override { return at; }
+    [[nodiscard]] StepOutcome step_to(double to) override {
+      if (at < 0.7 - 1e-9 && to > 0.7 + 1e-9) return {Kind::event, {}, (0.7 - at) / (to - at)};
+      at = to;
+      return {};
+    }
+    [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+      return last;
+    }
+    [[nodiscard]] std::function<void()> checkpoint() override {
+      return [this, now = at] { at = now; };
+    }
+    [[nodiscard]] Measures measures() override { return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)}; }
+    double at = 0.0;
+  } path;
+  OwnSteps steps({0.01, 1e-6, 1e-9, 0.2});
+  std::vector<double> ends;
+  const auto keep = [&](double /*from*/, double to, const std::function<void()>& /*back*/) {
+    ends.push_back(to);
+    return numerics::SolveReport();
+  };
+  while (path.at < 1.0) ASSERT_TRUE(steps.advance(path, 1.0, keep).usable());
+  EXPECT_TRUE(std::any_of(ends.begin(), ends.end(), [](double end) { return std::abs(end - 0.7) < 1e-9; }));
+  EXPECT_LT(ends.size(), 40u);  // doubled from 0.01 to 0.2, and again from a quarter of the step before the event
+}
+
+TEST(PathFollower, TakesNoStepBeyondTheLargest) {
+  ScriptedPath path([](double, double) { return StepOutcome{}; });
+  EXPECT_TRUE(follow(path, 1.0, {1e-9, StepMeasure::attempted, {}, 0.25}).usable());
+  EXPECT_EQ(path.asked, (std::vector<double>{0.25, 0.5, 0.75, 1.0}));
 }
 
 }  // namespace
