@@ -77,10 +77,10 @@ struct FrameVariables {
   }
 };
 
-/// The frames' motions, in SI units, with these as variables.
-template <class Variables, std::size_t K>
+/// The frames' motions, in SI units, with these as variables, and room for `Inner` more behind them.
+template <class Variables, int Inner = 0, std::size_t K>
 [[nodiscard]] auto with_derivatives(const std::array<FrameMotion<double>, K>& now) {
-  using S = Dual<Variables::count>;
+  using S = Dual<Variables::count + Inner>;
   std::array<FrameMotion<S>, K> dual;
   for (std::size_t k = 0; k < K; ++k) {
     const auto variables = [&](const Eigen::Vector3d& value, typename Variables::Kind kind) {
@@ -111,26 +111,39 @@ template <std::size_t K>
   return list;
 }
 
-/// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
-template <class Variables, class S, std::size_t K>
-[[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
+/// Adds the derivatives of a vector by the frames' motions to three rows of D of FrameForces, in SI units.
+template <class Variables, std::size_t K, class S>
+void add_derivatives(const Vector3<S>& vector, Eigen::Index row, Eigen::MatrixXd& D) {
   constexpr auto last = static_cast<Eigen::Index>(K - 1);
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
-  Eigen::Index row = 0;
-  for (const FrameWrench<S>& w : wrenches) {
-    for (const Vector3<S>* part : {&w.moment, &w.force}) {
-      for (int i = 0; i < 3; ++i, ++row) {
-        for (std::size_t k = 0; k < K; ++k) {
-          for (const auto kind : {Variables::turn, Variables::shift, Variables::spin, Variables::velocity}) {
-            if (!Variables::has(k, kind)) continue;
-            const Eigen::RowVector3d by = (*part)[i].v.template segment<3>(Variables::first(k, kind)).transpose();
-            D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) = by;
-            if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
-          }
-        }
+  for (int i = 0; i < 3; ++i, ++row) {
+    for (std::size_t k = 0; k < K; ++k) {
+      for (const auto kind : {Variables::turn, Variables::shift, Variables::spin, Variables::velocity}) {
+        if (!Variables::has(k, kind)) continue;
+        const Eigen::RowVector3d by = vector[i].v.template segment<3>(Variables::first(k, kind)).transpose();
+        D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) += by;
+        if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
       }
     }
   }
+}
+
+/// Adds the derivatives of all wrenches to the first rows of D.
+template <class Variables, class S, std::size_t K>
+void add_derivatives(const std::array<FrameWrench<S>, K>& wrenches, Eigen::MatrixXd& D) {
+  Eigen::Index row = 0;
+  for (const FrameWrench<S>& w : wrenches) {
+    for (const Vector3<S>* part : {&w.moment, &w.force}) {
+      add_derivatives<Variables, K>(*part, row, D);
+      row += 3;
+    }
+  }
+}
+
+/// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
+template <class Variables, class S, std::size_t K>
+[[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
+  add_derivatives<Variables>(wrenches, D);
   return D;
 }
 
@@ -171,7 +184,7 @@ template <class S>
   const double speed = plain.norm();
   // The law along w: f = -mu(s) N w/s; at rest it is linear in w, as the law is.
   const auto at = [&](double s) {
-    return tangent_force(friction, {Eigen::Vector2d::Zero(), Eigen::Vector2d(s, 0.0), value_of(normal)});
+    return tangent_force(friction, {Eigen::Vector2d::Zero(), Eigen::Vector2d(s, 0.0), value_of(normal), 0.0});
   };
   if (speed < 1e-12) return -w * S(at(0.0).by_sliding(0, 0));
   const TangentForce f = at(speed);

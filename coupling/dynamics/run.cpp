@@ -63,6 +63,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
                                                 frame(w.shaft.carrier, w.shaft.X_WS)));
   for (const BodyContact& b : motion.body_contacts)
     presses_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
+  seen_.resize(body_contacts_.size());
   for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -234,7 +235,12 @@ bool MotionRun::write_until(double time) {
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    if (give(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
+    VectorXd integrals = ida_->interpolate_integrals(t);
+    // The polynomial through the last steps may overshoot between them; dissipated energy only grows.
+    const double lost = integrals_[integral::dissipated];
+    integrals[integral::dissipated] =
+        std::clamp(integrals[integral::dissipated], std::min(lost_before_, lost), std::max(lost_before_, lost));
+    if (give(sample({t, y, rate}, integrals))) return true;
   }
   return false;
 }
@@ -272,6 +278,10 @@ void MotionRun::resume(const MotionState& from) {
   for (ContactGroup& c : contacts_) c.restore_state(memory);
   peak_.restore_state(memory);
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
+  for (Seen& s : seen_) {
+    s.closed = numerics::take(memory) != 0.0;
+    s.sticking = numerics::take(memory) != 0.0;
+  }
   restore_phases(memory);
   for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
@@ -319,6 +329,7 @@ MotionResult MotionRun::go(double limit) {
     std::swap(before_, y_);
     y_ = ida_->y();
     rate_ = ida_->rate();
+    lost_before_ = integrals_[integral::dissipated];
     integrals_ = ida_->integrals();
     const bool phase = look_for_phase();
     const VectorXd integrands = phase ? ida_->interpolate_integrals(time_, 1) : ida_->integral_rates();
@@ -361,6 +372,8 @@ MotionResult MotionRun::go(double limit) {
       sums_.events.push_back({time_, static_cast<int>(first_press() + k), 0, presses_[k]->sample(y_).arc,
                               found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
+    if (!behind)
+      watch_body_contacts(before, std::span(found).subspan(event - body_contacts_.size(), body_contacts_.size()));
     for (LoadPart& l : loads_) changed = l.enter(time_) || changed;
     for (RobotLoop& l : loops_) changed = l.enter(time_, changed || phase || touch_or_lift) || changed;
     if (phase) {
@@ -410,6 +423,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   for (const ContactGroup& c : contacts_) c.save_state(memory);
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
+  for (const Seen& s : seen_) memory.insert(memory.end(), {s.closed ? 1.0 : 0.0, s.sticking ? 1.0 : 0.0});
   phases_.save_state(memory);
   sensed_.save_state(memory);
   for (const RobotLoop& l : loops_) l.save_state(memory);

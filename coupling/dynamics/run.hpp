@@ -110,6 +110,9 @@ class MotionRun {
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
+  /// Notes touches that began at a start, stick and slip of bodies that touch, in the step from a time [s]. found: events of the integrator,
+  /// those of the contacts of bodies.
+  void watch_body_contacts(double time_before, std::span<const int> found);
   [[nodiscard]] double longest_step() const;
   /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
   void measure(double from);
@@ -138,6 +141,11 @@ class MotionRun {
   std::deque<LawWirePart> law_wires_;
   std::deque<BodyContactPart> body_contacts_;
   std::vector<PressPart*> presses_;  // both of them
+  /// How a contact of bodies was at the last accepted step.
+  struct Seen {
+    bool closed = false, sticking = false;
+  };
+  std::vector<Seen> seen_;  // by body_contacts_
   std::deque<LoadPart> loads_;
   PhaseWatch phases_;
   SensedReadings sensed_;
@@ -146,6 +154,7 @@ class MotionRun {
   Eigen::VectorXd y_, rate_;
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
+  double lost_before_ = 0.0;  // dissipated up to the step before [J]
   PeakForce peak_;
   ForceRecord forces_;                     // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire

@@ -47,6 +47,7 @@ void MotionRun::make_rates() {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
   }
   for (WirePairPart& p : pairs_) p.set_bristle_rates(y_, rate_);
+  for (const BodyContactPart& b : body_contacts_) b.set_bristle_rates(y_, rate_);
 }
 
 void MotionRun::settle() {
