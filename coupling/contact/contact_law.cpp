@@ -1,9 +1,13 @@
 #include "coupling/contact/contact_law.hpp"
 
+#include "coupling/contact/ranged_law.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace snare::coupling {
 
@@ -17,38 +21,32 @@ LawPlace middle(double half_length, double half_span) {
   return {2.0 * half_span, half_span, 2.0 * half_length, 0.0};
 }
 
-/// F = max(0, A d^2 + B d + C). Its energy is the integral over the parts of the way on which the parabola is positive.
-class PressingParabola final : public SpringLaw {
- public:
-  PressingParabola(double a, double b, double c)
-      : parabola_(coupling::quadratic_law()->with(Vector3d(a, b, c))), zeros_(zeros_of(a, b, c)) {}
-
-  double force(double d) const override { return std::max(0.0, parabola_->force(d)); }
-  double stiffness(double d) const override { return parabola_->force(d) > 0.0 ? parabola_->stiffness(d) : 0.0; }
-  double curvature(double d) const override { return parabola_->force(d) > 0.0 ? parabola_->curvature(d) : 0.0; }
-  double energy(double d) const override {
-    double sum = 0.0, from = 0.0;
-    for (const double to : {std::clamp(zeros_[0], 0.0, d), std::clamp(zeros_[1], 0.0, d), d}) {
-      if (parabola_->force(0.5 * (from + to)) > 0.0) sum += parabola_->energy(to) - parabola_->energy(from);
-      from = to;
-    }
-    return sum;
-  }
-
- private:
-  /// In their order; without real zeros twice 0.
-  static Eigen::Vector2d zeros_of(double a, double b, double c) {
-    if (a == 0.0) return Eigen::Vector2d::Constant(b != 0.0 ? -c / b : 0.0);
-    const double square = b * b - 4.0 * a * c;
-    if (square <= 0.0) return Eigen::Vector2d::Zero();
+/// Zeros of A d^2 + B d + C at d > 0, in their order [m].
+std::vector<double> zeros(double a, double b, double c) {
+  std::vector<double> all;
+  const double square = b * b - 4.0 * a * c;
+  if (square >= 0.0) {
     const double q = -0.5 * (b + std::copysign(std::sqrt(square), b));
-    const double first = q / a, second = q != 0.0 ? c / q : 0.0;
-    return {std::min(first, second), std::max(first, second)};
+    if (a != 0.0) all.push_back(q / a);
+    if (q != 0.0) all.push_back(c / q);
   }
+  std::erase_if(all, [](double d) { return d <= 0.0; });
+  std::ranges::sort(all);
+  return all;
+}
 
-  SpringLawPointer parabola_;
-  Eigen::Vector2d zeros_;
-};
+/// Where A d^2 + B d + C is negative at d > 0: between some of its zeros.
+std::vector<PullingRange> pulling_ranges(double a, double b, double c) {
+  std::vector<PullingRange> ranges;
+  double from = 0.0;
+  const auto add = [&](double to, double inside) {
+    if ((a * inside + b) * inside + c < 0.0) ranges.push_back({from, to});
+    from = to;
+  };
+  for (const double zero : zeros(a, b, c)) add(zero, 0.5 * (from + zero));
+  add(std::numeric_limits<double>::infinity(), 2.0 * from + 1.0);
+  return ranges;
+}
 
 }  // namespace
 
@@ -102,7 +100,7 @@ ContactLaw step_damped_law(double k, double p, double c, double depth) {
 }
 
 ContactLaw quadratic_law(double a, double b, double c) {
-  return ContactLaw(std::make_shared<PressingParabola>(a, b, c));
+  return ContactLaw(std::make_shared<PressingLaw>(quadratic_law()->with(Vector3d(a, b, c)), pulling_ranges(a, b, c)));
 }
 
 ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span, Damping damping) {

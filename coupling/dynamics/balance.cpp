@@ -123,7 +123,7 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     const ContactSample s = springs_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
     rates[integral::contacts + 3 * count + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
-    rates[integral::dissipated] += springs_[k].power(at).lost;
+    rates[integral::laws] += springs_[k].power(at).lost;
     rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
@@ -135,7 +135,8 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     const auto index = static_cast<Eigen::Index>(first_press() + k);
     rates.segment<3>(integral::contacts + 3 * index) = s.force;
     rates[integral::contacts + 3 * count + index] = s.normal_force;
-    constraints_->add_forces(*presses_[k], work, at, held);
+    rates[integral::laws] += work.power.lost;
+    constraints_->add_forces(*presses_[k], work.wrenches, at, held);
   }
   for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
   rates.segment<3>(integral::outer) += held.force;
@@ -155,6 +156,13 @@ void MotionRun::watch_law_wire(std::size_t k, double tension) {
   if (share <= largest.share) return;
   largest = {share, tension, 0.0, 0.0, time_};
   if (share >= 1.0 && wire.strength.ends_run) broken_ = wire.name + strength_reached(wire.strength, largest);
+}
+
+double MotionRun::law_loss(const DaePoint& at) const {
+  double sum = 0.0;
+  for (const LawPart& s : springs_) sum += s.power(at).lost;
+  for (const PressPart* p : presses_) sum += p->work(at.y).power.lost;
+  return sum;
 }
 
 // The integrator has no event where bodies touch from the start on.
@@ -272,7 +280,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  e.dissipated += integrals[integral::dissipated];
+  // The polynomials through the last steps may overshoot between them; what is dissipated only grows.
+  e.dissipated = std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
+                            lost_before_, lost_);
   e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   s.energy = e;

@@ -72,62 +72,34 @@ struct Rubbed {
   double slider_speed = 0.0;              // [m/s]
 };
 
-template <class S>
-Rubbed<S> rub_smoothly(const MotionFriction& friction, const Pressed<S>& a) {
-  Rubbed<S> r;
-  if (!friction.acts()) return r;
-  r.force = -smooth_friction(friction, a.slide, a.normal);
-  for (int i = 0; i < 3; ++i) r.heat += value_of(r.force[i]) * value_of(a.slide[i]);
-  return r;
-}
-
-// See tangent_force and bristle_flow; z in the axes of the shape.
-template <class S>
-Rubbed<S> rub_bristle(const MotionFriction& friction, const Pressed<S>& a, const Vector3<S>& z,
-                      const Eigen::Matrix<S, 3, 3>& R_WS) {
-  using std::sqrt;
-  constexpr double idle = BristleMeans::idle_load, forget = BristleMeans::idle_load / BristleMeans::idle_time;
-  const double time = friction.bristle_time;
-  const double stiffness = friction.static_coefficient / friction.bristle_displacement;
-  Rubbed<S> r;
-  const Vector3<S> bent = R_WS * z, standing_up = a.n * a.n.dot(bent), lying = bent - standing_up;
-  const Vector3<S> total = lying + a.slide * S(time);
-  const double size = std::sqrt(value_of(S(total.squaredNorm()))), normal = value_of(a.normal);
-  const double speed = std::sqrt(value_of(S(a.slide.squaredNorm())));
-  const SlipCoefficient slip = slip_coefficient(friction, speed);
-  Vector3<S> moved = a.slide * a.elastic;
-  if (stiffness * value_of(a.elastic) * size <= slip.value * normal) {
-    r.force = total * (a.elastic * stiffness);
-  } else {
-    S coefficient(slip.value);
-    if (slip.slope != 0.0) {
-      const S slides = sqrt(a.slide.squaredNorm());
-      coefficient = lifted(slip.value, slip.slope, slides, 0.0, slides);
-    }
-    r.force = total * (coefficient * a.normal / sqrt(total.squaredNorm()));
-    moved = (r.force / S(stiffness) - lying * a.elastic) / S(time);
-    r.slider_speed = (size - slip.value * normal / (stiffness * value_of(a.elastic))) / time;
-  }
-  const bool follows = value_of(a.elastic_rate) > -value_of(a.elastic) / time;
-  const S growth = follows ? a.elastic_rate : -a.elastic / S(time);
-  const Vector3<S> flow = moved - standing_up * (a.elastic / S(time)) - bent * (S(0.5) * growth);
-  r.rate = R_WS.transpose() * (flow - bent * S(forget)) / (a.elastic + S(idle));
-  double squares = 0.0, taken = 0.0, stored = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    squares += value_of(bent[i]) * value_of(bent[i]);
-    taken += value_of(r.force[i]) * value_of(a.slide[i]);
-    stored += value_of(bent[i]) * value_of(flow[i]);
-  }
-  r.energy = 0.5 * stiffness * (value_of(a.elastic) + idle) * squares;
-  r.heat = taken - stiffness * (stored + (0.5 * value_of(a.elastic_rate) - forget) * squares);
-  return r;
-}
-
-/// The bristle's deflection at a point, zero without bristles.
+// The law of (M.9) for the part of the bristle in the tangent plane. What stands upright decays as the slider does, and all of it forgets:
+// see BristleMeans. z in the axes of the shape.
 template <class S>
 Rubbed<S> rub(const MotionFriction& friction, const Pressed<S>& a, const Vector3<S>& z,
-              const std::array<FrameMotion<S>, 2>& frames) {
-  return friction.has_bristle() ? rub_bristle(friction, a, z, frames[of_shape].R) : rub_smoothly(friction, a);
+              const Eigen::Matrix<S, 3, 3>& R_WS) {
+  Rubbed<S> r;
+  if (!friction.acts()) return r;
+  const Vector3<S> bent = R_WS * z, upright = a.n * a.n.dot(bent);
+  const BristleInputs<S> in{bent - upright, a.slide, a.normal, a.elastic, a.elastic_rate};
+  const BristleStateIn<3> at = in.state();
+  const TangentForceIn<3> f = tangent_force(friction, at);
+  r.force = lifted(f.force, in, [&](const BristleChangeIn<3>& by) { return force_change(f, by); });
+  r.heat = f.force.dot(at.sliding);
+  if (!friction.has_bristle()) return r;
+  constexpr double idle = BristleMeans::idle_load, forget = idle / BristleMeans::idle_time;
+  const double time = friction.bristle_time;
+  const BristleFlowIn<3> flow = bristle_flow(friction, at, f, value_of(a.elastic_rate));
+  const Vector3<S> lying_flow =
+      lifted(flow.flow, in, [&](const BristleChangeIn<3>& by) { return flow_change(friction, at, f, flow, by); });
+  const S decay = a.elastic / S(time) + S(0.5) * (flow.growth_follows ? a.elastic_rate : -a.elastic / S(time));
+  r.rate = R_WS.transpose() * (lying_flow - upright * decay - bent * S(forget)) / (a.elastic + S(idle));
+  r.slider_speed = f.slider_speed;
+  const double stiffness = friction.static_coefficient / friction.bristle_displacement;
+  const double square = values_of(bent).squaredNorm(), upright_square = values_of(upright).squaredNorm();
+  r.energy = 0.5 * stiffness * (at.elastic + idle) * square;
+  r.heat =
+      flow.heat + stiffness * (forget * square + (value_of(decay) - 0.5 * value_of(a.elastic_rate)) * upright_square);
+  return r;
 }
 
 template <class S>
@@ -203,7 +175,7 @@ std::vector<BodyContactPart::Acting> BodyContactPart::acting(const Frames& now, 
   std::vector<Acting> list;
   for (const auto& [index, field] : points_inside(now)) {
     const Pressed<double> a = press(contact_, index, field, now);
-    list.push_back({index, a, rub(contact_.friction, a, bristle(y, index), now)});
+    list.push_back({index, a, rub(contact_.friction, a, bristle(y, index), now[of_shape].R)});
   }
   return list;
 }
@@ -278,7 +250,7 @@ Eigen::MatrixXd BodyContactPart::derivatives(const VectorView& y) const {
     Vector3<S> z = bristle(y, index).cast<S>();
     for (int i = 0; has_bristle() && i < 3; ++i) z[i].v[first_bristle + i] = 1.0;
     const Pressed<S> a = press(contact_, index, field, dual);
-    const Rubbed<S> r = rub(contact_.friction, a, z, dual);
+    const Rubbed<S> r = rub(contact_.friction, a, z, dual[of_shape].R);
     std::array<FrameWrench<S>, 2> wrenches;
     add_wrenches(wrenches, dual, a, r);
     add_derivatives<Variables>(wrenches, D);

@@ -175,21 +175,48 @@ template <int N>
   return Dual<N>(value, by_x * x.v + by_y * y.v);
 }
 
+/// The numbers of a vector without their derivatives. In whatever unit they have.
+template <class S>
+[[nodiscard]] Eigen::Vector3d values_of(const Vector3<S>& x) {
+  return {value_of(x[0]), value_of(x[1]), value_of(x[2])};
+}
+
+/// What friction between bodies depends on, in numbers with derivatives or without.
+template <class S>
+struct BristleInputs {
+  Vector3<S> bristle, sliding;            ///< z [m], w [m/s]
+  S normal{}, elastic{}, elastic_rate{};  ///< p, p_e [N], dp_e/dt [N/s]
+
+  [[nodiscard]] BristleStateIn<3> state() const {
+    return {values_of(bristle), values_of(sliding), value_of(normal), value_of(elastic)};
+  }
+};
+
+/// A vector that depends on them by its value and by `change`, which returns its change by those of the inputs.
+template <class Change>
+[[nodiscard]] Eigen::Vector3d lifted(const Eigen::Vector3d& value, const BristleInputs<double>& /*in*/,
+                                     const Change& /*change*/) {
+  return value;
+}
+template <int N, class Change>
+[[nodiscard]] Vector3<Dual<N>> lifted(const Eigen::Vector3d& value, const BristleInputs<Dual<N>>& in,
+                                      const Change& change) {
+  Vector3<Dual<N>> f = value.cast<Dual<N>>();
+  for (int k = 0; k < N; ++k) {
+    const auto slopes = [k](const Vector3<Dual<N>>& x) { return Eigen::Vector3d(x[0].v[k], x[1].v[k], x[2].v[k]); };
+    const Eigen::Vector3d by = change(BristleChangeIn<3>{slopes(in.bristle), slopes(in.sliding), in.normal.v[k],
+                                                         in.elastic.v[k], in.elastic_rate.v[k]});
+    for (int i = 0; i < 3; ++i) f[i].v[k] = by[i];
+  }
+  return f;
+}
+
 /// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.  theory.md (M.9)
 template <class S>
 [[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w, const S& normal) {
-  if (!friction.acts()) return Vector3<S>::Zero();
-  Eigen::Vector3d plain;
-  for (int i = 0; i < 3; ++i) plain[i] = value_of(w[i]);
-  const double speed = plain.norm();
-  // The law along w: f = -mu(s) N w/s; at rest it is linear in w, as the law is.
-  const auto at = [&](double s) {
-    return tangent_force(friction, {Eigen::Vector2d::Zero(), Eigen::Vector2d(s, 0.0), value_of(normal), 0.0});
-  };
-  if (speed < 1e-12) return -w * S(at(0.0).by_sliding(0, 0));
-  const TangentForce f = at(speed);
-  const S s = w.norm();
-  return -w / s * lifted(f.force.x(), f.by_sliding(0, 0), s, f.by_normal.x(), normal);
+  const BristleInputs<S> in{Vector3<S>::Zero(), w, normal, S(0.0), S(0.0)};
+  const TangentForceIn<3> f = tangent_force(friction, in.state());
+  return -lifted(f.force, in, [&f](const BristleChangeIn<3>& by) { return force_change(f, by); });
 }
 
 }  // namespace snare::coupling

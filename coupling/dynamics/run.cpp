@@ -110,8 +110,8 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
 }
 
 int MotionRun::default_order() const {
-  constexpr int of_rods = 2, of_laws = 3, of_bodies = 5;
-  if (!rods_.empty()) return of_rods;
+  constexpr int a_stable = 2, of_laws = 3, of_bodies = 5;
+  if (!rods_.empty() || std::ranges::any_of(body_contacts_, &BodyContactPart::has_bristle)) return a_stable;
   return springs_.empty() && presses_.empty() ? of_bodies : of_laws;
 }
 
@@ -235,14 +235,18 @@ bool MotionRun::write_until(double time) {
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    VectorXd integrals = ida_->interpolate_integrals(t);
-    // The polynomial through the last steps may overshoot between them; dissipated energy only grows.
-    const double lost = integrals_[integral::dissipated];
-    integrals[integral::dissipated] =
-        std::clamp(integrals[integral::dissipated], std::min(lost_before_, lost), std::max(lost_before_, lost));
-    if (give(sample({t, y, rate}, integrals))) return true;
+    const MotionSample between = sample({t, y, rate}, ida_->interpolate_integrals(t));
+    lost_before_ = between.energy.dissipated;
+    if (give(between)) return true;
   }
   return false;
+}
+
+// No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its tolerance.
+void MotionRun::count_losses() {
+  const double others = integrals_[integral::laws] + constraints_->lost(y_);
+  lost_ = std::max(integrals_[integral::dissipated] + others, lost_);  // not a number, if that is not
+  integrals_[integral::dissipated] = lost_ - others;
 }
 
 void MotionRun::begin() {
@@ -282,11 +286,14 @@ void MotionRun::resume(const MotionState& from) {
     s.closed = numerics::take(memory) != 0.0;
     s.sticking = numerics::take(memory) != 0.0;
   }
+  lost_ = lost_before_ = numerics::take(memory);
   restore_phases(memory);
   for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
   for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
   system_->restore_state(y_, memory);
+  law_losses_ = LossSum(integrals_[integral::laws]);
+  law_losses_.begin(time_, law_loss({time_, y_, rate_}));
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
 }
@@ -329,11 +336,17 @@ MotionResult MotionRun::go(double limit) {
     std::swap(before_, y_);
     y_ = ida_->y();
     rate_ = ida_->rate();
-    lost_before_ = integrals_[integral::dissipated];
     integrals_ = ida_->integrals();
     const bool phase = look_for_phase();
     const VectorXd integrands = phase ? ida_->interpolate_integrals(time_, 1) : ida_->integral_rates();
     forces_.add(time_, integrands.tail(of_contacts));
+    const bool cut = phase || advance == numerics::IdaAdvance::event;
+    law_losses_.add(time_, cut ? law_loss({time_, y_, rate_}) : integrands[integral::laws], [this](double t) {
+      return law_loss({t, ida_->interpolate(t), rate_});
+    });
+    integrals_[integral::laws] = law_losses_.sum();
+    lost_before_ = lost_;
+    count_losses();
     measure(before);
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
@@ -424,6 +437,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
   for (const Seen& s : seen_) memory.insert(memory.end(), {s.closed ? 1.0 : 0.0, s.sticking ? 1.0 : 0.0});
+  memory.push_back(lost_);
   phases_.save_state(memory);
   sensed_.save_state(memory);
   for (const RobotLoop& l : loops_) l.save_state(memory);

@@ -52,6 +52,8 @@ void MotionRun::make_rates() {
 
 void MotionRun::settle() {
   make_rates();
+  count_losses();
+  law_losses_.begin(time_, law_loss({time_, y_, rate_}));
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
 }

@@ -85,6 +85,60 @@ rotation_deg = [13.958985, 10.611458, 0.0]
                  0.1);
 }
 
+// A block that falls 12 um on to a ramp of 10 degrees slides until it is carried, by micrometres, and then rests: friction is 0.5. What lies
+// there has touched once.
+TEST_F(Dissipation, OfABlockThatRestsOnARampEnds) {
+  for (const char* model : {"model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",
+                            "model = \"spring_dashpot\"\nk_N_m = 5e3\nc_Ns_m = 50.0\n",
+                            "model = \"step_damped\"\nk = 1e7\np = 1.5\nc_Ns_m = 100.0\nfull_depth_mm = 0.1\n"}) {
+    SCOPED_TRACE(model);
+    const std::string text = std::string(R"(schema = "snare-scenario/2"
+title = "a block on a ramp"
+duration_s = 2.0
+output_interval_s = 0.01
+[gravity]
+vector_m_s2 = [1.703483, 0.0, -9.660969]
+[[bodies]]
+name = "block"
+mass_kg = 1.0
+inertia_kg_m2 = [2e-3, 2e-3, 2e-3]
+position_mm = [0.0, 0.0, 30.0]
+[[shapes]]
+name = "hull"
+frame = "block"
+kind = "cylinder"
+radius_mm = 50.0
+length_mm = 60.0
+[[shapes]]
+name = "ramp"
+frame = "world"
+kind = "plane"
+[[contacts]]
+name = "rest"
+shape = "ramp"
+other_shape = "hull"
+friction = 0.5
+)") + model;
+    const NamedMotion run = read_scenario(write("scene.toml", text), {}).motions.runs.at(0);
+    double late_speed = 0.0, place = 0.0, lost = 0.0, late_lost = 0.0;
+    const coupling::MotionResult result =
+        coupling::simulate(run.motion, run.options, [&](const coupling::MotionSample& s) {
+          EXPECT_GE(s.energy.dissipated, lost);
+          lost = s.energy.dissipated;
+          place = s.bodies[0].position.x();
+          if (s.time < 1.0) return false;
+          if (late_lost == 0.0) late_lost = lost;
+          late_speed = std::max(late_speed, s.bodies[0].velocity.norm());
+          return false;
+        });
+    ASSERT_TRUE(result.report.usable()) << result.report.message;
+    EXPECT_LT(std::abs(place), 1e-4);
+    EXPECT_LT(late_speed, 1e-6);        // the tolerance of velocities
+    EXPECT_LT(lost - late_lost, 2e-6);  // 1e-6 m/s against 2 N, in 1 s
+    EXPECT_EQ(std::ranges::count(result.events, coupling::MotionEvent::Kind::touch, &coupling::MotionEvent::kind), 1);
+  }
+}
+
 // Edges and cylinders with friction of either law, one or two wires, bodies that meet with each of the laws.
 TEST_F(SlowDissipation, OfRandomScenesGrows) {
   std::mt19937 random(51);
