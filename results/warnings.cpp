@@ -83,11 +83,15 @@ std::vector<std::string> wire_warnings(const reduction::WireFile& file) {
 namespace {
 
 /// Reports an error of the energy balance beyond 1 % of the energy exchanged: the largest change of kinetic, elastic or potential energy, of
-/// dissipated energy or of work.
-std::vector<std::string> energy_doubts(const std::vector<coupling::MotionSample>& samples) {
+/// dissipated energy or of work. Where less is exchanged than the default tolerance of places resolves to 1 % against the largest force, as by a
+/// body that settles to rest, it reports nothing.
+std::vector<std::string> energy_doubts(const FinishedMotion& run) {
   constexpr double most = 0.01;
-  constexpr double least = 1e-9;  // exchanged [J]: below it nothing moves that a tolerance would resolve
+  const std::vector<coupling::MotionSample>& samples = run.samples;
   if (samples.empty()) return {};
+  double force = 0.1;  // [N]: where nothing presses
+  for (const double peak : run.result.peak_force) force = std::max(force, peak);
+  const double least = force * coupling::MotionOptions{}.body_position_tolerance / most;  // [J]
   const coupling::EnergyBalance& start = samples.front().energy;
   double exchanged = 0.0, gained = 0.0;
   for (const coupling::MotionSample& s : samples) {
@@ -111,7 +115,7 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
     const coupling::Motion& motion = run.asked.motion;
     const std::string of = finished.size() > 1 ? run.asked.name + ", " : "";
     sentences.add("", run.asked.warnings);
-    sentences.add(finished.size() > 1 ? run.asked.name : "", energy_doubts(run.samples));
+    sentences.add(finished.size() > 1 ? run.asked.name : "", energy_doubts(run));
     for (std::size_t k = 0; k < motion.wires.size(); ++k) {
       // Its diameter is known from what touches it.
       const auto touching = std::find_if(motion.contacts.begin(), motion.contacts.end(), [k](const auto& c) {
