@@ -65,19 +65,21 @@ struct PlaneCrossing {
 };
 
 /// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
-/// slope is t/rho. A mount into which the shaft is pressed, rho <= r, has none of them: the string goes on along the surface.
+/// slope is t/rho; it meets the shaft at r^2/rho along the way to the mount. A mount into which the shaft is pressed, rho <= r, has none of
+/// them: the string goes on along the surface, and pulls at the mount itself.
 template <class S>
 struct Tangent {
-  S length{}, over_the_arc{};
+  S length{}, over_the_arc{}, foot;
   double turn = 0.0;
 
-  Tangent(const S& rho, double r) {
+  Tangent(const S& rho, double r) : foot(rho) {
     using std::sqrt;
     constexpr double grazing = 1e-6;  // of the radius: shorter tangents do not change
     const double distance = value_of(rho), square = distance * distance - r * r;
     if (!(square > 0.0)) return;
     const double t = std::sqrt(square);
     turn = std::acos(r / distance);
+    foot = r * r / rho;
     over_the_arc = lifted(t - r * turn, t / distance, rho, 0.0, rho);
     length = t > grazing * r ? S(sqrt(rho * rho - r * r)) : S(t);
   }
@@ -194,13 +196,11 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
     const S flat = on_p.over_the_arc + on_t.over_the_arc + r * angle, height = z_t - z_p;
     length = sqrt(flat * flat + height * height);
     const Vector3<S> p_unit = p / rho_p, t_unit = t / rho_t;
-    const Vector3<S> m_p = p_unit * (r / rho_p) + axis.cross(p_unit) * (t_p / rho_p);
-    const Vector3<S> m_t = t_unit * (r / rho_t) - axis.cross(t_unit) * (t_t / rho_t);
     const S rise = height / length, along = flat / length;
     u_p = (axis.cross(p_unit) * (r / rho_p) - p_unit * (t_p / rho_p)) * along + axis * rise;
     u_t = (-axis.cross(t_unit) * (r / rho_t) - t_unit * (t_t / rho_t)) * along - axis * rise;
-    q_p = c + m_p * S(r) + axis * (z_p + height * t_p / flat);
-    q_t = c + m_t * S(r) + axis * (z_t - height * t_t / flat);
+    q_p = c + p_unit * on_p.foot + axis.cross(p_unit) * (r * t_p / rho_p) + axis * (z_p + height * t_p / flat);
+    q_t = c + t_unit * on_t.foot - axis.cross(t_unit) * (r * t_t / rho_t) + axis * (z_t - height * t_t / flat);
     a.point = (q_p + q_t) * S(0.5);
     a.share = (t_p + 0.5 * (flat - t_p - t_t)) / flat;
   } else {
