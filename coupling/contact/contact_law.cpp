@@ -54,7 +54,7 @@ Vector3d ContactLaw::operator()(double d, double rate) const {
   if (d <= 0.0) return Vector3d::Zero();
   Vector3d force(spring_->force(d), spring_->stiffness(d), 0.0);
   if (damping_) force += damping_(d, rate);
-  return force.x() > 0.0 ? force : Vector3d::Zero();
+  return force.x() <= 0.0 ? Vector3d::Zero() : force;  // what is not a number stays that
 }
 
 Vector3d ContactLaw::elastic(double d) const {

@@ -34,7 +34,7 @@ class Dissipation : public test::FolderFixture {
 };
 class SlowDissipation : public Dissipation {};
 
-constexpr const char* head = R"(schema = "snare-scenario/2"
+constexpr const char* askew_head = R"(schema = "snare-scenario/2"
 title = "a body that strikes wires askew"
 duration_s = 0.04
 output_interval_s = 0.001
@@ -44,7 +44,7 @@ checkpoint_interval_s = 10.0
 
 // The edge slides askew over the wire and leaves it: the approach across the wire and the rate of the gap have opposite signs.
 TEST_F(Dissipation, OfAnEdgeThatLeavesAWireAskewGrows) {
-  expect_growing(std::string(head) + R"(
+  expect_growing(std::string(askew_head) + R"(
 [damping]
 bending_time_s = 1e-4
 axial_time_s = 1e-5
@@ -153,7 +153,7 @@ TEST_F(SlowDissipation, OfRandomScenesGrows) {
   };
   for (int k = 0; k < 14; ++k) {
     SCOPED_TRACE(k);
-    std::string text = head;
+    std::string text = askew_head;
     text += "[gravity]\nvector_m_s2 = " + vector(10.0) + "\n";
     for (int w = 0; w < 1 + k % 2; ++w) {
       text += fmt::format(
