@@ -260,7 +260,7 @@ TEST(MotionState, AFailureKeepsWhatWasReached) {
   motion.contacts[0].friction = {};
   // A law that breaks down at some depth.
   motion.contacts[0].law = ContactLaw(
-      linear_law()->with(VectorXd::Constant(1, 1e3)),
+      linear_law()->with(Eigen::VectorXd::Constant(1, 1e3)),
       [](double depth, double) -> Vector3d { return Vector3d::Constant(depth > 2e-5 ? std::nan("") : 0.0); });
   MotionOptions options;
   options.duration = 0.05;
