@@ -64,7 +64,7 @@ struct ContactGeometry : CurvePoint {
 /// A place on a wire between its mounts, or that of a mount.
 enum class ContactPlace { wire, mount };
 
-/// beside: used only where friction has bristles.
+/// beside: used only where friction has bristles. y in SI units.
 [[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape,
                                                const CurvePoint& curve, const BodyPart& body,
                                                const numerics::VectorView& y, const BristlesBeside& beside,

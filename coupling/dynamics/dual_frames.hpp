@@ -127,7 +127,7 @@ void add_derivatives(const Vector3<S>& vector, Eigen::Index row, Eigen::MatrixXd
   }
 }
 
-/// Adds the derivatives of all wrenches to the first rows of D.
+/// Adds the derivatives of all wrenches to the first rows of D, in SI units.
 template <class Variables, class S, std::size_t K>
 void add_derivatives(const std::array<FrameWrench<S>, K>& wrenches, Eigen::MatrixXd& D) {
   Eigen::Index row = 0;
@@ -187,17 +187,19 @@ struct BristleInputs {
   Vector3<S> bristle, sliding;            ///< z [m], w [m/s]
   S normal{}, elastic{}, elastic_rate{};  ///< p, p_e [N], dp_e/dt [N/s]
 
+  /// The numbers alone, in SI units.
   [[nodiscard]] BristleStateIn<3> state() const {
     return {values_of(bristle), values_of(sliding), value_of(normal), value_of(elastic)};
   }
 };
 
-/// A vector that depends on them by its value and by `change`, which returns its change by those of the inputs.
+/// A vector that depends on them, in SI units, by its value and by `change`, which returns its change by those of the inputs.
 template <class Change>
 [[nodiscard]] Eigen::Vector3d lifted(const Eigen::Vector3d& value, const BristleInputs<double>& /*in*/,
                                      const Change& /*change*/) {
   return value;
 }
+/// The same with derivatives, in SI units.
 template <int N, class Change>
 [[nodiscard]] Vector3<Dual<N>> lifted(const Eigen::Vector3d& value, const BristleInputs<Dual<N>>& in,
                                       const Change& change) {

@@ -70,7 +70,7 @@ struct PairGeometry {
   }
 };
 
-/// pair: its foundation has a modulus. radii: of A and B. beside: used only where friction has bristles.
+/// pair: its foundation has a modulus. radii: of A and B [m]. beside: used only where friction has bristles.
 [[nodiscard]] PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& radii,
                                          const std::array<PairSide, 2>& sides, bool stands,
                                          const BristlesBeside& beside);
