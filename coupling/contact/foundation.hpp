@@ -40,7 +40,7 @@ struct Opening {
 
   /// By the rate of the gap alone [m/s].
   [[nodiscard]] static Opening of_gap(double gap_rate) { return {gap_rate, 1.0, 0.0}; }
-  /// By the rate of the gap g' and the rate o of the motion across the wire, both in m/s: a mean of both that vanishes with either.
+  /// By the rate of the gap g' and the rate o of the motion across the wire, both [m/s]: a mean of both that vanishes with either.
   ///   2 g'^2 o^2/(|g'|^3 + |o|^3), with their sign; none where the signs differ
   /// Its derivative is continuous, and (p - k d) g' <= 0 always: the damper takes energy, whichever way the wire moves.
   ///                                                                                        theory.md (M.8)

@@ -93,12 +93,12 @@ struct BristleChangeIn {
   Eigen::Vector<double, N> sliding = Eigen::Vector<double, N>::Zero();
   double normal = 0.0, elastic = 0.0, elastic_rate = 0.0;
 };
-/// The change of `force`: the first derivative of tangent_force, linear in `by`. Units: as `force`.
+/// The change of `force`: the first derivative of tangent_force, linear in `by`. [N, or N/m of loads]
 template <int N>
 [[nodiscard]] Eigen::Vector<double, N> force_change(const TangentForceIn<N>& f, const BristleChangeIn<N>& by) {
   return f.by_bristle * by.bristle + f.by_sliding * by.sliding + f.by_normal * by.normal + f.by_elastic * by.elastic;
 }
-/// The change of `flow`: the first derivative of bristle_flow, linear in `by`. Units: as `flow`.
+/// The change of `flow`: the first derivative of bristle_flow, linear in `by`. [N m/s, or N/s of loads]
 template <int N>
 [[nodiscard]] Eigen::Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at,
                                                    const TangentForceIn<N>& f, const BristleFlowIn<N>& flow,
