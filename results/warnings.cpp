@@ -96,12 +96,42 @@ std::vector<std::string> wire_warnings(const reduction::WireFile& file) {
   return sentences.take();
 }
 
+namespace {
+
+/// Reports an error of the energy balance beyond 1 % of the energy exchanged: the largest change of kinetic, elastic or potential energy, of
+/// dissipated energy or of work. Where less is exchanged than the default tolerance of places resolves to 1 % against the largest force, as by a
+/// body that settles to rest, it reports nothing.
+std::vector<std::string> energy_doubts(const FinishedMotion& run) {
+  constexpr double most = 0.01;
+  const std::vector<coupling::MotionSample>& samples = run.samples;
+  if (samples.empty()) return {};
+  double force = 0.1;  // [N]: where nothing presses
+  for (const double peak : run.result.peak_force) force = std::max(force, peak);
+  const double least = force * coupling::MotionOptions{}.body_position_tolerance / most;  // [J]
+  const coupling::EnergyBalance& start = samples.front().energy;
+  double exchanged = 0.0, gained = 0.0;
+  for (const coupling::MotionSample& s : samples) {
+    const coupling::EnergyBalance& e = s.energy;
+    for (const double change : {e.kinetic - start.kinetic, e.strain - start.strain, e.potential - start.potential,
+                                e.dissipated - start.dissipated, e.work - start.work})
+      exchanged = std::max(exchanged, std::abs(change));
+    if (std::abs(e.integrator) > std::abs(gained)) gained = e.integrator;
+  }
+  if (exchanged < least || std::abs(gained) <= most * exchanged) return {};
+  return {fmt::format(
+      "the integrator {} {:.3g} J, {:.2g} % of the {:.3g} J that were exchanged: take smaller tolerances ([solver])",
+      gained > 0.0 ? "gained" : "lost", std::abs(gained), 100.0 * std::abs(gained) / exchanged, exchanged)};
+}
+
+}  // namespace
+
 std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& finished) {
   Sentences sentences;
   for (const FinishedMotion& run : finished) {
     const coupling::Motion& motion = run.asked.motion;
     const std::string of = finished.size() > 1 ? run.asked.name + ", " : "";
     sentences.add("", run.asked.warnings);
+    sentences.add(finished.size() > 1 ? run.asked.name : "", energy_doubts(run));
     for (std::size_t k = 0; k < motion.wires.size(); ++k) {
       // Its diameter is known from what touches it.
       const auto touching = std::find_if(motion.contacts.begin(), motion.contacts.end(), [k](const auto& c) {

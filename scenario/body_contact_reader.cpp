@@ -21,7 +21,7 @@ using base::TomlTable;
 
 namespace {
 
-/// Laws between frames slide by the smooth law: its speeds must be above zero.
+/// The smooth law, which the laws that replace wires use, needs speeds above zero.
 coupling::MotionFriction smooth(coupling::MotionFriction friction) {
   constexpr double least_speed = 1e-3;  // [m/s]
   friction.law = coupling::ContactFriction::smooth;
@@ -95,13 +95,7 @@ void read_body_contact(Composition& c, const TomlTable& table, const std::string
   const PlacedShape* shape = shape_under(c, table, "shape");
   const PlacedShape* other = shape_under(c, table, "other_shape");
   if (const auto model = table.choice("model", laws)) contact.law = read_contact_law(table, *model);
-  coupling::MotionFriction friction;
-  friction.dynamic_coefficient = table.number_or("friction", 0.0, Range::from(0.0, 5.0));
-  friction.static_coefficient = table.number_or("static_friction", friction.dynamic_coefficient, Range::from(0.0, 5.0));
-  friction.static_speed = table.number_or("static_speed_m_s", 0.01, Range::above(0.0, 10.0));
-  friction.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::above(0.0, 100.0));
-  if (friction.dynamic_speed <= friction.static_speed) table.fail("dynamic_speed_m_s", "must be > static_speed_m_s");
-  contact.friction = smooth(friction);
+  contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
   if (shape == nullptr || other == nullptr) return;
   const bool same = shape->on.carrier.kind == other->on.carrier.kind &&
                     shape->on.carrier.index == other->on.carrier.index &&

@@ -171,7 +171,8 @@ void set_push_law(const PushModel& push, const wire::RodInMotion& rod, coupling:
       p.force.y() = force.x();
       p.by_place(1, 1) = force.y();
       p.by_rate.y() = force.z();
-      p.lost = force.x() * rate;
+      p.energy = law.energy(p.depth);
+      p.lost = (force.x() - law.elastic(p.depth).x()) * rate;
       return p;
     };
     constexpr double shallow = 1e-12, speed = 1.0, none = 1e-9;  // [m], [m/s], [N]

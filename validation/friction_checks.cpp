@@ -202,7 +202,7 @@ std::vector<Row> stick_slip_rows() {
   spring.direction = Vector3d::UnitZ();
   spring.origin = motion.bodies[0].start.position;
   spring.origin_speed = belt;
-  spring.law = [=](double d, double) { return Vector3d(stiffness * d, stiffness, 0.0); };
+  spring.law = coupling::spring_dashpot(stiffness, 0.0);
   motion.springs.push_back(spring);
   const double w = std::sqrt(stiffness);
   const double jump = (fixed - sliding) * g / stiffness;
@@ -225,8 +225,7 @@ std::vector<Row> stick_slip_rows() {
       least = std::min(least, stretch);
       most = std::max(most, stretch);
     }
-    // What the spring holds is counted as taken.
-    heat = s.energy.dissipated - 0.5 * stiffness * stretch * stretch;
+    heat = s.energy.dissipated;
     travel = s.bodies[0].position.z();
     const double force = s.contacts[0].force.z();  // on the wire: along the motion
     area += 0.5 * (force + last_force) * (travel - last_place);

@@ -1,8 +1,13 @@
 #include "coupling/contact/contact_law.hpp"
 
+#include "coupling/contact/ranged_law.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace snare::coupling {
 
@@ -16,15 +21,44 @@ LawPlace middle(double half_length, double half_span) {
   return {2.0 * half_span, half_span, 2.0 * half_length, 0.0};
 }
 
+/// Zeros of A d^2 + B d + C at d > 0, in their order [m].
+std::vector<double> zeros(double a, double b, double c) {
+  std::vector<double> all;
+  const double square = b * b - 4.0 * a * c;
+  if (square >= 0.0) {
+    const double q = -0.5 * (b + std::copysign(std::sqrt(square), b));
+    if (a != 0.0) all.push_back(q / a);
+    if (q != 0.0) all.push_back(c / q);
+  }
+  std::erase_if(all, [](double d) { return d <= 0.0; });
+  std::ranges::sort(all);
+  return all;
+}
+
+/// Where A d^2 + B d + C is negative at d > 0: between some of its zeros.
+std::vector<PullingRange> pulling_ranges(double a, double b, double c) {
+  std::vector<PullingRange> ranges;
+  double from = 0.0;
+  const auto add = [&](double to, double inside) {
+    if ((a * inside + b) * inside + c < 0.0) ranges.push_back({from, to});
+    from = to;
+  };
+  for (const double zero : zeros(a, b, c)) add(zero, 0.5 * (from + zero));
+  add(std::numeric_limits<double>::infinity(), 2.0 * from + 1.0);
+  return ranges;
+}
+
 }  // namespace
 
-ContactLaw contact_law(SpringLawPointer spring, Damping damping) {
-  return [spring = std::move(spring), damping = std::move(damping)](double d, double rate) -> Vector3d {
-    if (d <= 0.0) return Vector3d::Zero();
-    Vector3d force(spring->force(d), spring->stiffness(d), 0.0);
-    if (damping) force += damping(d, rate);
-    return force.x() > 0.0 ? force : Vector3d::Zero();
-  };
+Vector3d ContactLaw::operator()(double d, double rate) const {
+  if (d <= 0.0) return Vector3d::Zero();
+  Vector3d force(spring_->force(d), spring_->stiffness(d), 0.0);
+  if (damping_) force += damping_(d, rate);
+  return force.x() <= 0.0 ? Vector3d::Zero() : force;  // what is not a number stays that
+}
+
+Vector3d ContactLaw::elastic(double d) const {
+  return d > 0.0 ? Vector3d(spring_->force(d), spring_->stiffness(d), spring_->curvature(d)) : Vector3d::Zero();
 }
 
 Damping linear_damping(double c) {
@@ -50,7 +84,7 @@ Damping step_damping(double c, double depth) {
 }
 
 ContactLaw spring_dashpot(double k, double c) {
-  return contact_law(linear_law()->with(Eigen::VectorXd::Constant(1, k)), linear_damping(c));
+  return ContactLaw(linear_law()->with(Eigen::VectorXd::Constant(1, k)), linear_damping(c));
 }
 
 ContactLaw power_law(double k, double p, double c, double q) {
@@ -58,24 +92,24 @@ ContactLaw power_law(double k, double p, double c, double q) {
 }
 
 ContactLaw power_law(double k, double p, double c, double q, double n) {
-  return contact_law(power_law()->with(Vector2d(k, p)), power_damping(c, q, n));
+  return ContactLaw(power_law()->with(Vector2d(k, p)), power_damping(c, q, n));
 }
 
 ContactLaw step_damped_law(double k, double p, double c, double depth) {
-  return contact_law(power_law()->with(Vector2d(k, p)), step_damping(c, depth));
+  return ContactLaw(power_law()->with(Vector2d(k, p)), step_damping(c, depth));
 }
 
 ContactLaw quadratic_law(double a, double b, double c) {
-  return contact_law(quadratic_law()->with(Vector3d(a, b, c)));
+  return ContactLaw(std::make_shared<PressingLaw>(quadratic_law()->with(Vector3d(a, b, c)), pulling_ranges(a, b, c)));
 }
 
 ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span, Damping damping) {
-  return contact_law(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
-                     std::move(damping));
+  return ContactLaw(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
+                    std::move(damping));
 }
 
 ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span, Damping damping) {
-  return contact_law(
+  return ContactLaw(
       stretched_wire_linearised(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
       std::move(damping));
 }

@@ -5,19 +5,41 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <utility>
 
 namespace snare::coupling {
 
-/// A contact force as a function of penetration d [m] and its rate [m/s], with its derivatives: (F, dF/dd, dF/dd').
-/// Zero without penetration, and never negative: what would pull is cut off.
-using ContactLaw = std::function<Eigen::Vector3d(double penetration, double rate)>;
-
-/// What damping adds to a spring at penetration d > 0: (D, dD/dd, dD/dd').
+/// What damping adds to a spring at penetration d > 0: (D, dD/dd, dD/dd'), with D d' >= 0.
 /// Forces in N, derivatives in N/m and N s/m; its arguments are penetration [m] and rate [m/s].
 using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 
-/// F = max(0, S(d) + D(d, d')): a law of law_form.hpp with its numbers, and the damping of a motion; none when empty. Force [N].
-[[nodiscard]] ContactLaw contact_law(SpringLawPointer spring, Damping damping = {});
+/// A contact force as a function of penetration d [m] and its rate d' [m/s]:                theory.md (M.28)
+///
+///   F = max(0, S+(d) + D(d, d')) for d > 0, else 0;   S+ = max(0, S)
+/// S is a spring of law_form.hpp, D its damping. The force never pulls. The spring stores the integral of S+; the rest of the power,
+/// (F - S+) d', is lost and never negative: d' D >= 0, and where F is cut off, S+ + D < 0, so that d' < 0.
+class ContactLaw {
+ public:
+  ContactLaw() = default;
+  /// The spring must not pull at any d > 0. No damping when empty.
+  explicit ContactLaw(SpringLawPointer spring, Damping damping = {})
+      : spring_(std::move(spring)), damping_(std::move(damping)) {}
+
+  /// Whether there is a law.
+  explicit operator bool() const { return spring_ != nullptr; }
+  /// (F, dF/dd, dF/dd') [N, N/m, N s/m].
+  [[nodiscard]] Eigen::Vector3d operator()(double penetration, double rate) const;
+  /// The spring's force and its derivatives (S+, dS+/dd, d2S+/dd2) [N, N/m, N/m^2]; zero without penetration.
+  [[nodiscard]] Eigen::Vector3d elastic(double penetration) const;
+  /// What the spring stores [J].
+  [[nodiscard]] double energy(double penetration) const {
+    return penetration > 0.0 ? spring_->energy(penetration) : 0.0;
+  }
+
+ private:
+  SpringLawPointer spring_;
+  Damping damping_;
+};
 
 /// D = c d'.                                                            c >= 0 [N s/m]
 [[nodiscard]] Damping linear_damping(double c);
@@ -43,7 +65,7 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 /// The form of ADAMS' IMPACT. k >= 0 [N/m^p], p >= 1, c >= 0 [N s/m], depth > 0 [m].
 [[nodiscard]] ContactLaw step_damped_law(double k, double p, double c, double depth);
 
-/// F = A d^2 + B d + C.                                                 theory.md (L.3); Abiko et al., Table 4
+/// F = A d^2 + B d + C, zero where this is negative.                    theory.md (L.3); Abiko et al., Table 4
 /// a: A [N/m^2], b: B [N/m], c: C [N].
 [[nodiscard]] ContactLaw quadratic_law(double a, double b, double c);
 

@@ -1,11 +1,11 @@
 #include "coupling/contact/friction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace snare::coupling {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
+using Eigen::Vector;
 
 namespace {
 
@@ -15,23 +15,6 @@ struct SmoothLaw {
   double slope = 0.0;       ///< d(mu/s)/ds / s [s^3/m^3]
 };
 
-/// Coefficient in the slip and its derivative over the speed, (dmu/ds)/s [s^2/m^2].
-struct SlipLaw {
-  double coefficient = 0.0;
-  double slope = 0.0;
-};
-
-SlipLaw slip_law(const MotionFriction& f, double s) {
-  constexpr double at_once = 1e-5;  // "both speeds 0" [m/s]
-  const double end = f.dynamic_speed > 0.0 ? f.dynamic_speed : at_once;
-  if (s >= end) return {f.dynamic_coefficient, 0.0};
-  if (s <= f.static_speed) return {f.static_coefficient, 0.0};
-  const double width = end - f.static_speed;
-  const double x = (s - f.static_speed) / width;
-  const double fall = f.dynamic_coefficient - f.static_coefficient;
-  return {f.static_coefficient + fall * x * x * (3.0 - 2.0 * x), fall * 6.0 * x * (1.0 - x) / (width * s)};
-}
-
 // Cubic steps: from -static at -static_speed to +static at +static_speed, then on to the dynamic coefficient.
 SmoothLaw smooth_law(const MotionFriction& f, double s) {
   if (s < f.static_speed) {
@@ -40,58 +23,100 @@ SmoothLaw smooth_law(const MotionFriction& f, double s) {
     const double scale = f.static_coefficient / f.static_speed;
     return {0.5 * scale * (3.0 - x * x), -scale / (f.static_speed * f.static_speed)};
   }
-  const SlipLaw slip = slip_law(f, s);
-  return {slip.coefficient / s, slip.slope / s - slip.coefficient / (s * s * s)};
+  const SlipCoefficient slip = slip_coefficient(f, s);
+  return {slip.value / s, slip.slope / (s * s) - slip.value / (s * s * s)};
 }
 
-/// What a slider lets a spring and its dashpot carry together: e = z + tau w, brought back into the circle of radius z_m.
-struct Carried {
-  Vector2d reach;     ///< m [m]
-  Matrix2d by_total;  ///< dm/de [-]
-  bool slides;
-};
-
-Carried carried(const MotionFriction& friction, const BristleState& at) {
-  const Vector2d total = at.bristle + friction.bristle_time * at.sliding;
-  const double size = total.norm(), most = friction.bristle_displacement;
-  if (size <= most) return {total, Matrix2d::Identity(), false};
-  const Vector2d direction = total / size;
-  return {most * direction, most / size * (Matrix2d::Identity() - direction * direction.transpose()), true};
+template <int N>
+TangentForceIn<N> smooth_force(const MotionFriction& friction, const BristleStateIn<N>& at) {
+  TangentForceIn<N> t;
+  const SmoothLaw law = smooth_law(friction, at.sliding.norm());
+  t.by_normal = law.over_speed * at.sliding;
+  t.force = at.normal * t.by_normal;
+  t.by_sliding = at.normal * (law.over_speed * Eigen::Matrix<double, N, N>::Identity() +
+                              law.slope * at.sliding * at.sliding.transpose());
+  return t;
 }
 
 }  // namespace
 
-double slip_coefficient(const MotionFriction& friction, double speed) {
-  return slip_law(friction, speed).coefficient;
+SlipCoefficient slip_coefficient(const MotionFriction& f, double s) {
+  constexpr double at_once = 1e-5;  // "both speeds 0" [m/s]
+  const double end = f.dynamic_speed > 0.0 ? f.dynamic_speed : at_once;
+  if (s >= end) return {f.dynamic_coefficient, 0.0};
+  if (s <= f.static_speed) return {f.static_coefficient, 0.0};
+  const double width = end - f.static_speed;
+  const double x = (s - f.static_speed) / width;
+  const double fall = f.dynamic_coefficient - f.static_coefficient;
+  return {f.static_coefficient + fall * x * x * (3.0 - 2.0 * x), fall * 6.0 * x * (1.0 - x) / width};
 }
 
-BristleRate bristle_rate(const MotionFriction& friction, const BristleState& at) {
-  const Carried m = carried(friction, at);
-  if (!m.slides) return {at.sliding, Matrix2d::Identity(), Matrix2d::Zero()};
-  return {(m.reach - at.bristle) / friction.bristle_time, m.by_total,
-          (m.by_total - Matrix2d::Identity()) / friction.bristle_time};
-}
-
-TangentForce tangent_force(const MotionFriction& friction, const BristleState& at) {
-  TangentForce t;
-  if (!friction.acts()) return t;
-  const double speed = at.sliding.norm();
-  if (friction.law == ContactFriction::smooth) {
-    const SmoothLaw law = smooth_law(friction, speed);
-    t.by_normal = law.over_speed * at.sliding;
-    t.force = at.normal * t.by_normal;
-    t.by_sliding =
-        at.normal * (law.over_speed * Matrix2d::Identity() + law.slope * at.sliding * at.sliding.transpose());
+template <int N>
+TangentForceIn<N> tangent_force(const MotionFriction& friction, const BristleStateIn<N>& at) {
+  if (!friction.acts()) return {};
+  if (friction.law == ContactFriction::smooth) return smooth_force(friction, at);
+  using Square = Eigen::Matrix<double, N, N>;
+  TangentForceIn<N> t;
+  const Vector<double, N> total = at.bristle + friction.bristle_time * at.sliding;
+  const double size = total.norm(), speed = at.sliding.norm();
+  const double stiffness = friction.static_coefficient / friction.bristle_displacement;
+  const SlipCoefficient slip = slip_coefficient(friction, speed);
+  if (stiffness * at.elastic * size <= slip.value * at.normal) {
+    t.by_elastic = stiffness * total;
+    t.force = at.elastic * t.by_elastic;
+    t.by_bristle = at.elastic * stiffness * Square::Identity();
+    t.by_sliding = friction.bristle_time * t.by_bristle;
     return t;
   }
-  const SlipLaw law = slip_law(friction, speed);
-  const Carried m = carried(friction, at);
-  t.by_normal = law.coefficient / friction.bristle_displacement * m.reach;
+  const Vector<double, N> direction = total / size;
+  t.by_normal = slip.value * direction;
   t.force = at.normal * t.by_normal;
-  t.by_bristle = at.normal * law.coefficient / friction.bristle_displacement * m.by_total;
-  t.by_sliding = friction.bristle_time * t.by_bristle +
-                 at.normal * law.slope / friction.bristle_displacement * m.reach * at.sliding.transpose();
+  t.by_bristle = at.normal * slip.value / size * (Square::Identity() - direction * direction.transpose());
+  t.by_sliding = friction.bristle_time * t.by_bristle;
+  if (slip.slope != 0.0) t.by_sliding += at.normal * slip.slope / speed * direction * at.sliding.transpose();
+  const double carried = slip.value * at.normal / (stiffness * at.elastic);  // |m|, less than |e|
+  t.slider_speed = (size - carried) / friction.bristle_time;
   return t;
 }
+
+// With m = f z_m/(mu_s p_e), |m| <= |e| along e, p_e dz/dt = p_e (m - z)/tau less G z/2. Then
+//   f.w - mu_s/z_m (z.(p_e dz/dt) + (dp_e/dt) z^2/2) = mu_s p_e/(z_m tau) (m.e - 2 m.z + z^2) + mu_s/(2 z_m) (G - dp_e/dt) z^2,
+// of which the first part is at least that of (m - z)^2, and the second is not negative.
+template <int N>
+BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleStateIn<N>& at, const TangentForceIn<N>& f,
+                              double elastic_rate) {
+  const double time = friction.bristle_time, give = friction.bristle_displacement / friction.static_coefficient;
+  BristleFlowIn<N> b;
+  b.growth_follows = elastic_rate > -at.elastic / time;
+  b.growth = std::max(elastic_rate, -at.elastic / time);
+  // Where it sticks, f - p_e z mu_s/z_m cancels but for the dashpot.
+  const Vector<double, N> moved = f.slider_speed > 0.0
+                                      ? Vector<double, N>((give * f.force - at.elastic * at.bristle) / time)
+                                      : at.elastic * at.sliding;
+  b.flow = moved - 0.5 * b.growth * at.bristle;
+  b.heat = f.force.dot(at.sliding) - (at.bristle.dot(b.flow) + 0.5 * elastic_rate * at.bristle.squaredNorm()) / give;
+  return b;
+}
+
+template <int N>
+Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at, const TangentForceIn<N>& f,
+                              const BristleFlowIn<N>& flow, const BristleChangeIn<N>& by) {
+  const double time = friction.bristle_time, give = friction.bristle_displacement / friction.static_coefficient;
+  const double growth = flow.growth_follows ? by.elastic_rate : -by.elastic / time;
+  return (give * force_change(f, by) - by.elastic * at.bristle - at.elastic * by.bristle) / time -
+         0.5 * (growth * at.bristle + flow.growth * by.bristle);
+}
+
+// For contact of wires, in the axes of the tangent plane, and of bodies, in space.
+template TangentForceIn<2> tangent_force(const MotionFriction&, const BristleStateIn<2>&);
+template TangentForceIn<3> tangent_force(const MotionFriction&, const BristleStateIn<3>&);
+template BristleFlowIn<2> bristle_flow(const MotionFriction&, const BristleStateIn<2>&, const TangentForceIn<2>&,
+                                       double);
+template BristleFlowIn<3> bristle_flow(const MotionFriction&, const BristleStateIn<3>&, const TangentForceIn<3>&,
+                                       double);
+template Vector<double, 2> flow_change(const MotionFriction&, const BristleStateIn<2>&, const TangentForceIn<2>&,
+                                       const BristleFlowIn<2>&, const BristleChangeIn<2>&);
+template Vector<double, 3> flow_change(const MotionFriction&, const BristleStateIn<3>&, const TangentForceIn<3>&,
+                                       const BristleFlowIn<3>&, const BristleChangeIn<3>&);
 
 }  // namespace snare::coupling

@@ -30,43 +30,91 @@ struct MotionFriction {
   [[nodiscard]] bool has_bristle() const { return acts() && law == ContactFriction::stick_slip; }
 };
 
+/// Where a bristle stands: its deflection z [m] and the velocity against the other side w [m/s], in N axes of which they span the tangent
+/// plane (2) or in space, tangent (3); and how hard the contact presses: the normal force p, which bounds friction, and the part p_e of
+/// it that the contact stores as a spring, with which the bristle stiffens (both [N], or loads [N/m]).
+template <int N>
+struct BristleStateIn {
+  Eigen::Vector<double, N> bristle = Eigen::Vector<double, N>::Zero();
+  Eigen::Vector<double, N> sliding = Eigen::Vector<double, N>::Zero();
+  double normal = 0.0;
+  double elastic = 0.0;  ///< of the smooth law: not used
+};
+
 /// Friction in the tangent plane and its derivatives. `force` is what the wire exerts on the other side, in the unit of the
 /// normal force (or load).
-struct TangentForce {
-  Eigen::Vector2d force = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d by_bristle = Eigen::Matrix2d::Zero();  ///< [N/m]
-  Eigen::Matrix2d by_sliding = Eigen::Matrix2d::Zero();  ///< [N s/m]
-  Eigen::Vector2d by_normal = Eigen::Vector2d::Zero();   ///< [-]
+template <int N>
+struct TangentForceIn {
+  Eigen::Vector<double, N> force = Eigen::Vector<double, N>::Zero();
+  Eigen::Matrix<double, N, N> by_bristle = Eigen::Matrix<double, N, N>::Zero();  ///< [N/m]
+  Eigen::Matrix<double, N, N> by_sliding = Eigen::Matrix<double, N, N>::Zero();  ///< [N s/m]
+  Eigen::Vector<double, N> by_normal = Eigen::Vector<double, N>::Zero();         ///< [-]
+  Eigen::Vector<double, N> by_elastic = Eigen::Vector<double, N>::Zero();        ///< [-]
+  double slider_speed = 0.0;  ///< of a bristle: at which its slider moves, 0 where it sticks [m/s]
+
+  /// Adds a share [-] of another force with its derivatives, except those by the bristle.
+  void add(double share, const TangentForceIn& other) {
+    force += share * other.force;
+    by_sliding += share * other.by_sliding;
+    by_normal += share * other.by_normal;
+    by_elastic += share * other.by_elastic;
+  }
 };
 
-/// Where a bristle stands: its deflection z [m] and the wire's velocity against the other side w [m/s], in the tangent
-/// plane's axes, and the normal force [N] (or load [N/m]).
-struct BristleState {
-  Eigen::Vector2d bristle = Eigen::Vector2d::Zero();
-  Eigen::Vector2d sliding = Eigen::Vector2d::Zero();
-  double normal = 0.0;
-};
-
-/// dz/dt [m/s] of a bristle with its derivatives: a spring and a dashpot side by side, in series with a slider that carries up
-/// to z_m.                                                                                     theory.md (M.9)
+/// Friction by the law that `friction` names.                                              theory.md (M.9)
 ///
-///   e = z + tau w,   m = e min(1, z_m/|e|),   dz/dt = (m - z)/tau
-/// Below z_m this is w: the bristle sticks without creep. Beyond, |m| = z_m along the sliding, and z follows within tau. m is the
-/// nearest point of a circle, so that its derivative by e is never negative.
-struct BristleRate {
-  Eigen::Vector2d rate = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d by_sliding = Eigen::Matrix2d::Identity();  ///< [-]
-  Eigen::Matrix2d by_bristle = Eigen::Matrix2d::Zero();      ///< [1/s]
+///   smooth:      f = mu(s)/s p w
+///   stick_slip:  e = z + tau w,   f = e min(mu_s p_e/z_m, mu(s) p/|e|)
+/// Below the bound a bristle is a spring mu_s p_e/z_m with a dashpot; beyond, f is Coulomb's force along e.
+template <int N>
+[[nodiscard]] TangentForceIn<N> tangent_force(const MotionFriction& friction, const BristleStateIn<N>& at);
+
+/// p_e dz/dt of a bristle under the friction f at this state, less the share of it that a growing load takes, and its derivatives:
+///
+///   p_e dz/dt = (z_m/mu_s f - p_e z)/tau - G z/2,   G = max(dp_e/dt, -p_e/tau)
+/// Where the bristle sticks this is p_e w: it does not creep. The term with G keeps the energy mu_s p_e z^2/(2 z_m) of a bristle whose spring
+/// stiffens, so that a rising load stores nothing that nobody has put in. Units: those of p_e times m/s.
+template <int N>
+struct BristleFlowIn {
+  Eigen::Vector<double, N> flow = Eigen::Vector<double, N>::Zero();
+  double growth = 0.0;         ///< G [N/s]
+  bool growth_follows = true;  ///< G = dp_e/dt, else -p_e/tau
+  /// Heat: f.w - d/dt of the energy, of which p_e dz/dt above is a part; never negative [W].
+  double heat = 0.0;
 };
-[[nodiscard]] BristleRate bristle_rate(const MotionFriction& friction, const BristleState& at);
+/// elastic_rate: dp_e/dt [N/s].
+template <int N>
+[[nodiscard]] BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleStateIn<N>& at,
+                                            const TangentForceIn<N>& f, double elastic_rate);
+/// Changes along which a bristle's flow changes: of z, of w, of p, p_e and dp_e/dt.
+template <int N>
+struct BristleChangeIn {
+  Eigen::Vector<double, N> bristle = Eigen::Vector<double, N>::Zero();
+  Eigen::Vector<double, N> sliding = Eigen::Vector<double, N>::Zero();
+  double normal = 0.0, elastic = 0.0, elastic_rate = 0.0;
+};
+/// The change of `force`: the first derivative of tangent_force, linear in `by`. [N, or N/m of loads]
+template <int N>
+[[nodiscard]] Eigen::Vector<double, N> force_change(const TangentForceIn<N>& f, const BristleChangeIn<N>& by) {
+  return f.by_bristle * by.bristle + f.by_sliding * by.sliding + f.by_normal * by.normal + f.by_elastic * by.elastic;
+}
+/// The change of `flow`: the first derivative of bristle_flow, linear in `by`. [N m/s, or N/s of loads]
+template <int N>
+[[nodiscard]] Eigen::Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at,
+                                                   const TangentForceIn<N>& f, const BristleFlowIn<N>& flow,
+                                                   const BristleChangeIn<N>& by);
 
-/// Coefficient of friction at a sliding speed [m/s] >= 0: static up to static_speed, dynamic from dynamic_speed on, a cubic
-/// step between.
-[[nodiscard]] double slip_coefficient(const MotionFriction& friction, double speed);
+using BristleState = BristleStateIn<2>;
+using TangentForce = TangentForceIn<2>;
+using BristleFlow = BristleFlowIn<2>;
+using BristleChange = BristleChangeIn<2>;
 
-/// Friction by the law that `friction` names.
-///   smooth:      f = mu(s)/s lambda w
-///   stick_slip:  f = mu(s) lambda m/z_m, m as with BristleRate
-[[nodiscard]] TangentForce tangent_force(const MotionFriction& friction, const BristleState& at);
+/// Coefficient of friction at a sliding speed [m/s] >= 0 and its derivative [s/m]: static up to static_speed, dynamic from dynamic_speed on,
+/// a cubic step between.
+struct SlipCoefficient {
+  double value = 0.0;
+  double slope = 0.0;
+};
+[[nodiscard]] SlipCoefficient slip_coefficient(const MotionFriction& friction, double speed);
 
 }  // namespace snare::coupling

@@ -34,6 +34,7 @@ class PolynomialLaw final : public SpringLaw {
 
   double force(double d) const override { return (a_ * d + b_) * d + c_; }
   double stiffness(double d) const override { return 2.0 * a_ * d + b_; }
+  double curvature(double /*d*/) const override { return 2.0 * a_; }
   double energy(double d) const override { return a_ * std::pow(d, 3) / 3.0 + b_ * std::pow(d, 2) / 2.0 + c_ * d; }
 
  private:
@@ -103,6 +104,7 @@ class PowerLaw final : public SpringLaw {
 
   double force(double d) const override { return k_ * std::pow(d, p_); }
   double stiffness(double d) const override { return k_ * p_ * std::pow(d, p_ - 1.0); }
+  double curvature(double d) const override { return p_ == 1.0 ? 0.0 : k_ * p_ * (p_ - 1.0) * std::pow(d, p_ - 2.0); }
   double energy(double d) const override { return k_ * std::pow(d, p_ + 1.0) / (p_ + 1.0); }
 
  private:
@@ -148,6 +150,7 @@ struct Pieces {
   double stretch = 0.0;  // (l1 + l2 - L)/L
   double lift = 0.0;     // d(l1 + l2)/dy = y/l1 + y/l2
   double bend = 0.0;     // d lift/dy
+  double turn = 0.0;     // d bend/dy
 };
 
 Pieces pieces_at(const LawPlace& w, double y) {
@@ -155,7 +158,9 @@ Pieces pieces_at(const LawPlace& w, double y) {
   const double b = w.span - w.position;
   const double l1 = std::hypot(a, y);
   const double l2 = std::hypot(b, y);
-  return {(l1 + l2 - w.length) / w.length, y / l1 + y / l2, a * a / (l1 * l1 * l1) + b * b / (l2 * l2 * l2)};
+  const double bend_1 = a * a / (l1 * l1 * l1), bend_2 = b * b / (l2 * l2 * l2);
+  return {(l1 + l2 - w.length) / w.length, y / l1 + y / l2, bend_1 + bend_2,
+          -3.0 * y * (bend_1 / (l1 * l1) + bend_2 / (l2 * l2))};
 }
 
 /// F = K (l1 + l2 - L)/L (y/l1 + y/l2) at the height y = q + d - d0, 0 while slack; q the taut height.
@@ -172,6 +177,10 @@ class StretchedLaw final : public SpringLaw {
   double stiffness(double d) const override {
     const Pieces now = pieces(d);
     return now.stretch > 0.0 ? k_ * (now.lift * now.lift / place_.length + now.stretch * now.bend) : 0.0;
+  }
+  double curvature(double d) const override {
+    const Pieces now = pieces(d);
+    return now.stretch > 0.0 ? k_ * (3.0 * now.lift * now.bend / place_.length + now.stretch * now.turn) : 0.0;
   }
   double energy(double d) const override { return stored(d) - stored(0.0); }
 
@@ -238,6 +247,7 @@ class TautLinearLaw final : public SpringLaw {
 
   double force(double d) const override { return k_ * std::max(0.0, d - free_travel_); }
   double stiffness(double d) const override { return d > free_travel_ ? k_ : 0.0; }
+  double curvature(double /*d*/) const override { return 0.0; }
   double energy(double d) const override { return stored(d) - stored(0.0); }
 
  private:

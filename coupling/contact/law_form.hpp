@@ -33,6 +33,7 @@ class SpringLaw {
 
   [[nodiscard]] virtual double force(double d) const = 0;      ///< F [N]
   [[nodiscard]] virtual double stiffness(double d) const = 0;  ///< dF/dd [N/m]
+  [[nodiscard]] virtual double curvature(double d) const = 0;  ///< d2F/dd2 [N/m^2]
   [[nodiscard]] virtual double energy(double d) const = 0;     ///< integral of F from 0 [J]
 
  protected:

@@ -49,6 +49,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[1]);
   }
   for (const ContactGroup& c : contacts_) e.strain += c.sums(at.y).energy;
+  for (const LawPart& s : springs_) e.strain += s.power(at).energy;
   for (WirePairPart& p : pairs_) e.strain += p.sums(at.y).energy;
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
@@ -122,7 +123,7 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     const ContactSample s = springs_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
     rates[integral::contacts + 3 * count + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
-    rates[integral::dissipated] += springs_[k].taken_power(at);
+    rates[integral::laws] += springs_[k].power(at).lost;
     rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
@@ -134,7 +135,8 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     const auto index = static_cast<Eigen::Index>(first_press() + k);
     rates.segment<3>(integral::contacts + 3 * index) = s.force;
     rates[integral::contacts + 3 * count + index] = s.normal_force;
-    constraints_->add_forces(*presses_[k], work, at, held);
+    rates[integral::laws] += work.power.lost;
+    constraints_->add_forces(*presses_[k], work.wrenches, at, held);
   }
   for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
   rates.segment<3>(integral::outer) += held.force;
@@ -154,6 +156,30 @@ void MotionRun::watch_law_wire(std::size_t k, double tension) {
   if (share <= largest.share) return;
   largest = {share, tension, 0.0, 0.0, time_};
   if (share >= 1.0 && wire.strength.ends_run) broken_ = wire.name + strength_reached(wire.strength, largest);
+}
+
+double MotionRun::law_loss(const DaePoint& at) const {
+  double sum = 0.0;
+  for (const LawPart& s : springs_) sum += s.power(at).lost;
+  for (const PressPart* p : presses_) sum += p->work(at.y).power.lost;
+  return sum;
+}
+
+// The integrator has no event where bodies touch from the start on.
+void MotionRun::watch_body_contacts(double time_before, std::span<const int> found) {
+  for (std::size_t k = 0; k < body_contacts_.size(); ++k) {
+    const auto contact = static_cast<int>(first_press() + law_wires_.size() + k);
+    const auto [sample, work, tension] = body_contacts_[k].pressing(y_);
+    const bool closed = !work.wrenches.empty();
+    const Seen before = std::exchange(seen_[k], {closed, sample.sticking});
+    const auto note = [&](double time, MotionEvent::Kind kind, double speed) {
+      sums_.events.push_back({time, contact, 0, 0.0, kind, speed});
+    };
+    if (closed && !before.closed && found[k] == 0) note(time_before, MotionEvent::Kind::touch, 0.0);
+    if (!body_contacts_[k].has_bristle() || !closed || !before.closed) continue;
+    if (sample.sticking != before.sticking)
+      note(time_, sample.sticking ? MotionEvent::Kind::stick : MotionEvent::Kind::slip, sample.slip_speed);
+  }
 }
 
 double MotionRun::longest_step() const {
@@ -254,7 +280,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  e.dissipated += integrals[integral::dissipated];
+  // The polynomials through the last steps may overshoot between them; what is dissipated only grows.
+  e.dissipated = std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
+                            lost_before_, lost_);
   e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   s.energy = e;

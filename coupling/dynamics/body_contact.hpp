@@ -28,7 +28,7 @@ struct BodyContact {
   std::vector<Eigen::Vector3d> points;        ///< in that frame [m]
   double radius = 0.0;                        ///< [m], >= 0
   ContactLaw law;
-  MotionFriction friction;  ///< smooth
+  MotionFriction friction;
 };
 
 }  // namespace snare::coupling

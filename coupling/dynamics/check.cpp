@@ -75,8 +75,6 @@ void validate_laws(const Motion& motion, Complaints& c) {
     c.require(static_cast<bool>(b.law), b.name + ".law", 0.0, "must be given");
     c.require(!b.points.empty(), b.name + ".points", 0.0, "must be at least one");
     at_least_zero(b.name + ".radius", b.radius);
-    c.require(b.friction.law == ContactFriction::smooth || !b.friction.acts(), b.name + ".friction", 0.0,
-              "must be the smooth law");
     validate_friction(c, b.name + ".friction.", b.friction);
   }
   for (const FrameLoad& l : motion.loads) {

@@ -304,6 +304,12 @@ void ConstraintSet::restore_state(double time, std::span<const double>& memory) 
   enter(time);
 }
 
+double ConstraintSet::lost(const VectorView& y) const {
+  double sum = 0.0;
+  for (const Arm& a : arms_) sum += a.part->work(y).lost;
+  return sum;
+}
+
 void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, MotionSample* sample) const {
   for (const BushingPart& b : bushings_) energy.strain += b.state(y).energy;
   for (const Arm& a : arms_) {
@@ -321,7 +327,6 @@ void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, Motio
     energy.kinetic += links + motors;
     energy.potential += potential;
     energy.strain += multibody::total_energy(a.model, state) - links - motors - potential;
-    energy.dissipated += work.lost;
     energy.work += work.motors + work.loads;
     if (sample == nullptr || !a.floats) continue;
     const multibody::Wrench h = multibody::momentum(a.model.tree, kinematics);
@@ -340,10 +345,8 @@ bool ConstraintSet::counted(const MovingFrame& frame) const {
 }
 
 // Of forces between what is counted and what is not.
-void ConstraintSet::add_forces(const FrameForces& forces, const FrameForces::Work& work, const DaePoint& at,
-                               Outer& sum) const {
-  sum.lost += work.power.lost;
-  const std::vector<multibody::Wrench>& wrenches = work.wrenches;
+void ConstraintSet::add_forces(const FrameForces& forces, const std::vector<multibody::Wrench>& wrenches,
+                               const DaePoint& at, Outer& sum) const {
   for (std::size_t k = 0; k < wrenches.size(); ++k) {
     const MovingFrame& frame = forces.frames()[k];
     const MovingFrame::State carrier = frame.state(at.y);
@@ -383,7 +386,11 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   };
   for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
   for (const MountPart& m : mounts_) add(m, -m.moment(at));
-  for (const BushingPart& b : bushings_) add_forces(b, b.work(at.y), at, sum);
+  for (const BushingPart& b : bushings_) {
+    const FrameForces::Work work = b.work(at.y);
+    add_forces(b, work.wrenches, at, sum);
+    sum.lost += work.power.lost;
+  }
   for (std::size_t k = 0; k < arms_.size(); ++k) {
     if (!arms_[k].floats) continue;
     const multibody::Tree& tree = arms_[k].model.tree;

@@ -72,7 +72,9 @@ class ConstraintSet {
   /// Why it cannot go on, if so.
   [[nodiscard]] const std::optional<std::string>& stuck() const { return stuck_; }
 
-  /// Adds the arms' energies, works and losses, and their momentum when nothing holds their base.
+  /// Energy that the arms have lost up to here [J]: with that of the integrals it is all that is dissipated. y in SI units.
+  [[nodiscard]] double lost(const numerics::VectorView& y) const;
+  /// Adds the arms' energies and works, and their momentum when nothing holds their base.
   void add_energy(const numerics::VectorView& y, EnergyBalance& energy, MotionSample* sample) const;
   /// Forces that count as outer ones [N], their moments about the origin [N m], the power of driven carriers [W], and
   /// what bushings lose [W].
@@ -85,8 +87,8 @@ class ConstraintSet {
   [[nodiscard]] Outer outer(const numerics::DaePoint& at) const;
   /// What forces between frames, and loads, add to that.
   void add_load(const LoadPart& load, const numerics::DaePoint& at, Outer& sum) const;
-  void add_forces(const FrameForces& forces, const FrameForces::Work& work, const numerics::DaePoint& at,
-                  Outer& sum) const;
+  void add_forces(const FrameForces& forces, const std::vector<multibody::Wrench>& wrenches,
+                  const numerics::DaePoint& at, Outer& sum) const;
   /// Force of a moving mount on its wire's end, if the end has one [N].
   [[nodiscard]] std::optional<Eigen::Vector3d> mount_force(int wire, wire::End end,
                                                            const numerics::VectorView& y) const;

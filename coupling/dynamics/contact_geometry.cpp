@@ -21,10 +21,10 @@ Vector3d axis_across(const Vector3d& n) {
 }  // namespace
 
 ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape, const CurvePoint& curve,
-                                 const BodyPart& body, const VectorView& y, const Vector2d& bristle,
+                                 const BodyPart& body, const VectorView& y, const BristlesBeside& beside,
                                  ContactPlace place) {
   ContactGeometry g;
-  g.at_mount = place == ContactPlace::mount;
+  const bool at_mount = place == ContactPlace::mount;
   static_cast<CurvePoint&>(g) = curve;
   // The shape: distance, normal and Hessian in S, at R_WS^T (r - R_WB p_BS).
   const Vector4d q = y.segment<4>(body.quaternion());
@@ -45,24 +45,37 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
   // Tangent plane and forces.
   constexpr double upright = 1e-3;  // sine of the angle between wire and normal
   Vector3d level = g.slope - g.normal.dot(g.slope) * g.normal;
-  g.by_wire = !g.at_mount && level.norm() > upright * g.slope.norm();
+  g.by_wire = !at_mount && level.norm() > upright * g.slope.norm();
   g.toward = g.by_wire ? g.slope : axis_across(g.normal);
   if (!g.by_wire) level = g.toward - g.normal.dot(g.toward) * g.normal;
   g.run = level.norm();
   g.along = level / g.run;
   g.across = g.normal.cross(g.along);
   g.state.sliding = {g.along.dot(g.relative), g.across.dot(g.relative)};
-  g.by_law = static_cast<bool>(contact.law);
-  if (g.by_law) {
-    const Vector3d force = contact.law(-g.gap, -g.gap_rate);
-    g.load = {force[0], -force[1], -force[2]};  // at a minimum of the gap n.t is zero
+  if (contact.law) {  // at a minimum of the gap n.t is zero
+    const Vector3d force = contact.law(-g.gap, -g.gap_rate), spring = contact.law.elastic(-g.gap);
+    g.load = {force[0], -force[1], -force[2]};
+    g.elastic = {spring[0], -spring[1], spring[2]};
+    g.opening = Opening::of_gap(g.gap_rate);
   } else {
-    const double along_wire = g.at_mount ? 0.0 : g.normal.dot(g.direction) * g.direction.dot(g.relative);
-    g.load = contact.foundation.load(g.gap, g.gap_rate - along_wire);
+    const double across = g.gap_rate - g.normal.dot(g.direction) * g.direction.dot(g.relative);
+    g.opening = at_mount ? Opening::of_gap(g.gap_rate) : Opening::between(g.gap_rate, across);
+    g.load = contact.foundation.load(g.gap, g.opening.rate);
+    g.elastic = contact.foundation.elastic_load(g.gap);
   }
   g.state.normal = g.load[0];
-  g.state.bristle = bristle;
-  g.friction = tangent_force(contact.friction, g.state);
+  g.state.elastic = g.elastic[0];
+  if (contact.friction.has_bristle()) {
+    g.hats = beside.hats;
+    for (std::size_t h = 0; h < 2; ++h) {
+      BristleState at = g.state;
+      at.bristle = beside.bristles[h];
+      g.of_bristles[h] = tangent_force(contact.friction, at);
+      g.friction.add(g.hats[h], g.of_bristles[h]);
+    }
+  } else if (contact.friction.acts()) {
+    g.friction = tangent_force(contact.friction, g.state);
+  }
   g.force = g.state.normal * g.normal - g.in_world(g.friction.force);
   return g;
 }
@@ -81,11 +94,12 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   const Vector3d domega = d.turn.cross(g.omega) + g.R_WB * d.spin;
   const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
-  double opening = c.gap_rate;
-  if (!g.by_law && !g.at_mount) {
+  double opening = (g.opening.by_gap + g.opening.by_across) * c.gap_rate;
+  if (g.opening.by_across != 0.0) {
     const Vector3d ddirection = (dslope - g.direction.dot(dslope) * g.direction) / g.slope.norm();
-    opening -= (c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
-               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative));
+    opening -=
+        g.opening.by_across * ((c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
+                               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
   }
   c.load = g.load[1] * c.gap + g.load[2] * opening;
   c.force = c.load * g.normal + g.state.normal * c.normal;
@@ -97,7 +111,10 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
     const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
     const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
     c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};
-    c.friction = g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load;
+    c.elastic = g.elastic[1] * c.gap;
+    c.elastic_rate = g.elastic[2] * g.gap_rate * c.gap + g.elastic[1] * c.gap_rate;
+    c.friction = g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
+    for (std::size_t h = 0; h < 2; ++h) c.friction += g.hats[h] * g.of_bristles[h].by_bristle * d.bristles[h];
     c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   }
   // Torque on the body, in the body: m = R^T (r x -f), dm = R^T (d(r x -f) - phi x (r x -f)).

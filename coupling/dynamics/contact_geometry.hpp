@@ -1,9 +1,12 @@
 #pragma once
 
 #include "coupling/dynamics/body_part.hpp"
+#include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/model.hpp"
 
 #include <Eigen/Core>
+
+#include <array>
 
 namespace snare::coupling {
 
@@ -21,9 +24,10 @@ struct CurvePoint {
 ///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
 ///   u = e - (n.e) n,  a = u/|u|,  b = n x a: axes of the tangent plane, e = X', or an axis of the world where X' is along n
 ///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
-///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N], o = dg/dt - (n.t)(t.w), t = X'/|X'|
+///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N]; o: dg/dt or dg/dt - (n.t)(t.w), t = X'/|X'|, or a mean of
+/// both, see Opening; lambda_e(g): the part of it that is stored
 ///   force on the wire, a length or in all: f = lambda n - (friction on the body, in a and b)
-/// At a mount o = dg/dt, and e is an axis of the world.
+/// At a mount o = dg/dt, and e is an axis of the world. Friction with bristles is that of the element's two vertices, weighted by their hats.
 struct ContactGeometry : CurvePoint {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();                                      ///< r [m]
@@ -39,11 +43,17 @@ struct ContactGeometry : CurvePoint {
   bool by_wire = true;                                                                ///< e = X'
   Eigen::Vector3d toward = Eigen::Vector3d::Zero();                                   ///< e
   double run = 0.0;                                                                   ///< |u|
-  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< lambda, and its derivatives by g and o
-  bool by_law = false, at_mount = false;
-  BristleState state;  ///< z, the sliding velocity w in a and b, lambda
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();     ///< lambda, and its derivatives by g and o
+  Eigen::Vector3d elastic = Eigen::Vector3d::Zero();  ///< lambda_e, and its first two derivatives by g
+  Opening opening;                                    ///< o
+  BristleState state;                                 ///< the sliding velocity w in a and b, lambda, lambda_e
   TangentForce friction;
+  std::array<TangentForce, 2> of_bristles;          ///< of each vertex's bristle, if there are any
+  std::array<double, 2> hats{};                     ///< shares of them in `friction`
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
+
+  /// dlambda_e/dt [N/(m s)], by a law [N/s].
+  [[nodiscard]] double elastic_rate() const { return elastic[1] * gap_rate; }
 
   /// A vector given in the tangent plane's axes a and b, in the axes of the world; same unit.
   [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
@@ -54,10 +64,10 @@ struct ContactGeometry : CurvePoint {
 /// A place on a wire between its mounts, or that of a mount.
 enum class ContactPlace { wire, mount };
 
-/// bristle: z [m], zero without one.
+/// beside: used only where friction has bristles. y in SI units.
 [[nodiscard]] ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape,
                                                const CurvePoint& curve, const BodyPart& body,
-                                               const numerics::VectorView& y, const Eigen::Vector2d& bristle,
+                                               const numerics::VectorView& y, const BristlesBeside& beside,
                                                ContactPlace place = ContactPlace::wire);
 
 /// A direction in the space of what a contact depends on.
@@ -70,13 +80,15 @@ struct ContactDirection {
   Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< of omega in the body
   double zeta = 0.0;                               ///< of the material coordinate
-  Eigen::Vector2d bristle = Eigen::Vector2d::Zero();
+  std::array<Eigen::Vector2d, 2> bristles{Eigen::Vector2d::Zero(),
+                                          Eigen::Vector2d::Zero()};  ///< of the element's vertices
 };
 
 /// What changes along a direction.
 struct ContactChange {
   double gap = 0.0, tangency = 0.0, gap_rate = 0.0;  ///< of g, n.X' and dg/dt [m, -, m/s]
-  double load = 0.0;                                 ///< of lambda [N/m], by a law [N]
+  double load = 0.0, elastic = 0.0;                  ///< of lambda and lambda_e [N/m], by a law [N]
+  double elastic_rate = 0.0;                         ///< of dlambda_e/dt [N/(m s)], by a law [N/s]
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero(), friction = Eigen::Vector2d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire

@@ -228,10 +228,23 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
     curve.v += n.value[k] * v;
     curve.slope_v += n.slope[k] * v;
   }
-  Vector2d bristle = Vector2d::Zero();
-  for (int h = 0; has_bristle() && h < 2; ++h) bristle += n.hats[base::at(h)] * y.segment<2>(bristle_of(n.element + h));
+  BristlesBeside beside;
+  beside.hats = n.hats;
+  for (int h = 0; has_bristle() && h < 2; ++h) beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n.element + h));
   const MotionContact& contact = n.place == ContactPlace::mount ? at_mount_ : contact_;
-  return contact_geometry(contact, search_.shape(), curve, body_, y, bristle, n.place);
+  return contact_geometry(contact, search_.shape(), curve, body_, y, beside, n.place);
+}
+
+BristleState ContactPart::bristle_state(const Node& n, std::size_t h, const ContactGeometry& g,
+                                        const VectorView& y) const {
+  BristleState at = g.state;
+  at.bristle = y.segment<2>(bristle_of(n.element + static_cast<int>(h)));
+  return at;
+}
+
+BristleFlow ContactPart::bristle_flow_at(const Node& n, std::size_t h, const ContactGeometry& g,
+                                         const VectorView& y) const {
+  return bristle_flow(contact_.friction, bristle_state(n, h, g, y), g.of_bristles[h], g.elastic_rate());
 }
 
 // Residual and Jacobian, sums and samples are of the same places again and again.
@@ -265,10 +278,10 @@ void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const Node& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
-    for (int h = 0; h < 2; ++h) {
-      const int i = n.element + h;
-      found.bristles.add(i, n.weight * g.state.normal * n.hats[base::at(h)],
-                         bristle_rate(contact_.friction, {y.segment<2>(bristle_of(i)), g.state.sliding, 0.0}).rate);
+    for (std::size_t h = 0; h < 2 && n.place == ContactPlace::wire; ++h) {
+      const double share = n.weight * n.hats[h];
+      found.bristles.add(n.element + static_cast<int>(h), share * g.state.elastic,
+                         share * bristle_flow_at(n, h, g, y).flow);
     }
   }
   found.bristles.finish();
@@ -311,6 +324,12 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
     derivatives_.setZero();
     for (; q < found.nodes.size() && found.nodes[q].element == element; ++q)
       add_node_derivatives(found.nodes[q], found.geometries[q], found.bristles, at.y);
+    for (std::size_t k = 0; has_bristle() && !has_law() && k < found.stretches.size(); ++k) {
+      if (found.elements[k] != element) continue;
+      for (const double u : {found.stretches[k].from, found.stretches[k].to}) {
+        if (u > 0.0 && u < 1.0) add_end_derivatives(element, u, found.bristles, at.y);
+      }
+    }
     put_derivatives(element, into);
   }
 }
@@ -323,11 +342,9 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
   ContactDirection along;
   along.zeta = 1.0;
   const double curvature = n.follows ? contact_change(friction, g, along).tangency : 0.0;
-  std::array<BristleRate, 2> bristles;
-  for (int h = 0; has_bristle() && h < 2; ++h) {
-    bristles[base::at(h)] =
-        bristle_rate(contact_.friction, {y.segment<2>(bristle_of(n.element + h)), g.state.sliding, 0.0});
-  }
+  const bool has_flows = has_bristle() && n.place == ContactPlace::wire;
+  std::array<BristleFlow, 2> flows;
+  for (std::size_t h = 0; has_flows && h < 2; ++h) flows[h] = bristle_flow_at(n, h, g, y);
   // Wire and body: -d(N_k f) with dN_k = N_k' dzeta, + df, and -dm for the torque m on the body.
   const auto change = [&](ContactDirection d) {
     if (curvature >= least_curvature) d.zeta = -contact_change(friction, g, d).tangency / curvature;
@@ -337,13 +354,13 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
       rows.segment<3>(3 * k) = -n.weight * (n.value[k] * by.force + n.slope[k] * d.zeta * g.force);
     rows.segment<3>(body_rows) = n.weight * by.force;
     rows.segment<3>(body_rows + 3) = -n.weight * by.torque;
-    for (int h = 0; h < 2; ++h) {
-      auto of_bristle = rows.segment<2>(bristle_rows + 2 * h);
-      of_bristle.setZero();
-      if (!has_bristle()) continue;
-      const BristleRate& r = bristles[base::at(h)];
-      of_bristle = means.change(n.element + h, n.weight * n.hats[base::at(h)], by.load, r.rate,
-                                g.state.normal * r.by_sliding * by.sliding);
+    rows.tail<4>().setZero();
+    for (std::size_t h = 0; has_flows && h < 2; ++h) {
+      const double share = n.weight * n.hats[h];
+      const BristleChange of{d.bristles[h], by.sliding, by.load, by.elastic, by.elastic_rate};
+      const Vector2d flow = flow_change(friction, bristle_state(n, h, g, y), g.of_bristles[h], flows[h], of);
+      rows.segment<2>(bristle_rows + 2 * static_cast<Eigen::Index>(h)) =
+          means.change(n.element + static_cast<int>(h), share * by.elastic, share * flow);
     }
     return rows;
   };
@@ -371,18 +388,38 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
     for (int k = 0; k < 4; ++k) derivatives_.col(body_columns + 3 + k) += turn(a, k) * by_turn;
     derivatives_.col(body_rate_columns + 3 + a) += change(spin);
   }
-  if (!has_bristle()) return;
-  for (int a = 0; a < (normal_ ? 1 : 2); ++a) {
-    ContactDirection d;
-    d.bristle = Vector2d::Unit(a);
-    const DerivativeRows by_bristle = change(d);
-    for (int h = 0; h < 2; ++h) derivatives_.col(bristle_columns + 2 * h + a) += n.hats[base::at(h)] * by_bristle;
+  for (std::size_t h = 0; has_flows && h < 2; ++h) {
+    for (int a = 0; a < (normal_ ? 1 : 2); ++a) {
+      ContactDirection d;
+      d.bristles[h] = Vector2d::Unit(a);
+      derivatives_.col(bristle_columns + 2 * static_cast<Eigen::Index>(h) + a) += change(d);
+    }
   }
-  // The bristles themselves.
+}
+
+// The ends of a stretch follow the zeros of the gap: d int G z/2 dS = (int of the derivative) - (G z/2) dg/|dg/dS| at each end.
+void ContactPart::add_end_derivatives(int element, double u, const BristleMeans& means, const VectorView& y) {
+  const Node n =
+      node(element, u, foundation_share(search_.curve().begin(element) + u * search_.curve().length(element)));
+  const ContactGeometry g = geometry(n, y);
+  const double growth = std::max(-contact_.foundation.modulus * g.gap_rate, 0.0),
+               steep = std::abs(g.normal.dot(g.slope));
+  if (growth == 0.0 || steep < 1e-12) return;
+  Eigen::Vector4d by_bristles;  // rows of the bristles by the gap
   for (int h = 0; h < 2; ++h) {
-    const double share = n.weight * g.state.normal * n.hats[base::at(h)] / means.loads[n.element + h];
-    derivatives_.block<2, 2>(bristle_rows + 2 * h, bristle_columns + 2 * h) -= share * bristles[base::at(h)].by_bristle;
+    const Vector2d flow = 0.5 * growth / steep * n.weight * n.hats[base::at(h)] * y.segment<2>(bristle_of(element + h));
+    by_bristles.segment<2>(2 * h) = means.change(element + h, 0.0, flow);
   }
+  // dg = n.(dX - dp - phi x r), phi = 4 R Q^T dq.
+  const Eigen::RowVector3d by_turn = -g.arm.cross(g.normal).transpose();
+  const Eigen::RowVector4d by_quaternion =
+      4.0 * by_turn * g.R_WB * multibody::quaternion_rates(y.segment<4>(body_.quaternion())).transpose();
+  for (int a = 0; a < 3; ++a) {
+    if (!moves_along(a)) continue;
+    for (int k = 0; k < 4; ++k) derivatives_.col(3 * k + a).tail<4>() += n.value[k] * g.normal[a] * by_bristles;
+    derivatives_.col(body_columns + a).tail<4>() -= g.normal[a] * by_bristles;
+  }
+  for (int k = 0; k < 4; ++k) derivatives_.col(body_columns + 3 + k).tail<4>() += by_quaternion[k] * by_bristles;
 }
 
 void ContactPart::put_derivatives(int element, const numerics::PatternValues& into) const {
@@ -423,10 +460,15 @@ ContactPart::Sums ContactPart::sums(const VectorView& y) const {
     s.force += force;
     s.normal += n.weight * g.state.normal;
     s.moment += g.x.cross(force);
-    // What the pair of forces takes from wire and body together; of the foundation less what it stores.
-    const double stored = has_law() ? 0.0 : n.weight * contact_.foundation.elastic_load(g.gap) * g.gap_rate;
-    s.lost_power += stored - force.dot(g.relative);
-    if (!has_law()) s.energy += n.weight * contact_.foundation.energy(g.gap);
+    // What the pair of forces takes from wire and body together, less what foundation or law and bristles store.
+    const double damped = (g.elastic[0] - g.state.normal) * g.gap_rate;
+    double rubbed = g.friction.force.dot(g.state.sliding);
+    if (has_bristle() && n.place == ContactPlace::wire) {
+      rubbed = 0.0;
+      for (std::size_t h = 0; h < 2; ++h) rubbed += n.hats[h] * bristle_flow_at(n, h, g, y).heat;
+    }
+    s.lost_power += n.weight * (damped + rubbed);
+    s.energy += n.weight * (has_law() ? contact_.law.energy(-g.gap) : contact_.foundation.energy(g.gap));
     s.body_power += force.dot(g.body_velocity + g.omega.cross(g.arm));
     for (int k = 0; k < 4; ++k) {
       const int i = n.first + k;
@@ -436,6 +478,10 @@ ContactPart::Sums ContactPart::sums(const VectorView& y) const {
       }
     }
   }
+  if (!has_bristle()) return s;
+  const BristleMeans::Held held = found.bristles.held(contact_.friction, y.segment(bristle_, 2 * rod_.vertices()));
+  s.energy += held.energy;
+  s.lost_power += held.heat;
   return s;
 }
 
@@ -485,10 +531,9 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
     s.point += normal * g.x;
     s.arc += normal * (curve.begin(n.element) + n.u * curve.length(n.element));
     s.slip_speed += normal * g.state.sliding.norm();
-    if (!has_bristle()) continue;
+    if (!has_bristle() || n.place == ContactPlace::mount) continue;
     // The slider of what sticks stands still.
-    const Vector2d slides = g.state.sliding - bristle_rate(contact_.friction, g.state).rate;
-    if (slides.norm() <= standing) s.sticking = true;
+    if (g.of_bristles[n.hats[1] > n.hats[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
   }
   std::erase_if(list, [](const ContactSample& s) { return s.normal_force <= 0.0; });
   for (ContactSample& s : list) {

@@ -22,10 +22,8 @@ namespace snare::coupling {
 ///   f(S) = lambda n - friction, a length of the wire, where the gap is negative;  nodal forces  int N_k f dS
 /// by Gauss's rule on every stretch that is closed, so that the force is continuous whatever touches, slides on, wraps or
 /// lets go. With a law of fast simulators the force of each local minimum of the gap acts there instead.
-/// Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and across it, with hats H_i
-/// between:
-///   dz_i/dt = (int H_i lambda rate(w, z_i) dS - W z_i/t_0)/(int H_i lambda dS + W)
-/// where W lets bristles forget what they held: see BristleMeans.
+/// Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and across it. Each carries friction in
+/// the share of its hat H_i and moves by a mean over the load: see BristleMeans.
 class ContactPart final : public numerics::DaePart {
  public:
   ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece, const wire::RodPart& rod,
@@ -70,8 +68,8 @@ class ContactPart final : public numerics::DaePart {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the wire [N]
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of it about the origin [N m]
     double normal = 0.0;                               ///< sum of the normal forces [N]
-    double lost_power = 0.0;                           ///< to friction, damping and laws [W]
-    double energy = 0.0;                               ///< of the foundation [J]
+    double lost_power = 0.0;                           ///< to friction and damping [W], >= 0
+    double energy = 0.0;                               ///< of the foundation, or laws, and of bristles [J]
     double body_power = 0.0;                           ///< done on the wire by the body as it moves [W]
     /// What of it falls on rigidly held components of the first and the last vertex [N].
     std::array<Eigen::Vector3d, 2> on_mounts{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -110,6 +108,11 @@ class ContactPart final : public numerics::DaePart {
   const Found& found_at(const numerics::VectorView& y) const;
   void find(const numerics::VectorView& y, Found& found) const;
   void add_up_bristles(const numerics::VectorView& y, Found& found) const;
+  /// State of the bristle of one of the element's two vertices at a node, and its flow there.
+  [[nodiscard]] BristleState bristle_state(const Node& node, std::size_t h, const ContactGeometry& g,
+                                           const numerics::VectorView& y) const;
+  [[nodiscard]] BristleFlow bristle_flow_at(const Node& node, std::size_t h, const ContactGeometry& g,
+                                            const numerics::VectorView& y) const;
   void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
   [[nodiscard]] bool stops(wire::End end) const;
   [[nodiscard]] double foundation_share(double coordinate) const;
@@ -127,6 +130,8 @@ class ContactPart final : public numerics::DaePart {
   using DerivativeRows = Eigen::Matrix<double, bristle_rows + 4, 1>;
   void add_node_derivatives(const Node& node, const ContactGeometry& geometry, const BristleMeans& means,
                             const numerics::VectorView& y);
+  /// What the bristles feel of the ends of a closed stretch, where p_e vanishes but not its rate.
+  void add_end_derivatives(int element, double u, const BristleMeans& means, const numerics::VectorView& y);
   void put_derivatives(int element, const numerics::PatternValues& into) const;
 
   MotionContact contact_;

@@ -77,10 +77,10 @@ struct FrameVariables {
   }
 };
 
-/// The frames' motions, in SI units, with these as variables.
-template <class Variables, std::size_t K>
+/// The frames' motions, in SI units, with these as variables, and room for `Inner` more behind them.
+template <class Variables, int Inner = 0, std::size_t K>
 [[nodiscard]] auto with_derivatives(const std::array<FrameMotion<double>, K>& now) {
-  using S = Dual<Variables::count>;
+  using S = Dual<Variables::count + Inner>;
   std::array<FrameMotion<S>, K> dual;
   for (std::size_t k = 0; k < K; ++k) {
     const auto variables = [&](const Eigen::Vector3d& value, typename Variables::Kind kind) {
@@ -111,26 +111,39 @@ template <std::size_t K>
   return list;
 }
 
-/// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
-template <class Variables, class S, std::size_t K>
-[[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
+/// Adds the derivatives of a vector by the frames' motions to three rows of D of FrameForces, in SI units.
+template <class Variables, std::size_t K, class S>
+void add_derivatives(const Vector3<S>& vector, Eigen::Index row, Eigen::MatrixXd& D) {
   constexpr auto last = static_cast<Eigen::Index>(K - 1);
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
-  Eigen::Index row = 0;
-  for (const FrameWrench<S>& w : wrenches) {
-    for (const Vector3<S>* part : {&w.moment, &w.force}) {
-      for (int i = 0; i < 3; ++i, ++row) {
-        for (std::size_t k = 0; k < K; ++k) {
-          for (const auto kind : {Variables::turn, Variables::shift, Variables::spin, Variables::velocity}) {
-            if (!Variables::has(k, kind)) continue;
-            const Eigen::RowVector3d by = (*part)[i].v.template segment<3>(Variables::first(k, kind)).transpose();
-            D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) = by;
-            if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
-          }
-        }
+  for (int i = 0; i < 3; ++i, ++row) {
+    for (std::size_t k = 0; k < K; ++k) {
+      for (const auto kind : {Variables::turn, Variables::shift, Variables::spin, Variables::velocity}) {
+        if (!Variables::has(k, kind)) continue;
+        const Eigen::RowVector3d by = vector[i].v.template segment<3>(Variables::first(k, kind)).transpose();
+        D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) += by;
+        if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
       }
     }
   }
+}
+
+/// Adds the derivatives of all wrenches to the first rows of D, in SI units.
+template <class Variables, class S, std::size_t K>
+void add_derivatives(const std::array<FrameWrench<S>, K>& wrenches, Eigen::MatrixXd& D) {
+  Eigen::Index row = 0;
+  for (const FrameWrench<S>& w : wrenches) {
+    for (const Vector3<S>* part : {&w.moment, &w.force}) {
+      add_derivatives<Variables, K>(*part, row, D);
+      row += 3;
+    }
+  }
+}
+
+/// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
+template <class Variables, class S, std::size_t K>
+[[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
+  add_derivatives<Variables>(wrenches, D);
   return D;
 }
 
@@ -162,21 +175,50 @@ template <int N>
   return Dual<N>(value, by_x * x.v + by_y * y.v);
 }
 
+/// The numbers of a vector without their derivatives. In whatever unit they have.
+template <class S>
+[[nodiscard]] Eigen::Vector3d values_of(const Vector3<S>& x) {
+  return {value_of(x[0]), value_of(x[1]), value_of(x[2])};
+}
+
+/// What friction between bodies depends on, in numbers with derivatives or without.
+template <class S>
+struct BristleInputs {
+  Vector3<S> bristle, sliding;            ///< z [m], w [m/s]
+  S normal{}, elastic{}, elastic_rate{};  ///< p, p_e [N], dp_e/dt [N/s]
+
+  /// The numbers alone, in SI units.
+  [[nodiscard]] BristleStateIn<3> state() const {
+    return {values_of(bristle), values_of(sliding), value_of(normal), value_of(elastic)};
+  }
+};
+
+/// A vector that depends on them, in SI units, by its value and by `change`, which returns its change by those of the inputs.
+template <class Change>
+[[nodiscard]] Eigen::Vector3d lifted(const Eigen::Vector3d& value, const BristleInputs<double>& /*in*/,
+                                     const Change& /*change*/) {
+  return value;
+}
+/// The same with derivatives, in SI units.
+template <int N, class Change>
+[[nodiscard]] Vector3<Dual<N>> lifted(const Eigen::Vector3d& value, const BristleInputs<Dual<N>>& in,
+                                      const Change& change) {
+  Vector3<Dual<N>> f = value.cast<Dual<N>>();
+  for (int k = 0; k < N; ++k) {
+    const auto slopes = [k](const Vector3<Dual<N>>& x) { return Eigen::Vector3d(x[0].v[k], x[1].v[k], x[2].v[k]); };
+    const Eigen::Vector3d by = change(BristleChangeIn<3>{slopes(in.bristle), slopes(in.sliding), in.normal.v[k],
+                                                         in.elastic.v[k], in.elastic_rate.v[k]});
+    for (int i = 0; i < 3; ++i) f[i].v[k] = by[i];
+  }
+  return f;
+}
+
 /// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.  theory.md (M.9)
 template <class S>
 [[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w, const S& normal) {
-  if (!friction.acts()) return Vector3<S>::Zero();
-  Eigen::Vector3d plain;
-  for (int i = 0; i < 3; ++i) plain[i] = value_of(w[i]);
-  const double speed = plain.norm();
-  // The law along w: f = -mu(s) N w/s; at rest it is linear in w, as the law is.
-  const auto at = [&](double s) {
-    return tangent_force(friction, {Eigen::Vector2d::Zero(), Eigen::Vector2d(s, 0.0), value_of(normal)});
-  };
-  if (speed < 1e-12) return -w * S(at(0.0).by_sliding(0, 0));
-  const TangentForce f = at(speed);
-  const S s = w.norm();
-  return -w / s * lifted(f.force.x(), f.by_sliding(0, 0), s, f.by_normal.x(), normal);
+  const BristleInputs<S> in{Vector3<S>::Zero(), w, normal, S(0.0), S(0.0)};
+  const TangentForceIn<3> f = tangent_force(friction, in.state());
+  return -lifted(f.force, in, [&f](const BristleChangeIn<3>& by) { return force_change(f, by); });
 }
 
 }  // namespace snare::coupling

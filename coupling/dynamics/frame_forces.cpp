@@ -44,6 +44,9 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
   if (w.empty()) return;
   const numerics::PatternValues into(slots_, values);
   const MatrixXd D = derivatives(at.y);
+  const std::vector<int> inner_unknowns = inner(at.y);
+  const auto first_inner_row = wrench_rows * static_cast<Index>(frames_.size());
+  const auto first_inner_column = motion_columns * static_cast<Index>(frames_.size());
   std::vector<MovingFrame::Derivatives> d;
   d.reserve(frames_.size());
   for (const MovingFrame& frame : frames_) d.push_back(frame.differentiate(at.y));
@@ -73,6 +76,27 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
             j < nq ? by.coordinates[static_cast<std::size_t>(j)] : by.velocities[static_cast<std::size_t>(j - nq)];
         into.add(on.velocities.front(), column, block.col(j));
       }
+    }
+    for (std::size_t z = 0; z < inner_unknowns.size(); ++z) {
+      const auto row = -dW.row(first_inner_row + static_cast<Index>(z));
+      for (std::size_t j = 0; j < by.coordinates.size(); ++j)
+        into.add(inner_unknowns[z], by.coordinates[j], row[static_cast<Index>(j)]);
+      for (std::size_t j = 0; j < by.velocities.size(); ++j)
+        into.add(inner_unknowns[z], by.velocities[j], row[nq + static_cast<Index>(j)]);
+    }
+  }
+  for (std::size_t z = 0; z < inner_unknowns.size(); ++z) {
+    const auto by_inner = D.col(first_inner_column + static_cast<Index>(z));
+    for (const Carrier& on : carriers_) {
+      if (!on.moves_freely) continue;
+      Eigen::VectorXd block = Eigen::VectorXd::Zero(static_cast<Index>(on.velocities.size()));
+      for (const std::size_t i : on.frames)
+        block -= d[i].jacobian.transpose() * by_inner.segment<wrench_rows>(wrench_rows * static_cast<Index>(i));
+      into.add(on.velocities.front(), inner_unknowns[z], block);
+    }
+    for (std::size_t k = 0; k < inner_unknowns.size(); ++k) {
+      const double value = by_inner[first_inner_row + static_cast<Index>(k)];
+      if (value != 0.0) into.add(inner_unknowns[k], inner_unknowns[z], -value);
     }
   }
 }

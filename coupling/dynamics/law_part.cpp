@@ -100,9 +100,9 @@ ContactSample LawPart::sample(const DaePoint& at) const {
   return s;
 }
 
-double LawPart::taken_power(const DaePoint& at) const {
+LawPart::Power LawPart::power(const DaePoint& at) const {
   const Geometry g = geometry(at.time, at.y);
-  return g.law.x() * g.rate;
+  return {spring_.law.energy(g.penetration), (g.law.x() - spring_.law.elastic(g.penetration).x()) * g.rate};
 }
 
 }  // namespace snare::coupling

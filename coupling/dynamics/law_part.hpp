@@ -25,8 +25,12 @@ class LawPart final : public numerics::DaePart {
 
   /// What it does at a state: gap -d [m], force F n [N] on what stands for the wire, and its point on the body [m].
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
-  /// Power that the law takes from body and plane [W]; negative when it gives back.
-  [[nodiscard]] double taken_power(const numerics::DaePoint& at) const;
+  /// Energy of the law's spring [J], and power that its damping takes from body and plane [W], >= 0.
+  struct Power {
+    double energy = 0.0;
+    double lost = 0.0;
+  };
+  [[nodiscard]] Power power(const numerics::DaePoint& at) const;
 
  private:
   struct Geometry;

@@ -21,7 +21,7 @@ struct WirePush {
   Eigen::Matrix2d by_place = Eigen::Matrix2d::Zero();  ///< its derivatives by the place [N/m]
   Eigen::Vector2d by_rate = Eigen::Vector2d::Zero();   ///< and by the rate [N s/m]
   double energy = 0.0;                                 ///< stored [J]
-  double lost = 0.0;  ///< [W], with all of what a law takes that does not say what it stores
+  double lost = 0.0;                                   ///< by damping [W], >= 0
 };
 
 /// Of the place where the shaft's axis goes through the plane of the wire, along chord and push from the first mount [m], and of its

@@ -65,19 +65,21 @@ struct PlaneCrossing {
 };
 
 /// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
-/// slope is t/rho. A mount into which the shaft is pressed, rho <= r, has none of them: the string goes on along the surface.
+/// slope is t/rho; it meets the shaft at r^2/rho along the way to the mount. A mount into which the shaft is pressed, rho <= r, has none of
+/// them: the string goes on along the surface, and pulls at the mount itself.
 template <class S>
 struct Tangent {
-  S length{}, over_the_arc{};
+  S length{}, over_the_arc{}, foot;
   double turn = 0.0;
 
-  Tangent(const S& rho, double r) {
+  Tangent(const S& rho, double r) : foot(rho) {
     using std::sqrt;
     constexpr double grazing = 1e-6;  // of the radius: shorter tangents do not change
     const double distance = value_of(rho), square = distance * distance - r * r;
     if (!(square > 0.0)) return;
     const double t = std::sqrt(square);
     turn = std::acos(r / distance);
+    foot = r * r / rho;
     over_the_arc = lifted(t - r * turn, t / distance, rho, 0.0, rho);
     length = t > grazing * r ? S(sqrt(rho * rho - r * r)) : S(t);
   }
@@ -104,7 +106,7 @@ struct LawWirePart::Action {
   Vector3<S> slide = Vector3<S>::Zero();             // of the shaft along the wire there
   S share{0.5};                                      // of the way from the first mount
   double stiffness = 0.0, rate = 0.0, energy = 0.0;  // of the string: d(tension)/d(elongation), rate of the elongation
-  double lost = 0.0;                                 // of a push [W]
+  double lost = 0.0;                                 // of a rod or a push, by damping [W]
   std::array<Stop<S>, 2> stops{};                    // at the mounts of a string, by their frames
 };
 
@@ -124,6 +126,15 @@ void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<Fram
   wrenches[on_shaft].add(frames[on_shaft], point, force);
   wrenches[from].add(frames[from], point, -force * (S(1.0) - share));
   wrenches[to].add(frames[to], point, -force * share);
+}
+
+// The velocity that friction works against: of the shaft across a unit vector n, against what carries the mounts, by their shares.
+template <class S>
+Vector3<S> slide_at(const std::array<FrameMotion<S>, 3>& frames, const Vector3<S>& point, const S& share,
+                    const Vector3<S>& n) {
+  const Vector3<S> v = frames[on_shaft].velocity_at(point) - frames[from].velocity_at(point) * (S(1.0) - share) -
+                       frames[to].velocity_at(point) * share;
+  return v - n * n.dot(v);
 }
 
 }  // namespace
@@ -185,13 +196,11 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
     const S flat = on_p.over_the_arc + on_t.over_the_arc + r * angle, height = z_t - z_p;
     length = sqrt(flat * flat + height * height);
     const Vector3<S> p_unit = p / rho_p, t_unit = t / rho_t;
-    const Vector3<S> m_p = p_unit * (r / rho_p) + axis.cross(p_unit) * (t_p / rho_p);
-    const Vector3<S> m_t = t_unit * (r / rho_t) - axis.cross(t_unit) * (t_t / rho_t);
     const S rise = height / length, along = flat / length;
     u_p = (axis.cross(p_unit) * (r / rho_p) - p_unit * (t_p / rho_p)) * along + axis * rise;
     u_t = (-axis.cross(t_unit) * (r / rho_t) - t_unit * (t_t / rho_t)) * along - axis * rise;
-    q_p = c + m_p * S(r) + axis * (z_p + height * t_p / flat);
-    q_t = c + m_t * S(r) + axis * (z_t - height * t_t / flat);
+    q_p = c + p_unit * on_p.foot + axis.cross(p_unit) * (r * t_p / rho_p) + axis * (z_p + height * t_p / flat);
+    q_t = c + t_unit * on_t.foot - axis.cross(t_unit) * (r * t_t / rho_t) + axis * (z_t - height * t_t / flat);
     a.point = (q_p + q_t) * S(0.5);
     a.share = (t_p + 0.5 * (flat - t_p - t_t)) / flat;
   } else {
@@ -222,15 +231,14 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   a.normal = press.norm();
   if (!(value_of(a.normal) > 0.0)) return a;
   const Vector3<S> n = press / a.normal;
-  const Vector3<S> v = frames[on_shaft].velocity_at(a.point) - frames[from].velocity_at(a.point) * (S(1.0) - a.share) -
-                       frames[to].velocity_at(a.point) * a.share;
-  a.slide = v - n * n.dot(v);
+  a.slide = slide_at(frames, a.point, a.share, n);
   add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), a.share);
   return a;
 }
 
 // The rod points from its pivot to the other mount; the shaft, a circle of radius r at the distance rho from the pivot, lets it turn
-// up to the tangent: x = l (asin(delta/rho) + asin(r/rho)), l = sqrt(rho^2 - r^2), delta the axis' distance behind the rod.
+// up to the tangent: x = l (asin(delta/rho) + asin(r/rho)), l = sqrt(rho^2 - r^2), delta the axis' distance behind the rod. All forces together
+// do the work of F dx: across the rod F dx/ddelta, along it F dx/ds on whatever moves the place s of the shaft.
 template <class S>
 LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& frames) const {
   using std::asin, std::sqrt;
@@ -250,28 +258,44 @@ LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& fra
   const double r = wire_.shaft.radius + wire_.radius;
   const S rho = sqrt(s * s + behind * behind);
   if (!(value_of(rho) > r)) return a;
-  a.depth = sqrt(rho * rho - r * r) * (asin(behind / rho) + asin(r / rho));
+  const S tangent = sqrt(rho * rho - r * r), turn = asin(behind / rho) + asin(r / rho);
+  a.depth = tangent * turn;
   a.touches = value_of(a.depth) > 0.0;
   a.point = P + e * s;
   a.share = s / span;
   if (!a.touches) return a;
   const S& share = a.share;
-  const Vector3<S> wire_velocity = frames[from].linear * (S(1.0) - share) + frames[to].linear * share;
-  const Vector3<S> v = frames[on_shaft].velocity_at(a.point) - wire_velocity;
-  const S speed = n.dot(v);
+  // x' = x_delta delta' + x_s s': how the shaft moves across the rod, and along it.
+  const S across = behind / tangent * turn + (s * tangent - r * behind) / (rho * rho);
+  const S along = s / tangent * turn - (behind * tangent + r * s) / (rho * rho);
+  const S cosine = e.dot(axis), square = 1.0 - cosine * cosine;
+  const Vector3<S> u = (e - axis * cosine) / square, q = c + axis * near.along_axis;
+  const S lean = behind / square / span;                                // of s by the turn of the rod
+  const Vector3<S> tilt = axis.cross(n) * (-behind * cosine / square);  // and by that of the shaft
+  const auto between = [&](const Vector3<S>& at) {
+    return Vector3<S>(frames[on_shaft].velocity_at(at) - frames[from].linear * (S(1.0) - share) -
+                      frames[to].linear * share);
+  };
+  const Vector3<S> parting = frames[to].linear - frames[from].linear;
+  const S shift =
+      u.dot(between(q)) + lean * n.dot(parting) + share * e.dot(parting) + tilt.dot(frames[on_shaft].angular);
+  const S speed = across * n.dot(between(a.point)) + along * shift;
   const Vector3d law = wire_.law(value_of(a.depth), value_of(speed));
-  a.normal = lifted(law.x(), law.y(), a.depth, law.z(), speed);
-  if (!(value_of(a.normal) > 0.0)) {
-    a.normal = S(0.0);
-    return a;
-  }
+  const S force = lifted(law.x(), law.y(), a.depth, law.z(), speed);
+  a.energy = wire_.law.energy(value_of(a.depth));
+  a.lost = (law.x() - wire_.law.elastic(value_of(a.depth)).x()) * value_of(speed);
+  if (!(value_of(force) > 0.0)) return a;
   a.acts = true;
+  a.normal = force * across;
   const S y = a.depth + S(wire_.standoff);
-  a.tension = a.normal / (y / sqrt(s * s + y * y) + y / sqrt((span - s) * (span - s) + y * y));
+  a.tension = force / (y / sqrt(s * s + y * y) + y / sqrt((span - s) * (span - s) + y * y));
+  const Vector3<S> sideways = u * (force * along), leaning = (n * lean + e * share) * (force * along);
   a.wrenches[on_shaft].add(frames[on_shaft], a.point, -n * a.normal);
-  a.wrenches[from].add(frames[from], P, n * a.normal * (S(1.0) - share));
-  a.wrenches[to].add(frames[to], T, n * a.normal * share);
-  a.slide = v - n * speed;
+  a.wrenches[on_shaft].add(frames[on_shaft], q, -sideways);
+  a.wrenches[on_shaft].moment -= tilt * (force * along);
+  a.wrenches[from].add(frames[from], P, n * a.normal * (S(1.0) - share) + sideways * (S(1.0) - share) + leaning);
+  a.wrenches[to].add(frames[to], T, n * a.normal * share + sideways * share - leaning);
+  a.slide = slide_at(frames, a.point, share, n);
   add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), share);
   return a;
 }
@@ -346,7 +370,6 @@ double LawWirePart::depth(const VectorView& y) const {
   return now(y).depth;
 }
 
-// The string stores what it is stretched by; of a rod's law all that is taken counts as lost, and what it gives back as gained.
 PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
   const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
   const Action<double> a = act(frames);
@@ -360,20 +383,17 @@ PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
   p.sample.slip_speed = a.slide.norm();
   p.tension = a.tension;
   if (a.acts) p.work.wrenches = plain(a.wrenches);
-  if (wire_.kind == LawWire::Kind::rod) {
-    p.work.power.lost = -power_of(a.wrenches, frames);
-  } else if (wire_.kind == LawWire::Kind::push) {
-    p.work.power = {a.energy, a.lost};
-  } else {
-    const auto by_friction = [&](const Vector3d& slide, double normal) {
-      return -smooth_friction(wire_.friction, slide, normal).dot(slide);
-    };
-    p.work.power = {a.energy,
-                    (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate + by_friction(a.slide, a.normal)};
-    for (const Stop<double>& s : a.stops) {
-      p.work.power.energy += s.energy;
-      p.work.power.lost += s.lost + by_friction(s.slide, s.normal);
-    }
+  const auto by_friction = [&](const Vector3d& slide, double normal) {
+    return -smooth_friction(wire_.friction, slide, normal).dot(slide);
+  };
+  p.work.power = {a.energy, a.lost};
+  if (wire_.kind == LawWire::Kind::push) return p;
+  p.work.power.lost += by_friction(a.slide, a.normal);
+  if (wire_.kind == LawWire::Kind::rod) return p;
+  p.work.power.lost += (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate;
+  for (const Stop<double>& s : a.stops) {
+    p.work.power.energy += s.energy;
+    p.work.power.lost += s.lost + by_friction(s.slide, s.normal);
   }
   return p;
 }

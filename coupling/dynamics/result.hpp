@@ -35,7 +35,7 @@ struct ContactSample {
 /// Energies [J] of all wires, free bodies and arms.
 struct EnergyBalance {
   double kinetic = 0.0;
-  double strain = 0.0;  ///< of the wires, and of foundations
+  double strain = 0.0;  ///< of wires, foundations, bristles, bushings and the springs of laws
   double potential = 0.0;
   double dissipated = 0.0;  ///< by damping, drag, friction, contact laws and joints, integrated along the run
   double work = 0.0;        ///< done by driven bodies, constant forces, drives and loads of arms

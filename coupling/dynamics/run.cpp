@@ -63,6 +63,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
                                                 frame(w.shaft.carrier, w.shaft.X_WS)));
   for (const BodyContact& b : motion.body_contacts)
     presses_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
+  seen_.resize(body_contacts_.size());
   for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   y_ = VectorXd::Zero(system_->size());
@@ -109,8 +110,8 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
 }
 
 int MotionRun::default_order() const {
-  constexpr int of_rods = 2, of_laws = 3, of_bodies = 5;
-  if (!rods_.empty()) return of_rods;
+  constexpr int a_stable = 2, of_laws = 3, of_bodies = 5;
+  if (!rods_.empty() || std::ranges::any_of(body_contacts_, &BodyContactPart::has_bristle)) return a_stable;
   return springs_.empty() && presses_.empty() ? of_bodies : of_laws;
 }
 
@@ -234,9 +235,18 @@ bool MotionRun::write_until(double time) {
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
-    if (give(sample({t, y, rate}, ida_->interpolate_integrals(t)))) return true;
+    const MotionSample between = sample({t, y, rate}, ida_->interpolate_integrals(t));
+    lost_before_ = between.energy.dissipated;
+    if (give(between)) return true;
   }
   return false;
+}
+
+// No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its tolerance.
+void MotionRun::count_losses() {
+  const double others = integrals_[integral::laws] + constraints_->lost(y_);
+  lost_ = std::max(integrals_[integral::dissipated] + others, lost_);  // not a number, if that is not
+  integrals_[integral::dissipated] = lost_ - others;
 }
 
 void MotionRun::begin() {
@@ -272,11 +282,18 @@ void MotionRun::resume(const MotionState& from) {
   for (ContactGroup& c : contacts_) c.restore_state(memory);
   peak_.restore_state(memory);
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
+  for (Seen& s : seen_) {
+    s.closed = numerics::take(memory) != 0.0;
+    s.sticking = numerics::take(memory) != 0.0;
+  }
+  lost_ = lost_before_ = numerics::take(memory);
   restore_phases(memory);
   for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
   for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
   system_->restore_state(y_, memory);
+  law_losses_ = LossSum(integrals_[integral::laws]);
+  law_losses_.begin(time_, law_loss({time_, y_, rate_}));
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
 }
@@ -323,6 +340,13 @@ MotionResult MotionRun::go(double limit) {
     const bool phase = look_for_phase();
     const VectorXd integrands = phase ? ida_->interpolate_integrals(time_, 1) : ida_->integral_rates();
     forces_.add(time_, integrands.tail(of_contacts));
+    const bool cut = phase || advance == numerics::IdaAdvance::event;
+    law_losses_.add(time_, cut ? law_loss({time_, y_, rate_}) : integrands[integral::laws], [this](double t) {
+      return law_loss({t, ida_->interpolate(t), rate_});
+    });
+    integrals_[integral::laws] = law_losses_.sum();
+    lost_before_ = lost_;
+    count_losses();
     measure(before);
     watch(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
@@ -361,6 +385,8 @@ MotionResult MotionRun::go(double limit) {
       sums_.events.push_back({time_, static_cast<int>(first_press() + k), 0, presses_[k]->sample(y_).arc,
                               found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
+    if (!behind)
+      watch_body_contacts(before, std::span(found).subspan(event - body_contacts_.size(), body_contacts_.size()));
     for (LoadPart& l : loads_) changed = l.enter(time_) || changed;
     for (RobotLoop& l : loops_) changed = l.enter(time_, changed || phase || touch_or_lift) || changed;
     if (phase) {
@@ -410,6 +436,8 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   for (const ContactGroup& c : contacts_) c.save_state(memory);
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
+  for (const Seen& s : seen_) memory.insert(memory.end(), {s.closed ? 1.0 : 0.0, s.sticking ? 1.0 : 0.0});
+  memory.push_back(lost_);
   phases_.save_state(memory);
   sensed_.save_state(memory);
   for (const RobotLoop& l : loops_) l.save_state(memory);

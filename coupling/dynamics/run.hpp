@@ -8,6 +8,7 @@
 #include "coupling/dynamics/law_part.hpp"
 #include "coupling/dynamics/law_wire_part.hpp"
 #include "coupling/dynamics/load_part.hpp"
+#include "coupling/dynamics/loss_sum.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/modes.hpp"
 #include "coupling/dynamics/options.hpp"
@@ -34,13 +35,14 @@ namespace snare::coupling {
 
 /// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
 /// wires and free bodies, the force of everything that presses on the wire or the first of two [N], and behind them the normal force
-/// of each.
+/// of each. What laws lose has kinks, which the integrator's formula does not see: that sum is LossSum's.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
 constexpr Eigen::Index outer = 2;
 constexpr Eigen::Index outer_moment = 5;
-constexpr Eigen::Index contacts = 8;
+constexpr Eigen::Index laws = 8;  ///< what laws between bodies and in place of wires lose, no part of `dissipated`
+constexpr Eigen::Index contacts = 9;
 }  // namespace integral
 
 /// Times that differ by less are the same: the integrator cannot step from one to the other [s].
@@ -110,6 +112,13 @@ class MotionRun {
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
+  /// Adds up what is dissipated in all, which never falls.
+  void count_losses();
+  /// Power that laws between bodies and in place of wires lose [W], >= 0.
+  [[nodiscard]] double law_loss(const numerics::DaePoint& at) const;
+  /// Notes touches that began at a start, stick and slip of bodies that touch, in the step from a time [s]. found: events of the integrator,
+  /// those of the contacts of bodies.
+  void watch_body_contacts(double time_before, std::span<const int> found);
   [[nodiscard]] double longest_step() const;
   /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
   void measure(double from);
@@ -138,6 +147,11 @@ class MotionRun {
   std::deque<LawWirePart> law_wires_;
   std::deque<BodyContactPart> body_contacts_;
   std::vector<PressPart*> presses_;  // both of them
+  /// How a contact of bodies was at the last accepted step.
+  struct Seen {
+    bool closed = false, sticking = false;
+  };
+  std::vector<Seen> seen_;  // by body_contacts_
   std::deque<LoadPart> loads_;
   PhaseWatch phases_;
   SensedReadings sensed_;
@@ -146,6 +160,8 @@ class MotionRun {
   Eigen::VectorXd y_, rate_;
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
+  LossSum law_losses_;
+  double lost_ = 0.0, lost_before_ = 0.0;  // all that is dissipated, and that up to the step or sample before [J]
   PeakForce peak_;
   ForceRecord forces_;                     // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire

@@ -47,10 +47,13 @@ void MotionRun::make_rates() {
     for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
   }
   for (WirePairPart& p : pairs_) p.set_bristle_rates(y_, rate_);
+  for (const BodyContactPart& b : body_contacts_) b.set_bristle_rates(y_, rate_);
 }
 
 void MotionRun::settle() {
   make_rates();
+  count_losses();
+  law_losses_.begin(time_, law_loss({time_, y_, rate_}));
   ida_->set_integrals(integrals_);
   ida_->start(time_, y_, rate_);
 }

@@ -30,7 +30,7 @@ Vector3d PairSide::turn() const {
 }
 
 PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& radii,
-                           const std::array<PairSide, 2>& sides, bool stands, const Vector2d& bristle) {
+                           const std::array<PairSide, 2>& sides, bool stands, const BristlesBeside& beside) {
   PairGeometry g;
   g.sides = sides;
   const double thickness = radii[0] + radii[1];
@@ -43,8 +43,12 @@ PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& ra
   g.relative = sides[0].v - sides[1].v;
   g.gap_rate = g.normal.dot(g.relative);
   g.direction = sides[0].slope.normalized();
-  g.load = pair.foundation.load(g.gap, g.gap_rate - g.normal.dot(g.direction) * g.direction.dot(g.relative));
+  const double across = g.gap_rate - g.normal.dot(g.direction) * g.direction.dot(g.relative);
+  g.opening = Opening::between(g.gap_rate, across);
+  g.load = pair.foundation.load(g.gap, g.opening.rate);
+  g.elastic = pair.foundation.elastic_load(g.gap);
   g.state.normal = g.load[0];
+  g.state.elastic = g.elastic[0];
   g.force = g.state.normal * g.normal;
   if (!pair.friction.acts()) return g;
   g.turn = g.shares[0] * sides[0].turn() + g.shares[1] * sides[1].turn();
@@ -54,8 +58,17 @@ PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& ra
   g.along = level / g.run;
   g.across = g.normal.cross(g.along);
   g.state.sliding = {g.along.dot(g.sliding), g.across.dot(g.sliding)};
-  g.state.bristle = bristle;
-  g.friction = tangent_force(pair.friction, g.state);
+  if (pair.friction.has_bristle()) {
+    g.hats = beside.hats;
+    for (std::size_t h = 0; h < 2; ++h) {
+      BristleState at = g.state;
+      at.bristle = beside.bristles[h];
+      g.of_bristles[h] = tangent_force(pair.friction, at);
+      g.friction.add(g.hats[h], g.of_bristles[h]);
+    }
+  } else {
+    g.friction = tangent_force(pair.friction, g.state);
+  }
   const Vector3d on_other = g.in_world(g.friction.force);
   g.force -= on_other;
   g.moment = g.apart.cross(on_other);
@@ -75,11 +88,16 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
   const Vector3d dnormal = (dapart - dgap * g.normal) / g.distance;
   const Vector3d drelative = d.sides[0].v - d.sides[1].v - b.slope_v * c.zeta;
   const double dgap_rate = dnormal.dot(g.relative) + g.normal.dot(drelative);
-  const Vector3d ddirection = (d.sides[0].slope - g.direction.dot(d.sides[0].slope) * g.direction) / a.slope.norm();
-  const double dopening = dgap_rate -
-                          (dnormal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) -
-                          g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative));
+  double dopening = (g.opening.by_gap + g.opening.by_across) * dgap_rate;
+  if (g.opening.by_across != 0.0) {
+    const Vector3d ddirection = (d.sides[0].slope - g.direction.dot(d.sides[0].slope) * g.direction) / a.slope.norm();
+    dopening -=
+        g.opening.by_across * ((dnormal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
+                               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
+  }
   c.load = g.load[1] * dgap + g.load[2] * dopening;
+  c.elastic = g.elastic[1] * dgap;
+  c.elastic_rate = g.elastic[2] * g.gap_rate * dgap + g.elastic[1] * dgap_rate;
   c.force = c.load * g.normal + g.state.normal * dnormal;
   if (!friction.acts()) return c;
   Vector3d dturn = Vector3d::Zero();
@@ -100,8 +118,9 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
   const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
   const Vector3d dacross = dnormal.cross(g.along) + g.normal.cross(dalong);
   c.sliding = {dalong.dot(g.sliding) + g.along.dot(dsliding), dacross.dot(g.sliding) + g.across.dot(dsliding)};
-  const Vector2d dfriction =
-      g.friction.by_bristle * d.bristle + g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load;
+  Vector2d dfriction =
+      g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
+  for (std::size_t h = 0; h < 2; ++h) dfriction += g.hats[h] * g.of_bristles[h].by_bristle * d.bristles[h];
   const Vector3d don_other = g.in_world(dfriction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   c.force -= don_other;
   c.moment = dapart.cross(g.in_world(g.friction.force)) + g.apart.cross(don_other);

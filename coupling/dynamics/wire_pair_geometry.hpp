@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/bristle_means.hpp"
 #include "coupling/dynamics/model.hpp"
 
 #include <Eigen/Core>
@@ -30,7 +31,7 @@ struct PairSide {
 /// Wire A at a place and the point of wire B that is nearest to it, axes of the world.          theory.md (M.20), (M.21)
 ///
 ///   r = X_A - X_B,  D = |r|,  n = r/D,  g = D - r_A - r_B;   r.X_B' = 0 (B's point follows)
-///   t = X_A'/|X_A'|,  o = dg/dt - (n.t) (t.(v_A - v_B)): rate by motion across A
+///   t = X_A'/|X_A'|,  o: dg/dt or dg/dt - (n.t) (t.(v_A - v_B)), the rate by motion across A, or a mean of both: see Opening
 ///   u = X_A' - (n.X_A') n,  a = u/|u|,  b = n x a
 ///   w = v_A - v_B - Omega x r,   Omega = s_A omega_A + s_B omega_B,   s_A = r_A/(r_A + r_B)
 ///   force on A, a length of A: f = p n - (friction on B, in a and b), on B -f; at one point on r, which shares it as the radii
@@ -51,21 +52,28 @@ struct PairGeometry {
   Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
   double run = 0.0;                                                                   ///< |u|
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< p [N/m], and its derivatives by g and o
-  BristleState state;                              ///< z, w in a and b, p
+  Eigen::Vector3d elastic =
+      Eigen::Vector3d::Zero();  ///< the part of p that is stored, and its first two derivatives by g
+  Opening opening;              ///< o
+  BristleState state;           ///< w in a and b, p and its stored part
   TangentForce friction;
+  std::array<TangentForce, 2> of_bristles;           ///< of the bristles of A's element, if there are any
+  std::array<double, 2> hats{};                      ///< shares of them in `friction`
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< f [N/m]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< M [N]
 
+  /// Rate of the stored part of p [N/(m s)].
+  [[nodiscard]] double elastic_rate() const { return elastic[1] * gap_rate; }
   /// A vector given in the tangent plane's axes a and b, in the axes of the world; same unit.
   [[nodiscard]] Eigen::Vector3d in_world(const Eigen::Vector2d& tangent) const {
     return tangent.x() * along + tangent.y() * across;
   }
 };
 
-/// pair: its foundation has a modulus. radii: of A and B. bristle: z [m], zero without one.
+/// pair: its foundation has a modulus. radii: of A and B [m]. beside: used only where friction has bristles.
 [[nodiscard]] PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& radii,
                                          const std::array<PairSide, 2>& sides, bool stands,
-                                         const Eigen::Vector2d& bristle);
+                                         const BristlesBeside& beside);
 
 /// A direction in the space of what the contact depends on: of sums over vertices, zeta kept.
 struct PairDirection {
@@ -77,13 +85,14 @@ struct PairDirection {
     std::array<Eigen::Vector3d, 3> rate{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   };
   std::array<Side, 2> sides;
-  Eigen::Vector2d bristle = Eigen::Vector2d::Zero();
+  std::array<Eigen::Vector2d, 2> bristles{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
 };
 
 /// What changes along a direction.
 struct PairChange {
-  double zeta = 0.0;  ///< of B's point [m]
-  double load = 0.0;  ///< of p [N/m]
+  double zeta = 0.0;                 ///< of B's point [m]
+  double load = 0.0, elastic = 0.0;  ///< of p and of its stored part [N/m]
+  double elastic_rate = 0.0;         ///< of the rate of that [N/(m s)]
   Eigen::Vector2d sliding = Eigen::Vector2d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< of f
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of M

@@ -203,7 +203,7 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
   for (const ClosedStretch& s : found.closed) {
     const double begin = curve.begin(near.element);
     found.stretches.push_back({own, begin + s.from * length, begin + s.to * length, s.deepest.gap});
-    for_each_place(s, [&](double u, double weight) {
+    const auto make = [&](double u, double weight) {
       const FootPoint foot = foot_point(across, near.first, near.last, along.value(near.element, u));
       Node n;
       n.own = own;
@@ -212,8 +212,12 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
       n.stretch = found.stretches.size() - 1;
       n.places = {place(own, near.element, u), place(other, foot.element, foot.u)};
       n.hats = {1.0 - u, u};
-      found.nodes.push_back(n);
-    });
+      return n;
+    };
+    for_each_place(s, [&](double u, double weight) { found.nodes.push_back(make(u, weight)); });
+    for (const double u : {s.from, s.to}) {
+      if (has_bristle() && u > 0.0 && u < 1.0) found.ends.push_back(make(u, 1.0 / length));
+    }
   }
 }
 
@@ -236,15 +240,24 @@ PairSide WirePairPart::side(std::size_t wire, const Node::Place& p, const Vector
 }
 
 PairGeometry WirePairPart::geometry(const Node& n, const VectorView& y) const {
-  Vector2d z = Vector2d::Zero();
-  for (int h = 0; has_bristle() && h < 2; ++h) z += n.hats[base::at(h)] * y.segment<2>(bristle_of(n, h));
+  BristlesBeside beside;
+  beside.hats = n.hats;
+  for (int h = 0; has_bristle() && h < 2; ++h) beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n, h));
   const std::size_t other = 1 - n.own;
   return pair_geometry(pair_, {pair_.radii[n.own], pair_.radii[other]},
-                       {side(n.own, n.places[0], y), side(other, n.places[1], y)}, n.stands, z);
+                       {side(n.own, n.places[0], y), side(other, n.places[1], y)}, n.stands, beside);
 }
 
-BristleRate WirePairPart::bristle(const Node& n, int h, const PairGeometry& g, const VectorView& y) const {
-  return bristle_rate(pair_.friction, {y.segment<2>(bristle_of(n, h)), g.state.sliding, 0.0});
+BristleState WirePairPart::bristle_state(const Node& n, std::size_t h, const PairGeometry& g,
+                                         const VectorView& y) const {
+  BristleState at = g.state;
+  at.bristle = y.segment<2>(bristle_of(n, static_cast<int>(h)));
+  return at;
+}
+
+BristleFlow WirePairPart::bristle_flow_at(const Node& n, std::size_t h, const PairGeometry& g,
+                                          const VectorView& y) const {
+  return bristle_flow(pair_.friction, bristle_state(n, h, g, y), g.of_bristles[h], g.elastic_rate());
 }
 
 WirePairPart::NodalLoad WirePairPart::nodal_load(const Node& n, const PairGeometry& g, std::size_t s) const {
@@ -268,6 +281,7 @@ const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
   if (found_.inputs.holds(y)) return found_;
   found_.inputs.take(y);
   found_.nodes.clear();
+  found_.ends.clear();
   found_.stretches.clear();
   found_.geometries.clear();
   if (!search_.candidates().empty()) find(y, found_);
@@ -293,9 +307,10 @@ void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const Node& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
-    for (int h = 0; h < 2; ++h) {
-      found.bristles[n.own].add(n.places[0].element + h, n.weight * g.state.normal * n.hats[base::at(h)],
-                                bristle(n, h, g, y).rate);
+    for (std::size_t h = 0; h < 2; ++h) {
+      const double share = n.weight * n.hats[h];
+      found.bristles[n.own].add(n.places[0].element + static_cast<int>(h), share * g.state.elastic,
+                                share * bristle_flow_at(n, h, g, y).flow);
     }
   }
   for (BristleMeans& b : found.bristles) b.finish();
@@ -345,6 +360,11 @@ void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& v
     add_block(n, block, into);
     block.setZero();
   }
+  for (const Node& end : found.ends) {
+    add_end_jacobian(end, at.y, block);
+    add_block(end, block, into);
+    block.setZero();
+  }
 }
 
 void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDirection& d, const VectorView& y,
@@ -367,11 +387,13 @@ void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDi
       column.segment<3>(first + 3) -= couple;
     }
   }
-  for (int h = 0; has_bristle() && h < 2; ++h) {
-    const BristleRate r = bristle(n, h, g, y);
-    column.segment<2>(row_of_bristle + 2 * h) +=
-        found_.bristles[n.own].change(n.places[0].element + h, n.weight * n.hats[base::at(h)], c.load, r.rate,
-                                      g.state.normal * r.by_sliding * c.sliding);
+  for (std::size_t h = 0; has_bristle() && h < 2; ++h) {
+    const BristleFlow flow = bristle_flow_at(n, h, g, y);
+    const BristleChange by{d.bristles[h], c.sliding, c.load, c.elastic, c.elastic_rate};
+    const double share = n.weight * n.hats[h];
+    column.segment<2>(row_of_bristle + 2 * static_cast<Eigen::Index>(h)) += found_.bristles[n.own].change(
+        n.places[0].element + static_cast<int>(h), share * c.elastic,
+        share * flow_change(pair_.friction, bristle_state(n, h, g, y), g.of_bristles[h], flow, by));
   }
 }
 
@@ -401,16 +423,29 @@ void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const
       }
     }
   }
-  for (int h = 0; has_bristle() && h < 2; ++h) {
-    const BristleRate r = bristle(n, h, g, y);
-    const double share =
-        n.weight * g.state.normal * n.hats[base::at(h)] / found_.bristles[n.own].loads[n.places[0].element + h];
+  for (std::size_t h = 0; has_bristle() && h < 2; ++h) {
     for (int a = 0; a < 2; ++a) {
-      const Eigen::Index column = column_of_bristle + 2 * h + a;
       PairDirection d;
-      d.bristle = n.hats[base::at(h)] * Vector2d::Unit(a);
-      add_column(n, g, d, y, block.col(column));
-      block.block<2, 1>(row_of_bristle + 2 * h, column) -= share * r.by_bristle.col(a);
+      d.bristles[h] = Vector2d::Unit(a);
+      add_column(n, g, d, y, block.col(column_of_bristle + 2 * static_cast<Eigen::Index>(h) + a));
+    }
+  }
+}
+
+void WirePairPart::add_end_jacobian(const Node& n, const VectorView& y, LocalBlock& block) const {
+  const PairGeometry g = geometry(n, y);
+  const double growth = std::max(-pair_.foundation.modulus * g.gap_rate, 0.0);
+  const double steep = std::abs(g.normal.dot(g.sides[0].slope));
+  if (growth == 0.0 || steep < 1e-12) return;
+  for (int h = 0; h < 2; ++h) {
+    const Vector2d flow = 0.5 * growth / steep * n.weight * n.hats[base::at(h)] * y.segment<2>(bristle_of(n, h));
+    const Vector2d by_gap = found_.bristles[n.own].change(n.places[0].element + h, 0.0, flow);
+    for (std::size_t s = 0; s < 2; ++s) {  // dg = n.(dX_A - dX_B)
+      const Vector3d normal = s == 0 ? g.normal : Vector3d(-g.normal);
+      for (int k = 0; k < 4; ++k) {
+        const Eigen::Index column = columns_of_place * static_cast<Eigen::Index>(s) + 3 * k;
+        block.block<2, 3>(row_of_bristle + 2 * h, column) += n.places[s].value[k] * by_gap * normal.transpose();
+      }
     }
   }
 }

@@ -58,8 +58,8 @@ class WirePairPart final : public numerics::DaePart {
   struct Sums {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the first wire [N]
     double normal = 0.0;                              ///< sum of the normal forces [N]
-    double lost_power = 0.0;                          ///< to friction and damping [W]
-    double energy = 0.0;                              ///< of the foundation [J]
+    double lost_power = 0.0;                          ///< to friction and damping [W], >= 0
+    double energy = 0.0;                              ///< of the foundation and of bristles [J]
     /// Of friction about the wires' own axes, taken as held: on the wires it would be, and is not [N m].
     Eigen::Vector3d held_moment = Eigen::Vector3d::Zero();
     /// What of it falls on rigidly held components of the first and the last vertex, of both wires [N].
@@ -105,6 +105,7 @@ class WirePairPart final : public numerics::DaePart {
   struct Found {
     InputMemo inputs;
     std::vector<Node> nodes;
+    std::vector<Node> ends;  // of the stretches, with bristles: see add_end_jacobian
     std::vector<Stretch> stretches;
     std::array<CubicPieces, 2> pieces;
     std::vector<PairGeometry> geometries;  // of the nodes
@@ -127,8 +128,11 @@ class WirePairPart final : public numerics::DaePart {
   [[nodiscard]] Node::Place place(std::size_t wire, int element, double u) const;
   [[nodiscard]] PairSide side(std::size_t wire, const Node::Place& place, const numerics::VectorView& y) const;
   [[nodiscard]] PairGeometry geometry(const Node& node, const numerics::VectorView& y) const;
-  [[nodiscard]] BristleRate bristle(const Node& node, int h, const PairGeometry& g,
-                                    const numerics::VectorView& y) const;
+  /// State of the bristle of one of the element's two vertices at a node, and its flow there.
+  [[nodiscard]] BristleState bristle_state(const Node& node, std::size_t h, const PairGeometry& g,
+                                           const numerics::VectorView& y) const;
+  [[nodiscard]] BristleFlow bristle_flow_at(const Node& node, std::size_t h, const PairGeometry& g,
+                                            const numerics::VectorView& y) const;
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
   [[nodiscard]] std::size_t wire_of(const Node& n, std::size_t s) const { return s == 0 ? n.own : 1 - n.own; }
   /// First of the two of the vertex h of the node's element.
@@ -139,6 +143,8 @@ class WirePairPart final : public numerics::DaePart {
                   Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const;
   void add_node_jacobian(const Node& node, const PairGeometry& g, const numerics::VectorView& y,
                          LocalBlock& block) const;
+  /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see ContactPart.
+  void add_end_jacobian(const Node& end, const numerics::VectorView& y, LocalBlock& block) const;
   void add_block(const Node& node, const LocalBlock& block, const numerics::PatternValues& into) const;
 
   WirePair pair_;

@@ -10,7 +10,6 @@
 
 namespace snare::coupling {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 using numerics::VectorView;
 
@@ -24,9 +23,14 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
     sum.force += (n.own == 0 ? n.weight : -n.weight) * g.force;
     sum.normal += n.weight * g.state.normal;
     sum.energy += n.weight * pair_.foundation.energy(g.gap);
-    // What is taken from both wires, less what the foundation stores: (load - what it stores) g' is negative, friction.w positive.
-    const double damped = (pair_.foundation.elastic_load(g.gap) - g.state.normal) * g.gap_rate;
-    sum.lost_power += n.weight * (damped + g.friction.force.dot(g.state.sliding));
+    // What is taken from both wires, less what foundation and bristles store.
+    const double damped = (g.elastic[0] - g.state.normal) * g.gap_rate;
+    double rubbed = g.friction.force.dot(g.state.sliding);
+    if (has_bristle()) {
+      rubbed = 0.0;
+      for (std::size_t h = 0; h < 2; ++h) rubbed += n.hats[h] * bristle_flow_at(n, h, g, y).heat;
+    }
+    sum.lost_power += n.weight * (damped + rubbed);
     for (std::size_t s = 0; s < 2; ++s) {
       const std::size_t w = wire_of(n, s);
       const NodalLoad load = nodal_load(n, g, s);
@@ -39,6 +43,12 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
         }
       }
     }
+  }
+  for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
+    const BristleMeans::Held held =
+        found.bristles[w].held(pair_.friction, y.segment(bristles_[w], 2 * rods_[w]->vertices()));
+    sum.energy += held.energy;
+    sum.lost_power += held.heat;
   }
   return sum;
 }
@@ -95,8 +105,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     s.slip_speed += normal * g.state.sliding.norm();
     if (!has_bristle()) continue;
     // The slider of what sticks stands still.
-    const Vector2d slides = g.state.sliding - bristle_rate(pair_.friction, g.state).rate;
-    if (slides.norm() <= standing) s.sticking = true;
+    if (g.of_bristles[n.hats[1] > n.hats[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
   }
   for (Point& p : points) {
     ContactSample& s = p.sample;
@@ -133,8 +142,8 @@ std::pair<double, double> WirePairPart::gap_at(const VectorView& y, double coord
   n.places = {place(0, element, u), place(1, foot.element, foot.u)};
   WirePair without = pair_;
   without.friction = {};
-  const PairGeometry g = pair_geometry(without, pair_.radii, {side(0, n.places[0], y), side(1, n.places[1], y)},
-                                       foot.stands, Vector2d::Zero());
+  const PairGeometry g =
+      pair_geometry(without, pair_.radii, {side(0, n.places[0], y), side(1, n.places[1], y)}, foot.stands, {});
   return {g.gap, g.gap_rate};
 }
 

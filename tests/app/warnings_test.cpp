@@ -68,6 +68,33 @@ TEST_F(Warnings, AFitOfWhatCannotBe) {
   EXPECT_NE(contents("here/report.html").find("Warning: fitted model"), std::string::npos);
 }
 
+// An integrator that loses more of the energy than 1 % of what is exchanged says so: backward Euler at coarse tolerances damps a swing.
+TEST_F(Warnings, AMotionThatLosesEnergy) {
+  write("x.toml", R"(schema = "snare-scenario/2"
+title = "a body on springs"
+duration_s = 0.5
+[[bodies]]
+name = "b"
+mass_kg = 1.0
+inertia_kg_m2 = [0.01, 0.01, 0.01]
+velocity_m_s = [1.0, 0.0, 0.0]
+[[bushings]]
+name = "springs"
+frame = "world"
+other_frame = "b"
+translational_stiffness_N_m = 1000.0
+rotational_stiffness_Nm_rad = 10.0
+)");
+  ASSERT_EQ(run("simulate x.toml --out here"), 0) << contents("err.txt");
+  EXPECT_TRUE(parsed("here/summary.json")["warnings"].empty()) << contents("here/summary.json");
+  ASSERT_EQ(run("simulate x.toml --out there --set solver.max_order=1 --set solver.body_position_tolerance_m=1e-4 "
+                "--set solver.body_velocity_tolerance_m_s=1e-2"),
+            0)
+      << contents("err.txt");
+  EXPECT_NE(contents("err.txt").find("warning: the integrator lost "), std::string::npos) << contents("err.txt");
+  EXPECT_EQ(parsed("there/summary.json")["warnings"].size(), 1U);
+}
+
 TEST_F(Warnings, ABlowThatBreaks) {
   const std::string scenario = SNARE_SOURCE_DIR "/data/scenarios/air_table.toml";
   const int status =

@@ -40,6 +40,28 @@ TEST(ContactLaw, NeverPullsAndIsZeroApart) {
   EXPECT_EQ(power_law(1e3, 1.5, 1e6, 1.0)(1.0 * mm, -1.0), Eigen::Vector3d::Zero());
 }
 
+// The spring's force is the slope of its energy, and the damping never gives power, also where the force is cut off.
+TEST(ContactLaw, StoresItsSpringAndLosesTheRest) {
+  for (const ContactLaw& law :
+       {spring_dashpot(3e3, 50.0), power_law(2e4, 1.5, 4e4, 1.0), power_law(2e4, 2.6, 40.0, 1.3, 0.0),
+        step_damped_law(2e4, 1.5, 50.0, 3.0 * mm), quadratic_law(890183.0, -1297.6, 0.3457),
+        quadratic_law(-4e5, 1000.0, 0.1), quadratic_law(0.0, 1000.0, -0.5),
+        stretched_wire_law(5.55e5, 90 * mm, 87.5 * mm), stretched_wire_tangent(5.55e5, 90 * mm, 87.5 * mm)}) {
+    EXPECT_EQ(law.energy(0.0), 0.0);
+    EXPECT_EQ(law.energy(-1.0 * mm), 0.0);
+    for (const double d : {0.1 * mm, 0.45 * mm, 0.7 * mm, 1.5 * mm, 4.0 * mm}) {
+      const Eigen::Vector3d spring = law.elastic(d);
+      const double h = 1e-8;
+      EXPECT_NEAR((law.energy(d + h) - law.energy(d - h)) / (2.0 * h), spring.x(), 1e-5 * (spring.x() + 1.0));
+      EXPECT_NEAR((law.elastic(d + h).y() - law.elastic(d - h).y()) / (2.0 * h), spring.z(),
+                  1e-5 * (std::abs(spring.z()) + std::abs(spring.y()) / d + 1.0));
+      EXPECT_EQ(spring.x(), law(d, 0.0).x());
+      for (const double rate : {-3.0, -0.1, -1e-4, 1e-4, 0.1, 3.0})
+        EXPECT_GE((law(d, rate).x() - spring.x()) * rate, 0.0) << d << " " << rate;
+    }
+  }
+}
+
 // Honda et al. 2014: l = 90, L = 87.5 mm, K = 5.55e5 N/m gives 60810 N/m; exact over linear 1.068 at 1 mm, 1.74 at 10 mm.
 TEST(ContactLaw, StretchedWireOfHonda) {
   const double k = 5.55e5;

@@ -36,6 +36,7 @@ TEST(RangedLaw, IsNeverNegativeAndLinearBeyondItsTravel) {
       ASSERT_NEAR(law.force(d), expected, 1e-12 * (1.0 + expected));
       ASSERT_GE(law.force(d), 0.0);
       if (d > end) ASSERT_GE(law.stiffness(d), 0.0);
+      ASSERT_EQ(law.curvature(d), d <= end && (a * d + b) * d + c >= 0.0 ? 2.0 * a : 0.0);
       integral += h * law.force(d);
     }
     // The midpoint rule: h^2/24 (F'(end) - F'(0)) 1e-10 of it, and h at kinks.
@@ -50,6 +51,7 @@ TEST(RangedLaw, ChangesNothingWithinItsTravel) {
   for (const double d : {0.0, 1e-3, 4e-3}) {
     EXPECT_EQ(law.force(d), power->force(d));
     EXPECT_EQ(law.stiffness(d), power->stiffness(d));
+    EXPECT_EQ(law.curvature(d), power->curvature(d));
     EXPECT_EQ(law.energy(d), power->energy(d));
   }
 }

@@ -259,10 +259,9 @@ TEST(MotionState, AFailureKeepsWhatWasReached) {
   Motion motion = oblique_impact(soft_rod(End::clamp, End::clamp));
   motion.contacts[0].friction = {};
   // A law that breaks down at some depth.
-  motion.contacts[0].law = [](double depth, double) -> Vector3d {
-    if (depth > 2e-5) return Vector3d::Constant(std::nan(""));
-    return {std::max(0.0, 1e3 * depth), depth > 0.0 ? 1e3 : 0.0, 0.0};
-  };
+  motion.contacts[0].law = ContactLaw(
+      linear_law()->with(Eigen::VectorXd::Constant(1, 1e3)),
+      [](double depth, double) -> Vector3d { return Vector3d::Constant(depth > 2e-5 ? std::nan("") : 0.0); });
   MotionOptions options;
   options.duration = 0.05;
   options.output_interval = 1e-4;

@@ -5,11 +5,14 @@
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/motion_bodies.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/same_bits.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace snare::coupling {
@@ -130,39 +133,146 @@ TEST(BodyContact, ABallMayRestButNotBeginInside) {
   EXPECT_THAT(begun_at(0.006), testing::HasSubstr("contact.gap = -0.006 m, must be >= -0.005 m at the start"));
 }
 
-TEST(BodyContact, JacobianMatchesDifferences) {
-  const MotionOptions options;
-  BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
-  BodyPart b(block("b", 2.0, {0.2, 0.3, 0.4}), Vector3d::Zero(), options);
+/// A block of 1 kg on four feet that carry it, on a plane of the world at the height of its centre, so that friction does not tip it; the
+/// weight is tilted in place of the plane.
+Motion block_on_ramp(double angle, double friction, ContactFriction law = ContactFriction::stick_slip) {
+  Motion motion;
+  motion.bodies = {block("block", 1.0, {2e-3, 2e-3, 2e-3})};
+  motion.gravity = 9.81 * Vector3d(std::sin(angle), 0.0, -std::cos(angle));
+  constexpr double stiffness = 2.5e4;  // of a foot [N/m]
+  motion.bodies[0].start.position = {0.0, 0.0, motion.gravity.z() / (4.0 * stiffness)};
   BodyContact contact;
-  contact.shape = std::make_shared<Capsule>(0.2, 0.5);
-  contact.points = {{0.1, 0.05, -0.02}, {-0.05, 0.1, 0.1}, {0.4, 0.5, 0.6}};
-  contact.radius = 0.1;
-  contact.law = power_law(50.0, 1.5, 20.0, 1.0);
-  contact.friction.law = ContactFriction::smooth;
-  contact.friction.static_coefficient = 0.5;
-  contact.friction.dynamic_coefficient = 0.3;
-  contact.friction.static_speed = 0.1;
-  contact.friction.dynamic_speed = 3.0;
-  BodyContactPart part(contact, {a, {}}, {b, {}});
-  numerics::DaeSystem system({&a, &b, &part});
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  int acting = 0;
-  for (int trial = 0; trial < 8; ++trial) {
-    VectorXd y(system.size()), rate(system.size());
-    for (double& v : y) v = unit(random);
-    for (double& v : rate) v = unit(random);
-    for (const BodyPart* body : {&a, &b}) {
-      y.segment<3>(body->position()) *= 0.1;
-      y.segment<4>(body->quaternion()).normalize();
-    }
-    const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {a.quaternion(), b.quaternion()});
-    acting += part.wrenches(y).empty() ? 0 : 1;
-    const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-5);
-    EXPECT_LT(error.relative, 2e-6) << trial << ": " << error.worst;
+  contact.shape = std::make_shared<HalfSpace>(1.0);
+  contact.other = body_of(0);
+  contact.X_WP.p = motion.bodies[0].start.position;
+  contact.points = {{0.05, 0.03, 0.0}, {-0.05, 0.03, 0.0}, {0.05, -0.03, 0.0}, {-0.05, -0.03, 0.0}};
+  contact.law = spring_dashpot(stiffness, 25.0);
+  contact.friction.static_coefficient = contact.friction.dynamic_coefficient = friction;
+  contact.friction.law = law;
+  motion.body_contacts = {contact};
+  return motion;
+}
+
+struct OnRamp {
+  double place = 0.0, speed = 0.0, late_speed = 0.0;  ///< along the ramp at the end; largest of the last half
+  bool sticks = false, falls = false;                 ///< whether the dissipated energy fell
+  MotionResult result;
+};
+
+OnRamp on_ramp(const Motion& motion, double duration) {
+  OnRamp r;
+  MotionOptions options;
+  options.duration = duration;
+  double lost = 0.0;
+  r.result = simulate(motion, options, [&](const MotionSample& s) {
+    r.place = s.bodies[0].position.x();
+    r.speed = s.bodies[0].velocity.x();
+    if (s.time > 0.5 * duration) r.late_speed = std::max(r.late_speed, std::abs(r.speed));
+    r.sticks = s.contacts[0].sticking;
+    r.falls = r.falls || s.energy.dissipated < lost - 1e-12;
+    lost = s.energy.dissipated;
+    return false;
+  });
+  EXPECT_TRUE(r.result.report.usable()) << r.result.report.message;
+  return r;
+}
+
+// Below the limit, tan(angle) < mu, a block rests. Let go with straight bristles it swings on them; where tan(angle) > mu/2 it slides
+// at first, with v^2 = g z_m (2 sin - mu cos) from the end z_m of the bristles on, for v^2/(2 g (mu cos - sin)). Beyond the limit it
+// slides at g (sin - mu cos).
+TEST(BodyContact, ABlockRestsOnARampOrSlidesByCoulombsLaw) {
+  constexpr double degree = M_PI / 180.0, g = 9.81;
+  for (const auto& [angle, friction] : {std::pair{10.0, 0.5}, {26.0, 0.5}, {10.0, 0.2}, {20.0, 0.4}}) {
+    SCOPED_TRACE(angle);
+    const Motion motion = block_on_ramp(angle * degree, friction);
+    const OnRamp r = on_ramp(motion, 2.0);
+    const double pull = g * std::sin(angle * degree), limit = g * friction * std::cos(angle * degree);
+    const double give = motion.body_contacts[0].friction.bristle_displacement;
+    const double way = std::max(0.0, give * (2.0 * pull - limit) / (2.0 * (limit - pull)));
+    EXPECT_TRUE(r.sticks);
+    EXPECT_GT(r.place, 0.0);
+    EXPECT_LT(r.place, 1.02 * (give + way));  // damping of the bristles shortens it; coordinates err by 1e-7 m and less
+    // The swing decays as exp(-tau g mu/(2 z_m) t), 10/s at 0.2, from 1 mm/s: after a second it is below the tolerance of velocities.
+    EXPECT_LT(r.late_speed, 1e-6);
+    EXPECT_FALSE(r.falls);
+    ASSERT_FALSE(r.result.events.empty());
+    EXPECT_EQ(r.result.events.front().kind, MotionEvent::Kind::touch);
+    EXPECT_EQ(r.result.events.front().time, 0.0);
+    // A step errs by 1e-8 m, against a weight of 10 N; five such, as errors of a swing that decays cancel.
+    EXPECT_NEAR(r.result.energy.integrator, 0.0, 5e-7);
   }
-  EXPECT_GE(acting, 6);
+  for (const auto& [angle, friction] : {std::pair{27.0, 0.5}, {40.0, 0.5}, {10.0, 0.1}, {30.0, 0.0}}) {
+    SCOPED_TRACE(angle);
+    constexpr double time = 0.4;
+    const OnRamp r = on_ramp(block_on_ramp(angle * degree, friction), time);
+    const double acceleration = g * (std::sin(angle * degree) - friction * std::cos(angle * degree));
+    EXPECT_FALSE(r.sticks);
+    // The bristles end within 1 ms, in which they hold back less than friction does: 1e-3 m/s at most.
+    EXPECT_NEAR(r.speed, acceleration * time, 3e-3);
+    EXPECT_FALSE(r.falls);
+  }
+}
+
+// A block that is thrown along a level plane stops after v^2/(2 mu g) and says when it sticks; by the smooth law it would creep on.
+TEST(BodyContact, AThrownBlockSlidesAndSticks) {
+  Motion motion = block_on_ramp(0.0, 0.4);
+  motion.bodies[0].start.velocity.x() = 0.3;
+  const OnRamp r = on_ramp(motion, 0.2);
+  const double path = 0.3 * 0.3 / (2.0 * 0.4 * 9.81);
+  EXPECT_NEAR(r.place, path, 1e-3 * path);
+  EXPECT_NEAR(r.result.energy.dissipated, 0.5 * 0.3 * 0.3, 1e-3 * 0.5 * 0.3 * 0.3);
+  const auto stick = std::ranges::find(r.result.events, MotionEvent::Kind::stick, &MotionEvent::kind);
+  ASSERT_NE(stick, r.result.events.end());
+  EXPECT_NEAR(stick->time, 0.3 / (0.4 * 9.81), 1e-3);
+}
+
+// A checkpoint keeps the bristles and what touches.
+TEST(BodyContact, ABlockThatRestsGoesOnFromACheckpoint) {
+  const Motion motion = block_on_ramp(0.17, 0.5);
+  MotionOptions options;
+  options.duration = 0.05;
+  options.checkpoint_interval = 0.02;
+  EXPECT_EQ(test::expect_same_bits_from_checkpoints(motion, options).size(), 2U);
+}
+
+TEST(BodyContact, JacobianMatchesDifferences) {
+  for (const ContactFriction law : {ContactFriction::smooth, ContactFriction::stick_slip}) {
+    const MotionOptions options;
+    BodyPart a(block("a", 3.0, {0.3, 0.4, 0.5}), Vector3d::Zero(), options);
+    BodyPart b(block("b", 2.0, {0.2, 0.3, 0.4}), Vector3d::Zero(), options);
+    BodyContact contact;
+    contact.shape = std::make_shared<Capsule>(0.2, 0.5);
+    contact.points = {{0.1, 0.05, -0.02}, {-0.05, 0.1, 0.1}, {0.4, 0.5, 0.6}};
+    contact.radius = 0.1;
+    contact.law = power_law(50.0, 1.5, 20.0, 1.0);
+    contact.friction.law = law;
+    contact.friction.static_coefficient = 0.5;
+    contact.friction.dynamic_coefficient = 0.3;
+    contact.friction.static_speed = 0.1;
+    contact.friction.dynamic_speed = 3.0;
+    // Bristles as soft as the bodies are large, so that no row drowns the others.
+    contact.friction.bristle_displacement = 0.3;
+    contact.friction.bristle_time = 0.2;
+    BodyContactPart part(contact, {a, {}}, {b, {}});
+    numerics::DaeSystem system({&a, &b, &part});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    int acting = 0;
+    for (int trial = 0; trial < 8; ++trial) {
+      VectorXd y(system.size()), rate(system.size());
+      for (double& v : y) v = unit(random);
+      for (double& v : rate) v = unit(random);
+      for (const BodyPart* body : {&a, &b}) {
+        y.segment<3>(body->position()) *= 0.1;
+        y.segment<4>(body->quaternion()).normalize();
+      }
+      const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {a.quaternion(), b.quaternion()});
+      acting += part.wrenches(y).empty() ? 0 : 1;
+      const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-5);
+      EXPECT_LT(error.relative, 2e-6) << trial << ": " << error.worst;
+    }
+    EXPECT_GE(acting, 6);
+  }
 }
 
 // A thruster in a body's axes turns with it: a body that spins at w gets F/(m w) (sin w t, 1 - cos w t). Pulses add up.

@@ -285,12 +285,23 @@ TEST(LawWire, RodIsMetByItsAngle) {
   const LawWirePart& part = wire.part;
   VectorXd y = wire.at({0.02, -0.004, 0.0});
   // From the pivot at x = R the axis stands at an angle above the chord of asin(y/rho); the tangent is asin(r/rho) beyond.
-  const double rho = std::hypot(0.08, 0.004);
-  const double x = std::sqrt(rho * rho - r * r) * (std::asin(-0.004 / rho) + std::asin(r / rho));
-  EXPECT_NEAR(part.sample(y).normal_force, k * x, 1e-9);
-  EXPECT_NEAR(part.wrenches(y)[2].force.y(), -k * x, 1e-9);
-  EXPECT_NEAR(part.wrenches(y)[0].force.y(), k * x * 0.6, 1e-9);  // the shares of a beam on two supports
-  EXPECT_NEAR(part.wrenches(y)[1].force.y(), k * x * 0.4, 1e-9);
+  const auto x = [](double along, double height) {
+    const double rho = std::hypot(0.1 - along, height);
+    return std::sqrt(rho * rho - r * r) * (std::asin(height / rho) + std::asin(r / rho));
+  };
+  // The force does the work of k x dx, whichever way the shaft moves.
+  const double h = 1e-6, deep = x(0.02, -0.004);
+  const double across = k * deep * (x(0.02, -0.004 + h) - x(0.02, -0.004 - h)) / (2.0 * h);
+  const double along = k * deep * (x(0.02 + h, -0.004) - x(0.02 - h, -0.004)) / (2.0 * h);
+  EXPECT_NEAR(across, k * deep, 3e-3 * k * deep);  // the turn and r/rho change the lever by (0.05)^2
+  EXPECT_NEAR(part.sample(y).normal_force, across, 1e-7 * across);
+  EXPECT_NEAR(part.wrenches(y)[2].force.y(), -across, 1e-7 * across);
+  EXPECT_NEAR(part.wrenches(y)[2].force.x(), -along, 1e-7 * across);
+  const Vector3d on_mounts = part.wrenches(y)[0].force + part.wrenches(y)[1].force;
+  EXPECT_NEAR(on_mounts.y(), across, 1e-7 * across);
+  EXPECT_NEAR(on_mounts.x(), along, 1e-7 * across);
+  // Those of a beam on two supports but for the couple of what acts along the rod, at 4 mm beside it.
+  EXPECT_NEAR(part.wrenches(y)[0].force.y(), across * 0.6, 0.03 * std::abs(along));
   y = wire.at({0.02, -0.01, 0.0});
   EXPECT_TRUE(part.wrenches(y).empty());
 }

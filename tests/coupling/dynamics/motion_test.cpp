@@ -167,10 +167,7 @@ TEST(Motion, EnergyOfADampedImpactIsAccountedFor) {
 TEST(Motion, ALawTakesThePlaceOfTheFoundation) {
   Motion motion = ball_below(soft_rod(16, wire::SpatialEnd::Kind::clamp), 0.3);
   const double stiffness = 2e4;
-  motion.contacts[0].law = [stiffness](double depth, double) -> Vector3d {
-    if (depth <= 0.0) return Vector3d::Zero();
-    return {stiffness * depth, stiffness, 0.0};
-  };
+  motion.contacts[0].law = spring_dashpot(stiffness, 0.0);
   MotionOptions options;
   options.duration = 0.01;
   options.output_interval = 1e-4;

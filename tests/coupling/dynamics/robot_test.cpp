@@ -37,11 +37,7 @@ Motion robot_at_a_wall(double delay, double damping = 0.0) {
   contact.X_WP.p = robot.start.position;
   contact.points = {Vector3d::Zero()};
   contact.radius = radius;
-  contact.law = [damping](double depth, double rate) -> Vector3d {
-    const double force = stiffness * depth + damping * rate;
-    if (depth <= 0.0 || force <= 0.0) return Vector3d::Zero();
-    return {force, stiffness, damping};
-  };
+  contact.law = spring_dashpot(stiffness, damping);
   motion.body_contacts = {contact};
   return motion;
 }
