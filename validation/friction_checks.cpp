@@ -199,9 +199,9 @@ std::vector<Row> stick_slip_rows() {
   motion.contacts[0].friction = two_coefficients(fixed, sliding);
   motion.contacts[0].friction.bristle_displacement = 1e-8;  // 1e-5 of the swing
   coupling::PointContactLaw spring;
-  spring.direction = Vector3d::UnitZ();
+  spring.direction = -Vector3d::UnitZ();  // a law only presses: it pulls the mass along
   spring.origin = motion.bodies[0].start.position;
-  spring.origin_speed = belt;
+  spring.origin_speed = -belt;
   spring.law = coupling::spring_dashpot(stiffness, 0.0);
   motion.springs.push_back(spring);
   const double w = std::sqrt(stiffness);

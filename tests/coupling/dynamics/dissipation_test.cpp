@@ -152,7 +152,7 @@ TEST(Dissipation, OfAWireOnABody) {
     // Gauss's rule on a stretch that moves is not the derivative of the rule: to some 1e-3 where edges are sharp.
     losing += scene.expect_balanced(y, 5e-3, 1e-10) ? 1 : 0;
   }
-  EXPECT_GT(losing, 100);
+  EXPECT_GT(losing, 100);  // of 240 states; in the others nothing touches between the mounts, or all lets go
 }
 
 TEST(Dissipation, OfTwoWires) {
