@@ -17,12 +17,21 @@ except ImportError:
     print("skipped: jsonschema is not installed")
     sys.exit(setting.SKIPPED)
 
+# Numbers that the readings and the record cannot tell apart.
+PUSH_TOGETHER = ["tests/ranges/readings.toml", "--set",
+                 'fit.free=["wire.bending_stiffness_Nm2","wire.axial_stiffness_N","reading.force_gain"]']
+RECORD_TOGETHER = ["tests/ranges/record.toml", "--set",
+                   'fit.free=["gravity.vector_m_s2[3]","arms[pendulum].joint.bearing.motor_inertia_kg_m2"]']
 # Arguments of the command; small things that write between them what there is to write.
 RUNS = {
     "push": ["push", "tests/ranges/readings.toml", "--json"],
     "push_law": ["push", "data/experiments/published_static.toml", "--json", "--set", "solver.elements=16"],
     "fit": ["fit", "tests/ranges/readings.toml", "--set", "series[1].contact_position_sigma_mm=0.05"],
     "fit_record": ["fit", "WORK/records.toml", "--set", 'fit.profile=["arms[pendulum].joint.bearing.viscous_Nms_rad"]'],
+    "fit_together": ["fit", *PUSH_TOGETHER],
+    "trace_together": ["trace", *PUSH_TOGETHER],
+    "fit_record_together": ["fit", *RECORD_TOGETHER],
+    "trace_record_together": ["trace", *RECORD_TOGETHER],
     "trace": ["trace", "tests/ranges/readings.toml", "--set", "series[1].contact_position_sigma_mm=0.05"],
     "trace_law": ["trace", "data/experiments/published_static.toml", "--set", "solver.elements=16", "--set", "solver.extrapolate=false"],
     "trace_record": ["trace", "tests/ranges/record.toml", "--set", "fit.most_effects=1", "--set",
