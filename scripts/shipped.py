@@ -239,7 +239,8 @@ def map_of(folder, title):
 CAPTURE = dict(relative=1e-2, absolute=1e-3)
 
 
-@maker(results("pin_offsets.csv"), gallery("pin_offsets.svg"), **CAPTURE)
+# Nothing floats here: peaks follow last digits by less than a thousandth, and the page prints three digits.
+@maker(results("pin_offsets.csv"), gallery("pin_offsets.svg"), relative=2e-3, absolute=1e-3)
 def pin_offsets(snare, root, folder):
     """A pin off the axis of a snare: cases and map."""
     return {results("pin_offsets.csv"): sweep(snare, root, folder, "pin_offsets"),
