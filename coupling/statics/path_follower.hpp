@@ -62,7 +62,8 @@ class RememberingPath : public FollowedPath {
  public:
   /// Keeps the present state, memory included. Calling the result puts it back, as often as wanted while the path lives.
   [[nodiscard]] virtual std::function<void()> checkpoint() = 0;
-  /// Like step_to, for a step that is taken back when its measures are known: nothing else of it needs to be computed.
+  /// Like step_to, in the parameter's unit, for a step that is taken back when its measures are known: nothing else of it is
+  /// needed.
   [[nodiscard]] virtual StepOutcome try_step_to(double parameter) { return step_to(parameter); }
 
   /// Values at the last accepted point that measure the error of a step, and the error allowed for each, in its unit.
