@@ -105,9 +105,9 @@ std::vector<Row> snare_capture_rows(const std::filesystem::path& data) {
                                fine.result.impulse[i].norm(), coarse.result.impulse[i].norm() + usable,
                                Limit::relative(1e-3)));
     rows.push_back(capture_row(wire + "first touch", "s", source, Kind::convergence, first_touch(fine.result, k),
-                               first_touch(coarse.result, k) + usable, Limit::relative(5e-4)));
+                               first_touch(coarse.result, k) + usable, Limit::relative(1e-5)));
     rows.push_back(capture_row(wire + "tight", "s", source, Kind::convergence, b.tight_at, a.tight_at + usable,
-                               Limit::relative(5e-4)));
+                               Limit::relative(5e-5)));
   }
   const ScenarioRun minute = run_of(file, {as_strings, "duration_s=60.0", "output_interval_s=0.05"});
   const double brought = 16000.0 * 0.01;  // momentum of the visitor at the start [N s]
@@ -125,7 +125,7 @@ std::vector<Row> refined_capture_rows(const std::filesystem::path& data) {
     rows.push_back(capture_row(fmt::format("capture of 16 t by computed wires, wire {}: tight", k + 1), "s",
                                "80 elements for 40", Kind::convergence, fine.result.wires[k].tight_at,
                                coarse.result.wires[k].tight_at + coarse.usable() + fine.usable(),
-                               Limit::relative(1e-2)));
+                               Limit::relative(5e-3)));
   }
   return rows;
 }

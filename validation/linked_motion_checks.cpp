@@ -64,20 +64,18 @@ std::vector<Row> welded_top_rows() {
   const double usable = result.report.usable() ? 0.0 : not_computed;
   const double angle = (I3 - I1) / I1 * w3 * duration;
   const double L = std::hypot(I1 * w1, I3 * w3);
-  return {
-      linked_row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", Kind::closed_form,
-                 w1 * std::cos(angle), last.bodies[1].spin.x() + usable,
-                 Limit::absolute(1e-6, "component of a vector of 0.5 rad/s that turns: here it passes through zero")),
-      linked_row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", Kind::closed_form,
-                 w1 * std::sin(angle), last.bodies[1].spin.y() + usable, Limit::relative(2e-6)),
-      linked_row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1", Kind::closed_form,
-                 m * r * L * w1 / I1, last.welds[0].force.norm() + usable, Limit::relative(1e-5)),
-      linked_row("two welded bodies, largest gap of the weld", "m", "welded", Kind::closed_form, 0.0,
-                 result.largest_drift + usable,
-                 Limit::absolute(1e-8, "zero reference; a constraint between bodies that are a metre apart")),
-      linked_row("two welded bodies, integrator's energy over the energy", "", "conservation", Kind::closed_form, 0.0,
-                 result.energy.integrator / result.energy.kinetic + usable,
-                 Limit::absolute(1e-6, "zero reference; the value is a share of the kinetic energy"))};
+  return {linked_row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", Kind::closed_form,
+                     w1 * std::cos(angle), last.bodies[1].spin.x() + usable, Limit::relative(1e-5)),
+          linked_row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", Kind::closed_form,
+                     w1 * std::sin(angle), last.bodies[1].spin.y() + usable, Limit::relative(2e-6)),
+          linked_row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1", Kind::closed_form,
+                     m * r * L * w1 / I1, last.welds[0].force.norm() + usable, Limit::relative(1e-5)),
+          linked_row("two welded bodies, largest gap of the weld", "m", "welded", Kind::closed_form, 0.0,
+                     result.largest_drift + usable,
+                     Limit::absolute(1e-8, "zero reference; a constraint between bodies that are a metre apart")),
+          linked_row("two welded bodies, integrator's energy over the energy", "", "conservation", Kind::closed_form,
+                     0.0, result.energy.integrator / result.energy.kinetic + usable,
+                     Limit::absolute(1e-6, "zero reference; the value is a share of the kinetic energy"))};
 }
 
 // A straight wire on a heavy body that spins about its middle: EA u'' = -m w^2 x between fixed ends, N = m w^2 (l^2/24 -
