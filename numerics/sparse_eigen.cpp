@@ -47,7 +47,8 @@ GeneralEigen largest_eigenvalues(const LinearMap& map, int order, int count) {
   const GeneralEigen ritz = general_eigen(V.transpose() * MV);
   std::vector<Index> falling(static_cast<std::size_t>(ritz.values.size()));
   std::iota(falling.begin(), falling.end(), Index{0});
-  std::ranges::stable_sort(falling, [&](Index a, Index b) { return std::abs(ritz.values[a]) > std::abs(ritz.values[b]); });
+  std::ranges::stable_sort(falling,
+                           [&](Index a, Index b) { return std::abs(ritz.values[a]) > std::abs(ritz.values[b]); });
   GeneralEigen result{Eigen::VectorXcd(count), Eigen::MatrixXcd(order, count)};
   Index found = 0;
   for (; found < count; ++found) {

@@ -70,8 +70,12 @@ Eigen::MatrixXd dense(const SparseMatrix& matrix) {
   return full;
 }
 
-Eigen::VectorXd product(const SparseMatrix& matrix, const Eigen::VectorXd& x) { return product_with(matrix, x); }
-Eigen::VectorXcd product(const SparseMatrix& matrix, const Eigen::VectorXcd& x) { return product_with(matrix, x); }
+Eigen::VectorXd product(const SparseMatrix& matrix, const Eigen::VectorXd& x) {
+  return product_with(matrix, x);
+}
+Eigen::VectorXcd product(const SparseMatrix& matrix, const Eigen::VectorXcd& x) {
+  return product_with(matrix, x);
+}
 
 void scale(SparseMatrix& matrix, const Eigen::VectorXd& rows, const Eigen::VectorXd& columns) {
   for_each_entry(matrix, [&](int i, int j, double& value) { value *= rows[i] * columns[j]; });

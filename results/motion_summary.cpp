@@ -246,9 +246,7 @@ json modes_json(const coupling::SmallMotions& small) {
                     {"shares", shares}});
   }
   const std::optional<double> step = small.largest_explicit_step();
-  return {{"modes", list},
-          {"frequencies_Hz", frequencies},
-          {"largest_explicit_step_s", step ? json(*step) : json()}};
+  return {{"modes", list}, {"frequencies_Hz", frequencies}, {"largest_explicit_step_s", step ? json(*step) : json()}};
 }
 
 json swings_json(const std::vector<scenario::Swing>& swings) {
@@ -305,7 +303,7 @@ json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finis
   summary["outcome"] = outcome_json(motions, finished);
   if (!motions.sensors.empty()) summary["sensors"] = sensors_json(motions, finished);
   if (motions.swinging) summary["swings"] = swings_json(swings_of(motions, finished));
-  if (motions.output.modes && finished.result.report.usable()) 
+  if (motions.output.modes && finished.result.report.usable())
     summary.update(modes_json(small_motions(motions, finished, stop)));
   return summary;
 }

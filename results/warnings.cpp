@@ -51,9 +51,10 @@ std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
   for (const coupling::PushEvent& e : curve.events) {
     if (e.kind == coupling::PushEvent::Kind::bifurcation && e.travel <= first->travel) begin = e.travel;
   }
-  return {fmt::format("the curve runs along an unstable branch from a travel of {:.4g} mm to {:.4g} mm: a wire that is free "
-                      "leaves it there; solver.instability = \"switch_branch\" goes on along the stable one",
-                      1e3 * begin, 1e3 * last->travel)};
+  return {fmt::format(
+      "the curve runs along an unstable branch from a travel of {:.4g} mm to {:.4g} mm: a wire that is free "
+      "leaves it there; solver.instability = \"switch_branch\" goes on along the stable one",
+      1e3 * begin, 1e3 * last->travel)};
 }
 
 }  // namespace

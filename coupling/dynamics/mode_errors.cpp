@@ -43,7 +43,7 @@ VectorXcd unit_vector(const ModeShape& shape, const ModeShape& meshes) {
 
 /// Modes whose frequencies are the same: any mixture of them is a mode, too.
 struct Cluster {
-  double frequency = 0.0;  // mean [Hz]
+  double frequency = 0.0;   // mean [Hz]
   Eigen::MatrixXcd shapes;  // orthonormal columns
 };
 
@@ -74,8 +74,8 @@ std::vector<Cluster> clusters_of(const SmallMotions& coarse) {
 }  // namespace
 
 void add_mesh_errors(SmallMotions& fine, const SmallMotions& coarse) {
-  constexpr double alike = 0.5;       // least share of a shape that lies in a cluster
-  constexpr double remainder = 3.0;   // (2^2 - 1): of a second-order error
+  constexpr double alike = 0.5;      // least share of a shape that lies in a cluster
+  constexpr double remainder = 3.0;  // (2^2 - 1): of a second-order error
   if (coarse.modes.empty()) return;
   const std::vector<Cluster> clusters = clusters_of(coarse);
   for (MotionMode& mode : fine.modes) {

@@ -16,8 +16,8 @@ namespace snare::coupling {
 /// What moves in a mode, weighted so that its kinetic energy is that of unit masses [kg^1/2 m/s, up to a factor]: comparable
 /// between meshes.
 struct ModeShape {
-  Eigen::VectorXcd bodies_and_arms;           ///< in the order of the motion
-  std::vector<Eigen::Matrix3Xcd> wires;       ///< one column a vertex; of quasi-static ones none
+  Eigen::VectorXcd bodies_and_arms;      ///< in the order of the motion
+  std::vector<Eigen::Matrix3Xcd> wires;  ///< one column a vertex; of quasi-static ones none
 };
 
 /// A small oscillation of everything together about a state.                                          theory.md (M.31)

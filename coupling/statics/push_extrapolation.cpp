@@ -72,7 +72,9 @@ struct CoarseCurve {
 struct Refinement {
   double fine, half, quarter;
 
-  [[nodiscard]] double extrapolated() const { return (64.0 * fine - 20.0 * half + quarter) / 45.0; }  // theory.md (W.11)
+  [[nodiscard]] double extrapolated() const {
+    return (64.0 * fine - 20.0 * half + quarter) / 45.0;
+  }  // theory.md (W.11)
   [[nodiscard]] double largest_change() const { return std::max(std::abs(fine - half), std::abs(half - quarter)); }
   /// Whether the change falls as it does with a power of h between 1 and 5.
   [[nodiscard]] bool in_order() const {

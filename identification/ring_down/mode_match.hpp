@@ -15,7 +15,7 @@ struct MatchedMode {
   double computed = 0.0;             ///< natural angular frequency of the wire's mode [rad/s]; 0: no wire declared
   /// What the mesh does to the frequency of that mode, see coupling::add_mesh_errors [Hz]; none: no wire, or not known.
   std::optional<double> computed_error;
-  Eigen::VectorXd covariance;        ///< of its decay with those of all modes of its record [1/s^2]
+  Eigen::VectorXd covariance;  ///< of its decay with those of all modes of its record [1/s^2]
 };
 
 /// The significant modes of all series, for split_damping. fits: one a series. Throws InputError when the

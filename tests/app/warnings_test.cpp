@@ -39,8 +39,9 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
   expect_said("--set series[s].travel_mm=20", "series s: the stress in the wire reaches ");
   expect_said("--set bulge.mode=2 --set wire.length_mm=180",
               "series s: the wire leaves the pusher after a travel of 0 mm");
-  expect_said("--set pusher.direction='\"inward\"' --set series[s].contact_position_mm=87.5 --set series[s].travel_mm=6",
-              "series s: the curve runs along an unstable branch from a travel of ");
+  expect_said(
+      "--set pusher.direction='\"inward\"' --set series[s].contact_position_mm=87.5 --set series[s].travel_mm=6",
+      "series s: the curve runs along an unstable branch from a travel of ");
 }
 
 // A pusher that is drawn back past first touch leaves the wire as it should.

@@ -58,7 +58,8 @@ TEST(InwardPush, StableBranchIsTakenOnRequest) {
 // planar extensible elastica. The branch may lean to either side; all meshes take the same one, and what is extrapolated is not mixed of both.
 TEST(InwardPush, BranchOfALeafSpringIsThatOfTheElasticaOnEveryMesh) {
   PushProblem test = inward(50.0 * mm, 1.0 * mm, 10);
-  test.wire = {.diameter = 0.5 * mm, .length = 101.0 * mm, .youngs_modulus = 200e9, .poisson_ratio = 0.3, .density = 7850.0};
+  test.wire = {
+      .diameter = 0.5 * mm, .length = 101.0 * mm, .youngs_modulus = 200e9, .poisson_ratio = 0.3, .density = 7850.0};
   test.mount.span = 100.0 * mm;
   test.pusher.radius = 0.0;
   for (const int elements : {64, 128, 256}) {
