@@ -143,7 +143,9 @@ def first_result(stored):
 
 @region
 def published_made(stored):
-    return f"Made by `snare` {stored.json('reproduce.json')['version']}.\n"
+    result = stored.json("reproduce.json")
+    part = " The run was interrupted after the tracing: other ranges of the fits are not stored." if result["interrupted"] else ""
+    return f"Made by `snare` {result['version']}.{part}\n"
 
 
 @region
