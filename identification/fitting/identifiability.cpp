@@ -102,7 +102,9 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
   std::vector<Index> live;
   for (Index k = 0; k < n; ++k) {
     const double norm = jacobian.col(k).norm();
-    if (norm > (error.size() > 0 ? error_margin * error.col(k).norm() : 0.0)) {
+    bool is_null = norm <= (error.size() > 0 ? error_margin * error.col(k).norm() : 0.0);
+    if (is_null && norm > 0.0 && check) is_null = check(VectorXd::Unit(n, k) / norm);
+    if (!is_null) {
       live.push_back(k);
       scale[k] = 1.0 / norm;
       continue;

@@ -34,7 +34,7 @@ using NullCheck = std::function<bool(const Eigen::VectorXd& direction)>;
 ///   J v, |columns of J| = 1: a singular direction v is null where |J v| <= 3 |E v| + floor
 /// jacobian: of the whitened residual [-], a column a number; error: of its entries, as the difference of the derivatives by two
 /// step sizes (same shape; empty: exact derivatives). check: asked where |E v| > 0.01; none: such directions are null.
-/// A column below its own error is a direction of its own.
+/// A column below its own error is a direction of its own, of which `check` is asked, too.
 [[nodiscard]] Identifiability identifiability_of(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& error,
                                                  const NullCheck& check = {});
 
