@@ -85,14 +85,16 @@ struct Refinement {
 
 using Refinements = std::array<Refinement, extrapolated_values.size()>;
 
-/// Whether all forces of a point converge in order; those that hardly change beside the others are not asked.
-bool forces_in_order(const Refinements& values) {
-  constexpr double hardly = 0.05;
+/// Whether the forces of a point are of one branch: each converges in order, or changes by less than a tenth of itself, as where its error
+/// passes through zero. Those that hardly change beside the others are not asked.
+bool are_of_one_branch(const Refinements& values) {
+  constexpr double hardly = 0.05, much = 0.1;
   const auto forces = std::span(values).first<extrapolated_forces>();
   double largest = 0.0;
   for (const Refinement& r : forces) largest = std::max(largest, r.largest_change());
-  return std::ranges::all_of(
-      forces, [&](const Refinement& r) { return r.largest_change() <= hardly * largest || r.in_order(); });
+  return std::ranges::all_of(forces, [&](const Refinement& r) {
+    return r.largest_change() <= std::max(hardly * largest, much * std::abs(r.fine)) || r.in_order();
+  });
 }
 
 /// Extrapolates the values of a point that converge in order, and returns what is left of the error of the force [N].
@@ -105,12 +107,12 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
   if (arc.in_order()) p.contact_coordinate = arc.extrapolated();
   const Refinement& force = values.front();
   static_assert(extrapolated_values.front() == &PushPoint::force);
-  if (!forces_in_order(values)) return force.largest_change();
+  if (!are_of_one_branch(values)) return force.largest_change();
   for (std::size_t v = 0; v < extrapolated_forces; ++v) p.*extrapolated_values[v] = values[v].extrapolated();
   for (std::size_t v = 0; v < p.force_by.size(); ++v)
     p.force_by[v] = Refinement{p.force_by[v], half.force_by[v], quarter.force_by[v]}.extrapolated();
   const double third_order = (32.0 * force.fine - 12.0 * force.half + force.quarter) / 21.0;
-  return 2.0 * std::abs(p.force - third_order);
+  return force.in_order() ? 2.0 * std::abs(p.force - third_order) : force.largest_change();
 }
 
 /// Of a coarse mesh only the curve is wanted, in the steps of the finest.
