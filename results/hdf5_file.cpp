@@ -260,10 +260,15 @@ void write_dataset(hid_t file, const std::string& path, std::size_t size, hid_t 
 
 constexpr hsize_t seal_size = 512;  // the least block that HDF5 leaves to its users [byte]
 
+/// Throws std::system_error when the file cannot be closed as it should.
+void close(base::FileHandle file) {
+  if (std::fclose(file.release()) != 0) throw std::system_error(errno, std::generic_category(), "its checksum");
+}
+
 /// What the seal of a file must be: SHA-256 over its bytes after the seal, chained over chunks of a megabyte.
 std::string seal_of(const std::filesystem::path& file) {
   constexpr std::size_t chunk_size = 1 << 20;
-  const base::InputFile opened = base::open_input(file);
+  base::InputFile opened = base::open_input(file);
   if (std::fseek(opened.handle.get(), seal_size, SEEK_SET) != 0) return "";
   std::string digest, chunk;
   do {
@@ -271,16 +276,18 @@ std::string seal_of(const std::filesystem::path& file) {
     chunk.resize(base::read_bytes(opened.handle.get(), chunk.data(), chunk_size, file));
     digest = base::sha256(digest + chunk);
   } while (chunk.size() == chunk_size);
+  close(std::move(opened.handle));
   return "snare seal sha256 " + digest + "\n";
 }
 
 /// Puts the seal into the bytes that HDF5 leaves to its users.
 void seal(const std::filesystem::path& file) {
   const std::string text = seal_of(file);
-  const base::FileHandle opened(std::fopen(file.c_str(), "r+b"));
+  base::FileHandle opened(std::fopen(file.c_str(), "r+b"));
   if (!opened || std::fwrite(text.data(), 1, text.size(), opened.get()) != text.size() ||
       std::fflush(opened.get()) != 0)
     throw std::system_error(errno, std::generic_category(), "its checksum");
+  close(std::move(opened));
 }
 
 }  // namespace

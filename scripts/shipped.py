@@ -222,8 +222,8 @@ def reproduce(snare, root, folder):
 def sweep(snare, root, folder, name, stored=None, changes=()):
     """cases.csv of a shipped sweep, or another of its files. changes: of the file, KEY=VALUE."""
     overrides = [word for change in changes for word in ("--set", change)]
-    run([snare, "sweep", root / f"data/sweeps/{name}.toml", "--out", folder, "--quiet", *overrides], root)
-    return (folder / (stored or "cases.csv")).read_text(encoding="utf-8")
+    run([snare, "sweep", f"data/sweeps/{name}.toml", "--out", folder, "--quiet", *overrides], root)
+    return (folder / (stored or "cases.csv")).read_text(encoding="utf-8").replace("data/sweeps/../", "data/")
 
 
 def map_of(folder, title):
