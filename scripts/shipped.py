@@ -31,8 +31,8 @@ DRAWN_BY_HAND = {f"docs/drawings/{name}.svg" for name in ("arm_frames", "clamp_h
 class Maker:
     """Makes files again. relative: largest difference of a number over its size; absolute: that is passed over; pixels: mean difference
     of pictures, of 0 to 1; named: tolerances (relative, absolute) of numbers by a pattern of their key in a JSON file,
-    of their line in a text; long: it takes more than
-    some minutes, and is made only where it is named."""
+    of their line in a text; long: it takes minutes or
+    a browser, and is made and compared only where it is named."""
 
     def __init__(self, function, files, relative, absolute, pixels, named, long):
         self.function, self.files, self.long = function, files, long
@@ -253,13 +253,13 @@ def rigidizing(snare, root, folder):
     return {results("rigidizing.csv"): sweep(snare, root, folder, "rigidizing")}
 
 
-@maker(results("push_sensitivity.json"), relative=1e-3, absolute=1e-4)
+@maker(results("push_sensitivity.json"), relative=1e-3, absolute=1e-4, long=True)
 def push_sensitivity(snare, root, folder):
     """What the force of a push depends on: Sobol indices."""
     return {results("push_sensitivity.json"): sweep(snare, root, folder, "push_sensitivity", "summary.json")}
 
 
-@maker(results("htv_envelope.csv"), gallery("htv_envelope.svg"), **CAPTURE)
+@maker(results("htv_envelope.csv"), gallery("htv_envelope.svg"), **CAPTURE, long=True)
 def htv_envelope(snare, root, folder):
     """The envelope of a capture, strings: cases and map."""
     return {results("htv_envelope.csv"): sweep(snare, root, folder, "htv_envelope"),
@@ -280,7 +280,7 @@ def htv_envelope_fine(snare, root, folder):
     return {results("htv_envelope_fine.csv"): cases, gallery("htv_envelope_fine.svg"): map_of(folder, "mean of caught")}
 
 
-@maker(results("htv_order.csv"), **CAPTURE)
+@maker(results("htv_order.csv"), **CAPTURE, long=True)
 def htv_order(snare, root, folder):
     """Which wire touches first, by the place of the shaft: cases."""
     return {results("htv_order.csv"): sweep(snare, root, folder, "htv_order")}
@@ -294,7 +294,7 @@ COUNTERS = ("peak_force_error", "impulse_error", "quasi_static_peak_N", "undampe
 # Errors are of 1e-5 to 5e-2; other last digits change steps by a twentieth, the impulse by 1e-4 and the peak by 3e-4.
 @maker(results("motion.json"), relative=1e-3, absolute=1e-9,
        named=((r"impulse_error$", (0.0, 1e-4)), (r"peak_force_error$", (0.0, 3e-4)), (r"(steps|jacobians)$", (0.05, 5.0)),
-              (r"(energy|momentum)_error$", (0.0, 1e-3))))
+              (r"(energy|momentum)_error$", (0.0, 1e-3))), long=True)
 def impact(snare, root, folder):
     """Errors of peak and impulse and the steps of the head-on impact, by motion_benchmark; its times stay as they were stored."""
     program = snare.parent / "benchmarks/motion_benchmark"
@@ -337,7 +337,7 @@ def picture_of(snare, root, folder, name, program, *arguments):
     return {gallery(f"{name}.png"): target.read_bytes()}
 
 
-@maker(*(gallery(f"{name}.png") for name in EXAMPLES))
+@maker(*(gallery(f"{name}.png") for name in EXAMPLES), long=True)
 def examples(snare, root, folder):
     """Pictures that the examples in Python draw."""
     made = {}
@@ -346,7 +346,7 @@ def examples(snare, root, folder):
     return made
 
 
-@maker(gallery("bench_to_odds.png"))
+@maker(gallery("bench_to_odds.png"), long=True)
 def bench_to_odds(snare, root, folder):
     """The picture of the odds of 2000 captures; takes minutes."""
     return picture_of(snare, root, folder, "bench_to_odds", "bench_to_odds.py", "data")
@@ -361,7 +361,7 @@ def screenshot(page, target, width, height, options=("--disable-gpu",)):
          page.as_uri()], page.parent)
 
 
-@maker(gallery("fit.png"), pixels=0.02)
+@maker(gallery("fit.png"), pixels=0.02, long=True)
 def fit_page(snare, root, folder):
     """The page of a fit, in a browser."""
     run([snare, "fit", root / "examples/push.toml", "--out", folder, "--quiet"], root)
@@ -378,7 +378,7 @@ figure.scene > *:not(.stage) { display: none } figure.scene .stage { width: 100v
 }, 200));</script>"""
 
 
-@maker(gallery("capture.png"), pixels=0.03)
+@maker(gallery("capture.png"), pixels=0.03, long=True)
 def capture_page(snare, root, folder):
     """The three wires tight around the shaft, from the page of the shipped capture, in a browser with WebGL."""
     run([snare, "simulate", root / "data/scenarios/ssrms_htv_capture.toml", "--set", 'snares[snare].wire.model="stretched"', "--out", folder, "--quiet"],

@@ -38,7 +38,7 @@ RUNS = {
                      'fit.free=["arms[pendulum].rates_deg_s[1]"]', "--set", "scenario.arms[pendulum].joint.bearing.viscous_Nms_rad=0.0",
                      "--set", 'fit.profile=["arms[pendulum].rates_deg_s[1]"]'],
     "trace_record_families": ["trace", "WORK/records.toml"],
-    "trace_outside": ["trace", "WORK/outside.toml", "--set", "wire.diameter_mm=1.5"],
+    "trace_outside": ["trace", "WORK/outside.toml", "--set", "wire.diameter_mm=1.5", "--set", "solver.elements=32"],
     "distil": ["distil", "WORK/wire.toml"],
     "compare": ["compare", "tests/ranges/readings.toml"],
     "compare_motion": ["compare", "tests/ranges/composed.toml", "--set", "duration_s=0.02"],
