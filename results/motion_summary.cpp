@@ -211,7 +211,7 @@ json peak_torques(const FinishedMotion& run) {
   return all;
 }
 
-/// Small oscillations about the end, each with what the mesh does to it as the same motion on a coarser mesh shows.
+/// Small oscillations about the end, each with the error of the mesh, estimated by the same motion on a coarser one.
 coupling::SmallMotions small_motions(const scenario::WireMotions& motions, const FinishedMotion& run,
                                      const std::function<bool()>& stop) {
   coupling::MotionOptions options = run.asked.options;

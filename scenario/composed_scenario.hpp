@@ -21,7 +21,7 @@ using ArmOverrides = std::map<std::string, std::vector<base::Override>>;
 /// name stands a key of the arm file (`joint`, `every_joint`, `link` or `gravity_m_s2`).
 [[nodiscard]] ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides);
 
-/// The mesh of the wires: as declared, or of half as many elements, to see what the mesh does.
+/// The mesh of the wires: as declared, or of half as many elements, from which the error of the mesh is estimated.
 enum class WireMesh { declared, halved };
 
 /// Reads a scenario that lists what there is, with all files beside it in `folder`, and finishes the document. One run.

@@ -28,11 +28,11 @@ struct MotionMode {
   /// base", a wire.
   std::vector<std::pair<std::string, double>> shares;
   ModeShape shape;
-  /// Estimate of what the mesh of the wires does to the frequency, from a coarser one [Hz]; none: not looked for, or the coarser
+  /// Estimated error of the frequency due to the mesh of the wires, from a coarser one [Hz]; none: not estimated, or the coarser
   /// mesh has no such mode.                                                                       theory.md (M.31)
   std::optional<double> mesh_error;
 
-  /// Whether the mesh tells the frequency to a hundredth.
+  /// Whether the mesh resolves the frequency to within a hundredth.
   [[nodiscard]] bool resolved() const { return mesh_error && *mesh_error <= 0.01 * frequency; }
 };
 
