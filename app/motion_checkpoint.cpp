@@ -53,8 +53,8 @@ void fields(auto& a, ContactSample& s) {
   a(s.closed)(s.gap)(s.force)(s.normal_force)(s.point)(s.arc)(s.slip_speed)(s.sticking)(s.points);
 }
 void fields(auto& a, EnergyBalance& e) {
-  static_assert(sizeof(EnergyBalance) == 6 * sizeof(double));
-  a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.work)(e.integrator);
+  static_assert(sizeof(EnergyBalance) == 7 * sizeof(double));
+  a(e.kinetic)(e.strain)(e.potential)(e.dissipated)(e.work)(e.integrator)(e.corrected);
 }
 void fields(auto& a, MotionSample::Arm& s) {
   a(s.state)(s.work)(s.joint_torque)(s.drive_torque);
@@ -63,7 +63,7 @@ void fields(auto& a, MotionSample::Bushing& b) {
   a(b.shift)(b.turn)(b.on_second);
 }
 void fields(auto& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 8 * sizeof(std::vector<double>) + 12 * sizeof(double));
+  static_assert(sizeof(MotionSample) == sizeof(double) + 8 * sizeof(std::vector<double>) + 13 * sizeof(double));
   a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.law_tensions)(s.arms)(s.welds)(s.bushings)(s.energy)(
       s.momentum)(s.angular_momentum);
 }

@@ -132,7 +132,7 @@ Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free,
 }
 
 /// Sets of fewer numbers than the file frees: of a number that every series has for itself none, one for all, one for all
-/// but one.
+/// but one; then those that it frees.
 std::vector<std::vector<std::string>> number_sets(const Experiment& experiment) {
   std::vector<std::string> shared, own;
   std::string key;
@@ -145,8 +145,9 @@ std::vector<std::vector<std::string>> number_sets(const Experiment& experiment) 
     own.push_back(name);
     key = name.substr(end + 2);
   }
-  std::vector<std::vector<std::string>> sets{shared};
+  std::vector<std::vector<std::string>> sets;
   if (!own.empty()) {
+    sets.push_back(shared);
     std::vector<std::string> common = shared;
     common.push_back(key);
     sets.push_back(common);
@@ -155,42 +156,97 @@ std::vector<std::vector<std::string>> number_sets(const Experiment& experiment) 
       sets.back().push_back(name);
     }
   }
+  sets.push_back(experiment.free);
   std::erase_if(sets, [](const std::vector<std::string>& set) { return set.empty(); });
   return sets;
 }
 
-/// The published fits against one wire, the fitted numbers of a trace refitted to them.
-identification::SummaryStatistics refitted(const Experiment& experiment, const Trace& trace, int replicates) {
+/// Those of the fitted settings that belong to `numbers`; of a number for all series that had been one each, their mean; the
+/// declared value of any other.
+std::vector<identification::Setting> starts_of(const Experiment& experiment, const std::vector<std::string>& numbers,
+                                               const std::vector<identification::Setting>& fitted) {
+  const identification::Model model(experiment.series, experiment.solver);
+  std::vector<identification::Setting> result;
+  for (const std::string& name : numbers) {
+    const identification::Parameter& parameter = identification::parameters().at(name);
+    const double declared = model.declared(parameter);
+    identification::Setting start{&parameter, parameter.coordinate(declared, declared)};
+    double sum = 0.0;
+    double count = 0.0;
+    for (const identification::Setting& s : fitted) {
+      if (s.parameter != &parameter && !s.parameter->key.ends_with("]." + name)) continue;
+      sum += s.coordinate;
+      count += 1.0;
+    }
+    if (count > 0.0) start.coordinate = sum / count;
+    result.push_back(start);
+  }
+  return result;
+}
+
+/// The published fits against one wire whose numbers are fitted to them, from these settings; no replicates: no bootstrap.
+identification::SummaryStatistics refitted(const Experiment& experiment,
+                                           const std::vector<identification::Setting>& start, std::size_t free,
+                                           int replicates) {
   std::vector<std::size_t> series;
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     if (std::ranges::find(experiment.heldout, experiment.series[k].name) == experiment.heldout.end())
       series.push_back(k);
   }
   const identification::Model model(experiment.series, experiment.solver);
-  return identification::summary_statistics(model, series, trace.final_settings, trace.final.numbers.size(),
-                                            {.scatter = experiment.published_scatter, .replicates = replicates});
+  return identification::summary_statistics(
+      model, series, start, free,
+      {.scatter = experiment.published_scatter, .replicates = replicates, .bootstrap = replicates > 0});
 }
 
-/// How well a fit with these numbers does, for every number of the lost readings.
-void add_adequacy(const Experiment& experiment, double to, const std::vector<std::string>& numbers, const Trace& fitted,
-                  std::vector<Adequacy>& all) {
-  if (!fitted.report.usable() || fitted.interrupted) return;
-  for (const int readings : {10, usual_readings, 40, 100}) {
-    if (interrupted()) return;
-    constexpr int replicates = 299;  // P of 1 % to half of itself: one of many rows
-    const auto statistics = refitted(coarse(with_range(experiment, to, readings)), fitted, replicates);
-    all.push_back({to, readings, numbers, statistics.chi2, statistics.dof, statistics.p});
-  }
-}
+/// Keys of the fitted numbers of a wire, and their fitted settings.
+struct NumbersFit {
+  std::vector<std::string> numbers;
+  std::vector<identification::Setting> settings;
+  double deviance = std::numeric_limits<double>::infinity();
+};
 
-/// The same with fewer numbers than the file frees.
-void add_smaller_fits(const Experiment& experiment, double to, const Progress& progress, std::vector<Adequacy>& all) {
+/// For every count of numbers the set that fits best. Fits are begun at the traced numbers and at the answer with fewer
+/// numbers, the first at that of a tracing of its own.
+std::vector<NumbersFit> best_sets(const Experiment& experiment, const std::vector<identification::Setting>& traced,
+                                  const Progress& progress) {
+  std::vector<NumbersFit> best;
+  std::vector<identification::Setting> fewer;
   for (const std::vector<std::string>& numbers : number_sets(experiment)) {
-    if (interrupted()) return;
-    const Trace fitted = fit_of(
-        coarse(with_range(experiment, to, usual_readings)), numbers,
-        [&](const std::string& stage) { return progress(fmt::format("{} numbers: {}", numbers.size(), stage)); });
-    add_adequacy(experiment, to, numbers, fitted, all);
+    const Progress here = [&](const std::string& stage) {
+      return progress(fmt::format("{} numbers: {}", numbers.size(), stage));
+    };
+    if (best.empty() && numbers != experiment.free) fewer = fit_of(experiment, numbers, here).final_settings;
+    NumbersFit one{numbers, {}};
+    for (const std::vector<identification::Setting>& from : {traced, fewer}) {
+      if (interrupted() || !here("fit")) return best;
+      const auto fit = refitted(experiment, starts_of(experiment, numbers, from), numbers.size(), 0);
+      if (fit.p > 0.0 && fit.chi2 < one.deviance) one = {numbers, fit.settings, fit.chi2};
+    }
+    if (one.settings.empty()) continue;
+    if (best.empty() || best.back().numbers.size() != numbers.size())
+      best.push_back(one);
+    else if (one.deviance < best.back().deviance)
+      best.back() = one;
+    fewer = best.back().settings;
+  }
+  return best;
+}
+
+/// How well one wire with the numbers that the file frees does, and with fewer of them, for every number of the lost
+/// readings. Which set of as many numbers is best is asked at the usual number of readings.
+void add_adequacy(const Experiment& experiment, double to, const std::vector<identification::Setting>& traced,
+                  const Progress& progress, std::vector<Adequacy>& all) {
+  for (const NumbersFit& best : best_sets(coarse(with_range(experiment, to, usual_readings)), traced, progress)) {
+    std::vector<identification::Setting> start = best.settings;
+    const std::size_t count = best.numbers.size();
+    for (const int readings : {usual_readings, 10, 40, 100}) {
+      if (interrupted() || !progress(fmt::format("{} numbers, {} readings", count, readings))) return;
+      constexpr int replicates = 299;  // P of 1 % to half of itself: one of many rows
+      const auto fit = refitted(coarse(with_range(experiment, to, readings)), start, count, replicates);
+      start = fit.settings;
+      all.push_back({to, readings, best.numbers, fit.chi2, fit.dof, fit.p});
+    }
   }
 }
 
@@ -203,7 +259,8 @@ std::map<int, identification::SummaryStatistics> by_digits(const Experiment& exp
       if (s.law) s.law->r_squared_digits = digits;
     }
     rounded.solver.elements = std::min(rounded.solver.elements, 128);
-    result[digits] = refitted(rounded, fitted, identification::published_replicates);
+    result[digits] =
+        refitted(rounded, fitted.final_settings, fitted.final.numbers.size(), identification::published_replicates);
   }
   return result;
 }
@@ -219,11 +276,11 @@ RangeVerdict verdict_at(const Experiment& experiment, double to, const Progress&
   tracing.intervals = false;
   tracing.progress = progress;
   const Trace traced = identification::trace(other, tracing);
+  add_adequacy(experiment, to, traced.final_settings, progress, adequacy);
   if (!traced.report.usable()) {
     result.verdict = "not computed: " + traced.report.message;
     return result;
   }
-  if (traced.selected.empty()) add_adequacy(experiment, to, experiment.free, traced, adequacy);
   result.within_scatter = true;
   for (std::size_t k = 0; k < other.series.size(); ++k) {
     const Series& s = other.series[k];
@@ -240,7 +297,9 @@ bool has_laws(const Experiment& experiment) {
   return std::ranges::any_of(experiment.series, [](const Series& s) { return s.law.has_value(); });
 }
 
-void look_at_ranges(const Progress& progress, Reproduction& result) {
+/// Every verdict goes to `found` when it is known.
+void look_at_ranges(const Progress& progress, const std::function<void(const RangeVerdict&)>& found,
+                    Reproduction& result) {
   const Experiment& experiment = result.experiment;
   if (!has_laws(experiment)) return;
   for (const double to : {3e-3, 4e-3, 5e-3, 18e-3}) {  // the last near the geometric limit
@@ -249,7 +308,7 @@ void look_at_ranges(const Progress& progress, Reproduction& result) {
       return progress(fmt::format("range {:g} mm: {}", 1e3 * to, stage));
     };
     result.verdicts.push_back(verdict_at(experiment, to, here, result.adequacy));
-    add_smaller_fits(experiment, to, here, result.adequacy);
+    found(result.verdicts.back());
   }
 }
 
@@ -295,6 +354,17 @@ std::string error_table(const Reproduction& result) {
     rows.push_back(std::move(row));
   }
   return fmt::format("{}", fmt::join(rows, "\n"));
+}
+
+/// The first result: the distance of each model from the published curves, and its p.
+std::string fits_in_words(const Reproduction& result) {
+  std::string words = error_table(result);
+  if (const auto& s = result.summary) {
+    words +=
+        fmt::format("\npublished numbers: deviance {:.3g}, {:g} degrees of freedom with {} numbers fitted, p = {:.2g}",
+                    s->chi2, s->dof, s->numbers, s->p);
+  }
+  return words;
 }
 
 void write_all_curves(const std::filesystem::path& file, const Reproduction& result) {
@@ -392,6 +462,9 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   finished.reached(result);
 
   ExitStatus status = ExitStatus::done;
+  const auto say = [&](const std::string& text) {
+    if (!options.json) console.say(text);
+  };
   const Progress progress = [&console](const std::string& stage) {
     console.progress(stage);
     return !interrupted();
@@ -422,7 +495,13 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
       result.trace = std::move(trace);
       finished.reached(result);
     }
-    look_at_ranges(progress, result);
+  }
+  say(fits_in_words(result));
+  if (!interrupted()) {
+    look_at_ranges(
+        progress,
+        [&](const RangeVerdict& v) { say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict)); },
+        result);
   }
   console.end_progress();
   begin_writing();
@@ -442,18 +521,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     console.complain(partial_words(result));
     status = ExitStatus::solver_stopped;
   }
-  if (options.json) return status;
-  console.say(error_table(result));
-  if (result.summary) {
-    console.say(
-        fmt::format("published numbers: deviance {:.3g}, {:g} degrees of freedom with {} numbers fitted, p = {:.2g}",
-                    result.summary->chi2, result.summary->dof, result.summary->numbers, result.summary->p));
-  }
-  for (const RangeVerdict& v : result.verdicts) {
-    console.say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict));
-  }
-  console.say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html{1}", options.out.string(),
-                          result.trace ? fmt::format(", {}/{}", options.out.string(), traced_wire_file) : ""));
+  say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html{1}", options.out.string(),
+                  result.trace ? fmt::format(", {}/{}", options.out.string(), traced_wire_file) : ""));
   return status;
 }
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Times the set-up of revisions of this repository from clean clones, in one run.
 
-usage: set_up.py [--test] [--results FILE] REVISION [REVISION ...]
+usage: set_up.py [--test] [--results FILE] [--keep FOLDER] REVISION [REVISION ...]
 
 Clones each revision in a temporary folder, one after the other, and runs `./run` without a compiler cache: seconds to the first line of
 the result ("rms distance"), seconds of the whole call, processor seconds of all its processes, and seconds of a second call, which has
 nothing to set up. With --test `./test` follows in the same clone, so that only its own build is timed. The packages must be installed;
-benchmarks/results/set_up.json has their sizes, and --results adds the times there.
+benchmarks/results/set_up.json has their sizes, and --results adds the times there. With --keep the clones stay in a folder, by their
+commits, for comparisons of both builds.
 """
 
 import argparse
@@ -43,13 +44,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--test", action="store_true")
     parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("revisions", nargs="+", metavar="REVISION")
     options = parser.parse_args()
     times = {}
     for revision in options.revisions:
         commit = subprocess.run(["git", "rev-parse", revision], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
         with tempfile.TemporaryDirectory() as folder:
-            clone = pathlib.Path(folder) / "snare"
+            clone = (options.keep.resolve() if options.keep else pathlib.Path(folder)) / commit[:10]
             subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
             subprocess.run(["git", "checkout", "--quiet", commit], cwd=clone, check=True)
             one = {"./run": timed(clone, ["./run"]), "./run again": timed(clone, ["./run"])}

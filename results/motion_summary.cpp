@@ -54,6 +54,7 @@ json result_json(const MotionResult& r) {
               {"wall_s", r.wall_seconds},
               {"real_time_factor", real_time_factor(r)}};
   for (const auto& [name, energy] : energies) object["energy_J"][name] = r.energy.*energy;
+  object["energy_J"]["dissipation_correction"] = r.energy.corrected;
   return object;
 }
 

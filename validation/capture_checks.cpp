@@ -155,8 +155,8 @@ std::vector<Row> payload_rows(const std::filesystem::path& data) {
   return rows;
 }
 
-// At the tolerances of their files: the visitor of 1.3 t and one of 13 t rigidized, by wires, and the capture by an arm on an attachment that
-// gives, with strings.
+// The visitor of 1.3 t and one of 13 t rigidized, the first also by wires, and the capture by an arm on an attachment that gives, with
+// strings. By a ball joint alone at a hundredth of the file's tolerances of bodies: what of the momentum is not accounted for follows these.
 std::vector<Row> visitor_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   const double speed = Eigen::Vector3d(0.0028, -0.009, -0.025).norm();
@@ -164,10 +164,13 @@ std::vector<Row> visitor_rows(const std::filesystem::path& data) {
   const auto add = [&](const std::string& name, const ScenarioRun& run, double momentum) {
     add_balance(name, run, momentum, run.result.energy.work, rows);
   };
-  add("rigidizing a visitor of 1.3 t", run_of(rigidize, {}), 1300.0 * speed);
-  add("rigidizing a visitor of 13 t",
-      run_of(rigidize, {"bodies[visitor].mass_kg=13000.0", "bodies[visitor].inertia_kg_m2=[20000.0,20000.0,10000.0]"}),
-      13000.0 * speed);
+  const std::vector<std::string> light{"solver.body_position_tolerance_m=1e-11",
+                                       "solver.body_velocity_tolerance_m_s=1e-9"};
+  add("rigidizing a visitor of 1.3 t", run_of(rigidize, light), 1300.0 * speed);
+  std::vector<std::string> heavy = light;
+  heavy.insert(heavy.end(),
+               {"bodies[visitor].mass_kg=13000.0", "bodies[visitor].inertia_kg_m2=[20000.0,20000.0,10000.0]"});
+  add("rigidizing a visitor of 13 t", run_of(rigidize, heavy), 13000.0 * speed);
   add("rigidizing a visitor of 1.3 t by computed wires", run_of(data / "scenarios/ssrms_rigidize_wires.toml", {}),
       1300.0 * speed);
   add("capture of 16 t, the attachment gives",

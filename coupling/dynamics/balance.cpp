@@ -280,11 +280,12 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
-  // The polynomials through the last steps may overshoot between them; what is dissipated only grows.
+  // The polynomials through the last steps may overshoot between them; the dissipation only grows.
   e.dissipated = std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
                             lost_before_, lost_);
   e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
+  e.corrected = corrected_;
   s.energy = e;
   for (const BodyPart& b : bodies_) s.bodies.push_back(b.state(at.y));
   for (std::size_t k = 0; k < contacts_.size(); ++k) {

@@ -42,6 +42,8 @@ struct EnergyBalance {
   /// kinetic + strain + potential + dissipated - work - the same at the start: what the integrator gained
   /// (negative: lost).
   double integrator = 0.0;
+  /// Decreases of the integrated dissipation that were removed from it [J], >= 0: their sum along the run, part of integrator.
+  double corrected = 0.0;
 };
 
 /// One line of the history.

@@ -245,7 +245,9 @@ bool MotionRun::write_until(double time) {
 // No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its tolerance.
 void MotionRun::count_losses() {
   const double others = integrals_[integral::laws] + constraints_->lost(y_);
-  lost_ = std::max(integrals_[integral::dissipated] + others, lost_);  // not a number, if that is not
+  const double sum = integrals_[integral::dissipated] + others;
+  corrected_ += std::max(0.0, lost_ - sum);
+  lost_ = std::max(sum, lost_);  // not a number, if that is not
   integrals_[integral::dissipated] = lost_ - others;
 }
 
@@ -287,6 +289,7 @@ void MotionRun::resume(const MotionState& from) {
     s.sticking = numerics::take(memory) != 0.0;
   }
   lost_ = lost_before_ = numerics::take(memory);
+  corrected_ = numerics::take(memory);
   restore_phases(memory);
   for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
@@ -437,7 +440,7 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
   for (const Seen& s : seen_) memory.insert(memory.end(), {s.closed ? 1.0 : 0.0, s.sticking ? 1.0 : 0.0});
-  memory.push_back(lost_);
+  memory.insert(memory.end(), {lost_, corrected_});
   phases_.save_state(memory);
   sensed_.save_state(memory);
   for (const RobotLoop& l : loops_) l.save_state(memory);

@@ -112,7 +112,7 @@ class MotionRun {
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void watch(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
-  /// Adds up what is dissipated in all, which never falls.
+  /// Updates the total dissipation, and removes and counts its decreases.
   void count_losses();
   /// Power that laws between bodies and in place of wires lose [W], >= 0.
   [[nodiscard]] double law_loss(const numerics::DaePoint& at) const;
@@ -162,6 +162,7 @@ class MotionRun {
   Eigen::VectorXd integrals_;
   LossSum law_losses_;
   double lost_ = 0.0, lost_before_ = 0.0;  // all that is dissipated, and that up to the step or sample before [J]
+  double corrected_ = 0.0;                 // sum of the decreases that were removed from it [J]
   PeakForce peak_;
   ForceRecord forces_;                     // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire

@@ -53,6 +53,27 @@ name = "ball"
 mass_kg = 1.0
 inertia_kg_m2 = [0.1, 0.1, 0.1]
 )");
+    write("in/drop.toml", contents("in/fall.toml") + R"(position_mm = [-10.0, 0.0, 50.0]
+velocity_m_s = [1.0, 0.0, 0.0]
+[[shapes]]
+name = "round"
+body = "ball"
+kind = "sphere"
+radius_mm = 3.0
+[[wires]]
+name = "a"
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 100.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [0.0, 0.0, 0.0]
+to_mm = [0.0, 0.0, 99.0]
+bulge = [1.0, 0.0, 0.0]
+mount = "pinned"
+elements = 12
+)");
   }
 
   /// How often each file of the folder "in" is opened while a line of the shell runs.
@@ -82,6 +103,7 @@ TEST_F(KeptInputs, EveryVerbOpensThemOnceAndNamesThem) {
       {"ringdown in/ringdown.toml", {{"ringdown.toml", 1}, {"ringdown.csv", 1}}},
       {"simulate in/fall.toml", {{"fall.toml", 1}}},
       {"compare in/one.toml", {{"one.toml", 1}}},
+      {"compare in/drop.toml", {{"drop.toml", 1}}},
       {"sweep in/sweep.toml --threads 2", {{"sweep.toml", 1}, {"one.toml", 1}}},
   };
   for (const auto& [arguments, opens] : verbs) {

@@ -22,14 +22,15 @@ if CHROMIUM is None:
     sys.exit(setting.SKIPPED)
 
 PICTURES = os.environ.get("SNARE_PICTURES")
+SMALL = ["--set", "solver.elements=32"]
 # A page of every verb: its arguments, and the least number of plots.
 PAGES = {
     "push": (["push", "examples/push.toml"], 4),
-    "fit": (["fit", "examples/push.toml"], 4),
-    "trace": (["trace", "examples/push.toml"], 4),
-    "reproduce": (["reproduce"], 4),
+    "fit": (["fit", "examples/push.toml", *SMALL], 4),
+    "trace": (["trace", "examples/push.toml", *SMALL], 4),
+    "reproduce": (["reproduce", *SMALL], 4),
     "distil": (["distil", "WIRE"], 3),
-    "compare": (["compare", "examples/push.toml"], 4),
+    "compare": (["compare", "examples/push.toml", *SMALL], 4),
     "compare_motions": (["compare", "data/scenarios/snare_on_pin.toml"], 0),
     "simulate": (["simulate", "data/scenarios/snare_on_pin.toml"], 2),
     "simulate_capture": (["simulate", "data/scenarios/ssrms_htv_capture.toml", "--set", 'snares[snare].wire.model="stretched"'], 2),

@@ -17,7 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const fs::path shipped = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/grapple_shaft.toml";
 
@@ -258,6 +260,17 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
   EXPECT_THAT(said, HasSubstr("shapes[box].file = \"hole.obj\""));
   EXPECT_THAT(
       said, HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
+}
+
+// A box of 8 mm whose file is in metres is 8 um large by the unit that the scenario states.
+TEST_F(MotionScenarios, MeshesOfAnotherUnitAreDoubted) {
+  const auto warned = [&](const std::string& unit) { return read({"shapes[box].unit=\"" + unit + "\""}).warnings; };
+  test::write_mesh(path("box.stl"), test::cuboid(8e-3, 6e-3, 4e-3), 1.0);
+  EXPECT_THAT(warned("mm"), Contains(HasSubstr("shape box: its mesh is only 0.008 mm large: is the file in metres")));
+  EXPECT_THAT(warned("m"), Not(Contains(HasSubstr("mesh"))));
+  test::write_mesh(path("box.stl"), test::cuboid(1.0, 0.6, 0.4), 1e-3);
+  EXPECT_THAT(warned("mm"), Not(Contains(HasSubstr("mesh"))));
+  EXPECT_THAT(warned("m"), Contains(HasSubstr("shape box: its mesh is 1e+03 m large: is the file in millimetres")));
 }
 
 const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";

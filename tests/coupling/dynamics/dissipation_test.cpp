@@ -1,4 +1,4 @@
-// What every law takes from the bodies and wires that it acts on is stored or lost, and what is lost is never negative, in any state.
+// Every law stores or dissipates the power that it takes from bodies and wires; the dissipation is never negative, in any state.
 
 #include "coupling/contact/revolved_solids.hpp"
 #include "coupling/dynamics/body_contact_part.hpp"

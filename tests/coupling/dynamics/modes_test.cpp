@@ -156,7 +156,7 @@ TEST(Modes, OfAStretchedWireAreThoseOfAString) {
   }
 }
 
-// The mesh of half as many elements tells the error of the finer one, and that of the twentieth partial beyond a hundredth.
+// The mesh of half as many elements gives the error of the finer one, and that of the twentieth partial beyond a hundredth.
 TEST(Modes, OfAStretchedWireHaveTheErrorOfTheirMesh) {
   const auto small_motions_of = [](int elements) {
     const Motion motion = TautString::motion(elements);
