@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the numbers of README.md and docs/results/ from the stored results in benchmarks/results/.
+"""Writes the numbers of README.md and of pages in docs/ from the stored results in benchmarks/results/.
 
 usage: results_pages.py [--check | --reproduce SNARE | --remake NAMES SNARE | --compare NAMES SNARE] [REPOSITORY]
 
@@ -19,6 +19,7 @@ MAKERS
 import argparse
 import csv
 import json
+import math
 import pathlib
 import re
 import statistics
@@ -322,6 +323,241 @@ def sweep_throughput(stored):
                   for r in stored.json("sweep_throughput.json")["runs"]])
 
 
+# ---- docs/how_to/run_a_capture.md ----
+
+
+def slope(rows, varied, field):
+    """d ln field / d ln varied, of the rows with the smallest and the largest value of varied; the other variables are the same."""
+    ends = [sorted(rows, key=lambda r: float(r[varied]))[i] for i in (0, -1)]
+    low, high = ([math.log(float(row[name])) for name in (field, varied)] for row in ends)
+    return (high[0] - low[0]) / (high[1] - low[1])
+
+
+def signed_zero(value):
+    """Three decimals, zero without a sign."""
+    return f"{round(value, 3) + 0.0:.3f}"
+
+
+@region
+def held_modes(stored):
+    varied = {"by K_GF, turn": "K_GF_turn", "by K_GF, shift": "K_GF_shift", "by EA": "EA", "by the joints": "K_joint"}
+    modes = {"shoulder, visitor with it": "shoulder_roll_Hz", "wrist roll": "wrist_roll_Hz", "ring on its motor": "ring_Hz",
+             "fixture shifts in its bushing": "fixture_shift_Hz", "fixture rolls in its bushing": "fixture_turn_Hz"}
+    base, *others = stored.rows("htv_modes.csv")
+    changed = {name: [r for r in others if r[name] != base[name]] for name in varied.values()}
+    return table(["8 s into the shipped capture, strings", "frequency"] + list(varied),
+                 [[label, f"{number(float(base[field]), 4)} Hz"] + [signed_zero(slope(changed[name], name, field)) for name in varied.values()]
+                  for label, field in modes.items()])
+
+
+@region
+def held_roll(stored):
+    rows = stored.rows("htv_roll.csv")
+    joints = sorted({float(r["K_joint"]) for r in rows})
+    at = [sorted((r for r in rows if float(r["K_joint"]) == k), key=lambda r: float(r["K_GF"])) for k in joints]
+    return table(["joints, N m/rad"] + [number(k, 1) for k in joints],
+                 [["roll, Hz"] + [f"{float(three[1]['roll_Hz']):.3f}" for three in at],
+                  ["d ln f/d ln K_GF"] + [signed_zero(slope(three, "K_GF", "roll_Hz")) for three in at]])
+
+
+class Offset:
+    """A row of htv_order.csv: where the shaft stands, wires and times in the order in which they become tight."""
+
+    def __init__(self, row):
+        x, y = float(row["x_mm"]), float(row["y_mm"])
+        self.radius, self.azimuth = round(math.hypot(x, y)), round(math.degrees(math.atan2(y, x))) % 360
+        self.touch, self.tight = (sorted((float(row[f"{what}_{k}_s"]), k) for k in (1, 2, 3)) for what in ("touch", "tight"))
+
+    def order(self, times):
+        return " ".join(str(k) for _, k in times)
+
+
+def offsets(stored):
+    """The row of the middle, and the others."""
+    middle, *others = sorted((Offset(r) for r in stored.rows("htv_order.csv")), key=lambda o: (o.radius, o.azimuth))
+    return middle, others
+
+
+@region
+def wire_order(stored):
+    azimuths = {}
+    for one in offsets(stored)[1]:
+        azimuths.setdefault(f"{one.order(one.touch)}, {one.order(one.tight)}", set()).add(one.azimuth)
+    return table(["shaft at, degrees", "wires as they touch", "as they become tight"],
+                 [[", ".join(str(a) for a in sorted(degrees)), *orders.split(", ")]
+                  for orders, degrees in sorted(azimuths.items(), key=lambda item: min(item[1]))])
+
+
+@region
+def wire_order_times(stored):
+    middle, others = offsets(stored)
+    rows = [["0"] + [f"{time:.3f}" for time, _ in middle.tight]]
+    for radius in sorted({o.radius for o in others}):
+        ring = [o for o in others if o.radius == radius]
+        spans = [[o.tight[k][0] for o in ring] for k in range(3)]
+        rows.append([radius] + [f"{min(span):.3f} to {max(span):.3f}" for span in spans])
+    thirds = [[o for o in others if (o.radius, o.azimuth % 120) == key] for key in sorted({(o.radius, o.azimuth % 120) for o in others})]
+    moved = [max(max(o.tight[k][0] for o in three) - min(o.tight[k][0] for o in three) for three in thirds) for k in range(3)]
+    return (table(["shaft off the middle [mm]", "first wire tight [s]", "second [s]", "last [s]"], rows) +
+            f"\nTurning the offset by 120 degrees renumbers the wires. It moves the first time by {number(1e3 * moved[0], 1)} ms at most,\n"
+            f"the second by {number(1e3 * moved[1])} ms and the last by {number(1e3 * moved[2])} ms.\n")
+
+
+@region
+def capture_mesh(stored):
+    runs = stored.json("capture_mesh.json")
+    wires = sorted(next(iter(runs.values()))["tight_s"])
+
+    def span(what, wire):
+        values = [run[what][wire] for run in runs.values()]
+        return max(values) - min(values), max(values)
+
+    times = max(span(what, wire)[0] for what in ("first_touch_s", "tight_s") for wire in wires)
+    shares = [number(100.0 * span("peak_tension_N", wire)[0] / span("peak_tension_N", wire)[1]) for wire in wires]
+    *meshes, last = runs
+    return (f"With {', '.join(meshes)} and {last} elements a wire the times of the shipped capture lie within {number(1e3 * times)} ms,\n"
+            f"its peak tensions within {', '.join(shares[:-1])} and {shares[-1]} %.\n")
+
+
+@region
+def rigidized(stored):
+    runs = stored.json("rigidized.json")
+    lines = {"plate meets end effector": lambda r: f"{r['touch_s']:.3f} s", "peak contact force": lambda r: f"{number(r['contact_N'], 3)} N",
+             "largest pull of the carriage": lambda r: f"{number(r['pull_N'], 3)} N",
+             "shoulder pitch": lambda r: f"{number(r['shoulder_Nm'], 3)} N m",
+             "in contact 5 s later": lambda r: "yes" if r["in_contact_at_end"] else "no"}
+    return table([""] + [r["title"] for r in runs], [[label] + [cell(r) for r in runs] for label, cell in lines.items()])
+
+
+@region
+def attachment_swings(stored):
+    result = stored.json("attachment_swings.json")
+    head = ["attachment turns at [N m/rad]", f"rate about x, half its range from {number(result['from_s'], 1)} s on [deg/s]", "about y [deg/s]"]
+    return table(head, [[re.sub(r"e\+?0*", "e", f"{r['stiffness_Nm_rad']:g}"), number(r["x_deg_s"], 3), number(r["y_deg_s"], 3)]
+                        for r in result["runs"]])
+
+
+# ---- docs/how_to/from_bench_to_odds.md ----
+
+# Numbers with which data/experiments/snare_rope_*.csv were made.
+MADE_WITH = {"wire.axial_stiffness_N": 46.8e3, "wire.length_mm": 200.13, "wire.bending_stiffness_Nm2": 0.0056}
+
+
+@region
+def traced_rope(stored):
+    fitted = stored.json("snare_rope.json")["parameters"]
+    rows = []
+    for key, truth in MADE_WITH.items():
+        values = [truth] + [fitted[key][k] for k in ("value", "lower95", "upper95")]
+        made, value, low, high = (number(x, 5 if key.endswith("_mm") else 3) for x in values)
+        rows.append([f"`{key}`", made, value, number(fitted[key]["stderr"]), f"{low} to {high}", fitted[key]["unit"]])
+    return table(["number", "readings made with", "traced", "standard error", "95 % interval", "unit"], rows)
+
+
+def share_of(hits):
+    return f"{number(hits['share'])} ({' to '.join(number(b) for b in hits['interval95'])})"
+
+
+@region
+def capture_odds(stored):
+    result = stored.json("capture_odds.json")
+    caught, (limit, strong), tension = result["caught"], next(iter(result["limits"].items())), result["tension_N"]
+    return table(["of 2000 captures", "", "share (95 % interval)"],
+                 [["refused: initial overlap of shaft and wall", result["statuses"].get("refused", 0), ""],
+                  ["caught", caught["hits"], f"{caught['share']:.3f} ({caught['interval95'][0]:.3f} to {caught['interval95'][1]:.3f})"],
+                  [limit, strong["hits"], share_of(strong)],
+                  ["median of the peak tension [N]", number(tension["q50"], 3), ""],
+                  ["nine in ten peak tensions [N]", f"{number(tension['q05'], 3)} to {number(tension['q95'], 3)}", ""]])
+
+
+@region
+def next_reading(stored):
+    result = stored.json("next_reading.json")
+    return (f"The bench leaves {number(result['left_open_N'])} N of the peak tension open. The most informative next reading is at "
+            f"{number(result['place_mm'])} mm and {number(result['travel_mm'])} mm of travel; it leaves {number(result['left_after_N'])} N.\n")
+
+
+# ---- docs/record_file.md ----
+
+
+def with_interval(value, digits):
+    low, high = (number(value[k], digits) for k in ("lower", "upper"))
+    return f"{number(value['value'], digits)} [{low}, {high}] {value['unit']}"
+
+
+@region
+def flights(stored):
+    result = stored.json("flights.json")
+    rows = []
+    for name, label in (("flight", "full wires, fitted by strings"), ("flight_rods", "rods, by equations that share no code")):
+        fits = result[name]
+        fitted = {key.rpartition(".")[2]: value for key, value in fits["gauss_newton"]["parameters"].items()}
+        wire = next(value for key, value in fits["gauss_newton"]["parameters"].items() if ".wire." in key)
+        rows.append([f"`data/records/{name}.toml`: {label}", with_interval(fitted["rotational_stiffness_Nm_rad"], 4),
+                     with_interval(fitted["rate_deg_s"], 4), with_interval(wire, 4),
+                     ", ".join(number(s, 3) for s in fits["gauss_newton"]["heldout_sigmas"]),
+                     ", ".join(str(fits[fit]["simulations"]) for fit in ("gauss_newton", "nelder_mead"))])
+    return table(["file", "fixture's attachment, made with 9.3e7 N m/rad", "ring, made with 55 deg/s", "wire, made with 60,000 N or 600,000 N/m",
+                  "second flight, not fitted [standard deviations]", "simulations, Gauss-Newton, Nelder-Mead"], rows)
+
+
+@region
+def flight_families(stored):
+    fits = stored.json("flights.json")
+    strings, honda, newton = fits["flight"]["gauss_newton"], fits["flight_rods"]["honda"], fits["flight_rods"]["gauss_newton"]
+    rods = strings["families"]["rods"]
+    ring, attachment = "phases[close].drives[1].rate_deg_s", "bushings[gf].rotational_stiffness_Nm_rad"
+    rates = [number(fit["parameters"][ring]["value"], 4) for fit in (rods, honda)]
+    return (f"Rods instead of strings for the full wires find the attachment, too ({number(rods['parameters'][attachment]['value'], 4)} N m/rad),\n"
+            f"but do not fit: chi squared is {number(rods['chi2_dof'])} a reading, that of strings {number(strings['chi2_dof'])}.\n"
+            f"With the rods' stiffness of Table 4 held the ring's rate is {rates[0]} deg/s (`fit.families` of `flight.toml`, in `warnings`).\n"
+            f"Honda's rule ends the simplex on rods after {honda['simulations']} simulations, at {rates[1]} deg/s and "
+            f"{number(honda['chi2_dof'] / newton['chi2_dof'], 3)} times the least sum of squares.\n")
+
+
+# A record that is traced, by its file: what it is, what is fitted, and what is held out or watched.
+TRACED_RECORDS = {"emps": ("25,000 readings of a drive", "inertia, viscous friction", "position under its own control"),
+                  "flight_attachment": ("two flights of a visitor on an arm, a minute of rates", "stiffness of the joints", "second flight"),
+                  "air_table": ("the force of two impacts whose impulse is right and whose peak is wrong", "time of the touch", "second impact"),
+                  "pendulum": ("a free swing in six parts", "inertia, viscous bearing", "parts 5 and 6")}
+
+
+def before_and_after(errors, unit):
+    words = [number(errors[key], 3) for key in ("before", "helped" if "helped" in errors else "after")]
+    return f"{', '.join(words)} {unit}"
+
+
+def named_effects(trace):
+    if not trace["selected_places"]:
+        return "nothing; helpful: " + ", ".join(f"`{place.split()[0]}`" for place in trace["helped"])
+    values = "; ".join(with_interval(value, 4) for value in trace["added"].values())
+    return ", ".join(f"`{place.split()[0]}`" for place in trace["selected_places"]) + f": {values}"
+
+
+def traced_by_file(stored):
+    return {**stored.json("traced_records.json"), "air_table": stored.json("traced_air_table.json")}
+
+
+@region
+def traced_records(stored):
+    traces = traced_by_file(stored)
+    rows = []
+    for name, (what, fitted, other) in TRACED_RECORDS.items():
+        trace = traces[name]
+        rows.append([f"`data/records/{name}.toml`, {what}", fitted, named_effects(trace), before_and_after(trace["errors"], trace["unit"]),
+                     f"{other}: {before_and_after(trace['heldout'], trace['heldout_unit'])}"])
+    return table(["file", "fitted", "named", "error before, after", "not fitted, before, after"], rows)
+
+
+@region
+def drive_left(stored):
+    drive = stored.json("traced_records.json")["emps"]
+    before, after = (percent(drive["relative"][key]) for key in ("before", "after"))
+    return (f"The drive's error is {before} of the force before and {after} after (published: 17, 4.1, 3.1 %). The named effects explain "
+            f"{percent(1.0 - drive['share_left'])} of the excess over the noise.\nThe noise of the filtered readings is estimated as "
+            f"{number(drive['noise']['sigma_N'])} N, from the median of their second differences, which the reversals of the force do not enter.\n")
+
+
 # ---- docs/results/speed.md ----
 
 
@@ -412,7 +648,7 @@ def update_picture(root, path, made, check):
     if file.is_file() and file.read_text(encoding="utf-8") == made:
         return False
     if check:
-        print(f"{path}: differs from what the stored results give")
+        print(f"{path}: differs from the stored results")
     else:
         file.write_text(made, encoding="utf-8")
         print(path)
@@ -429,7 +665,7 @@ def chosen(names):
 
 
 def remake(names, snare, root, keep):
-    """Runs makers; stores what comes out, or with keep prints how it differs from what is stored. Status of the script."""
+    """Runs makers and stores their output, or with keep prints how it differs from the stored one. Returns the status of the script."""
     status = 0
     for name in chosen(names):
         maker = shipped.MAKERS[name]
@@ -448,7 +684,7 @@ def remake(names, snare, root, keep):
                     print(f"{path}: and {len(found) - shipped.MOST_LINES} more")
                 if found and keep:
                     status = 1
-                # What differs by less than the tolerance stays as it is, so that only changes are changes.
+                # Output that differs by less than the tolerance is not stored, so that only changes are changes.
                 elif found:
                     (root / path).write_bytes(content)
                     print(f"{path}: stored")

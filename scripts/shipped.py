@@ -286,6 +286,177 @@ def htv_order(snare, root, folder):
     return {results("htv_order.csv"): sweep(snare, root, folder, "htv_order")}
 
 
+@maker(results("htv_modes.csv"))
+def htv_modes(snare, root, folder):
+    """Frequencies of a held visitor by bushing, rope and joints: cases."""
+    return {results("htv_modes.csv"): sweep(snare, root, folder, "htv_modes")}
+
+
+@maker(results("htv_roll.csv"))
+def htv_roll(snare, root, folder):
+    """Frequencies of a rigidized visitor by bushing and joints: cases."""
+    return {results("htv_roll.csv"): sweep(snare, root, folder, "htv_roll")}
+
+
+@maker(results("capture_odds.json"), relative=1e-2, absolute=1e-3, named=((r"hits$", (0.0, 3.0)), (r"share$|interval95", (0.0, 2e-3))), long=True)
+def capture_odds(snare, root, folder):
+    """The odds of 2000 captures by a traced rope: outcomes and peak tensions; takes minutes."""
+    summary = json.loads(sweep(snare, root, folder, "capture_odds", "summary.json"))
+    return stored_json("capture_odds.json", {
+        "statuses": summary["statuses"], "caught": summary["fields"]["caught"]["true"], "limits": summary["limits"],
+        "tension_N": {q: summary["fields"]["tension_N"][q] for q in ("q05", "q50", "q95")}})
+
+
+# ---- single captures ----
+
+
+def simulated(snare, root, folder, name, *changes):
+    """summary.json of a shipped scenario. changes: of the file, KEY=VALUE."""
+    overrides = [word for change in changes for word in ("--set", change)]
+    run([snare, "simulate", f"data/scenarios/{name}.toml", "--out", folder, "--quiet", *overrides], root)
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def stored_json(name, value):
+    return {results(name): json.dumps(value, indent=1, sort_keys=True) + "\n"}
+
+
+@maker(results("capture_mesh.json"), **CAPTURE)
+def capture_mesh(snare, root, folder):
+    """The shipped capture with 30, 40 and 60 elements a wire: times and peak tensions."""
+    made = {}
+    for elements in (30, 40, 60):
+        outcome = simulated(snare, root, folder / str(elements), "ssrms_htv_capture", f"snares[snare].wire.elements={elements}")["outcome"]
+        made[str(elements)] = {name: outcome[name] for name in ("first_touch_s", "tight_s", "peak_tension_N")}
+    return stored_json("capture_mesh.json", made)
+
+
+# A scenario that rigidizes, and its changes, by the title of its column.
+RIGIDIZED = {"ball joint, 2e4 N/m": ("ssrms_rigidize",),
+             "quasi-static wires, 40 elements": ("ssrms_rigidize_wires",),
+             "60 elements": ("ssrms_rigidize_wires", "snares[snare].wire.elements=60"),
+             "full wires, 40 elements": ("ssrms_rigidize_wires", 'snares[snare].wire.model="full"')}
+
+
+@maker(results("rigidized.json"), **CAPTURE, long=True)
+def rigidized(snare, root, folder):
+    """Rigidizing by a ball joint and by computed wires: contact of the plate, pull, torque of the shoulder."""
+    made = []
+    for k, (title, scenario) in enumerate(RIGIDIZED.items()):
+        summary = simulated(snare, root, folder / str(k), *scenario)
+        outcome = summary["outcome"]
+        touch = next(e for e in summary["events"] if e["what"] == "touch" and e["contact"] == "plate on face")
+        made.append({"title": title, "touch_s": touch["time_s"], "contact_N": outcome["peak_force_N"]["plate on face"],
+                     "pull_N": outcome["peak_torque_Nm"]["snare::carriage"], "shoulder_Nm": outcome["peak_torque_Nm"]["rms::shoulder_pitch"],
+                     "in_contact_at_end": summary["sensors"]["contact_force_N"]["last"] > 0.0})
+    return stored_json("rigidized.json", made)
+
+
+SWINGS_FROM_S = 3.0  # the arm is limp
+
+
+def swing(telemetry, column):
+    """Half the range of a column while the arm is limp."""
+    rows = csv.DictReader(telemetry.read_text(encoding="utf-8").splitlines())
+    values = [float(row[column]) for row in rows if float(row["time_s"]) >= SWINGS_FROM_S]
+    return 0.5 * (max(values) - min(values))
+
+
+# A stick or a slip at another step changes a swing by some per cent.
+@maker(results("attachment_swings.json"), relative=5e-2)
+def attachment_swings(snare, root, folder):
+    """Swings of the captured visitor's rates with a soft and with a stiff attachment of the arm."""
+    made = []
+    for k, stiffness in enumerate((1.25e6, 1e11)):
+        simulated(snare, root, folder / str(k), "ssrms_htv_attachment", "duration_s=30", 'snares[ee::snare].wire.model="stretched"',
+                  f"bushings[attachment].rotational_stiffness_Nm_rad={stiffness}")
+        made.append({"stiffness_Nm_rad": stiffness, **{f"{axis}_deg_s": swing(folder / str(k) / "telemetry.csv", f"rates_{axis}_deg_s")
+                                                       for axis in "xy"}})
+    return stored_json("attachment_swings.json", {"from_s": SWINGS_FROM_S, "runs": made})
+
+
+# ---- the bench and records in time ----
+
+
+@maker(results("snare_rope.json"), relative=2e-3, absolute=1e-6)
+def snare_rope(snare, root, folder):
+    """The trace of the rope on the bench: its numbers."""
+    run([snare, "trace", "data/experiments/snare_rope.toml", "--out", folder, "--quiet"], root)
+    result = json.loads((folder / "trace.json").read_text(encoding="utf-8"))
+    parameters = {key: {name: value[name] for name in ("value", "stderr", "lower95", "upper95", "unit")}
+                  for key, value in result["final"]["parameters"].items()}
+    return stored_json("snare_rope.json", {"verdict_kind": result["verdict_kind"], "parameters": parameters})
+
+
+# The fits of a record file, by what is changed in them.
+FITS = {"gauss_newton": (), "nelder_mead": ('fit.method="nelder_mead"',), "honda": ('fit.method="nelder_mead"', "fit.simplex_change=0.01")}
+
+
+def fitted(snare, root, folder, name, changes):
+    """Numbers of the fit of a shipped record file, errors of the records held out, simulations."""
+    overrides = [word for change in changes for word in ("--set", change)]
+    run([snare, "fit", f"data/records/{name}.toml", "--out", folder, "--quiet", *overrides], root)
+    result = json.loads((folder / "fit.json").read_text(encoding="utf-8"))
+
+    def numbers(model):
+        return {"chi2_dof": model["chi2_dof"], "parameters": {key: {n: value[n] for n in ("value", "lower", "upper", "unit")}
+                                                              for key, value in model["parameters"].items()}}
+
+    return {**numbers(result["fit"]), "families": {family["name"]: numbers(family) for family in result["families"]},
+            "heldout_sigmas": [c["rmse"] / c["sigma"] for c in result["heldout"]["fit"]], "simulations": result["simulations"]["base_fit"]}
+
+
+# Fits end within some hundredths of a standard error, by a number of steps that last digits change.
+@maker(results("flights.json"), relative=2e-3, named=((r"simulations$", (0.3, 5.0)), (r"(lower|upper)$", (1e-2, 0.0))), long=True)
+def flights(snare, root, folder):
+    """Fits of the recorded flights by Gauss-Newton and by a simplex; takes minutes."""
+    made = {name: {fit: fitted(snare, root, folder / name / fit, name, FITS[fit]) for fit in fits}
+            for name, fits in (("flight", ("gauss_newton", "nelder_mead")), ("flight_rods", FITS))}
+    return stored_json("flights.json", made)
+
+
+def error_of(channels, model, prefix="rmse"):
+    """Error of the only channel in its unit, or of several over their standard deviations."""
+    return channels[0]["rmse"] if len(channels) == 1 else next(model[key] for key in model if key.startswith(prefix))
+
+
+def traced_record(snare, root, folder, name):
+    """What the trace of a shipped record file names, and its errors before and after."""
+    run([snare, "trace", f"data/records/{name}.toml", "--out", folder / name, "--quiet"], root)
+    result = json.loads((folder / name / "trace.json").read_text(encoding="utf-8"))
+    base, final, partial, heldout = (result[key] for key in ("base", "final", "partial", "heldout"))
+    several = len(base["channels"]) > 1
+    errors = {"before": error_of(base["channels"], base), "after": error_of(final["channels"], final)}
+    others = {"before": error_of(heldout["base"], heldout, "rmse_base"), "after": error_of(heldout["final"], heldout, "rmse_final")}
+    if partial["effects"]:
+        errors["helped"] = error_of(partial["model"]["channels"], partial["model"])
+        others["helped"] = error_of(partial["heldout"], partial)
+    kept = {"verdict_kind": result["verdict_kind"], "selected_places": result["selected_places"], "helped": partial["effects"],
+            "errors": errors, "heldout": others, "noise": result["noise"], "share_left": result["remaining"]["share_of_excess"],
+            "unit": "standard deviations" if several else base["channels"][0]["unit"],
+            "heldout_unit": "standard deviations" if several else heldout["base"][0]["unit"]}
+    if not several:
+        kept["relative"] = {"before": base["channels"][0]["relative"], "after": final["channels"][0]["relative"]}
+    kept["added"] = {key: {n: value[n] for n in ("value", "lower", "upper", "unit")}
+                     for key, value in final["parameters"].items() if key not in base["parameters"]}
+    return kept
+
+
+@maker(results("traced_air_table.json"), relative=2e-3)
+def traced_air_table(snare, root, folder):
+    """The trace of the recorded impacts on an air table."""
+    return stored_json("traced_air_table.json", traced_record(snare, root, folder, "air_table"))
+
+
+@maker(results("traced_records.json"), relative=1e-2, long=True)
+def traced_records(snare, root, folder):
+    """Traces of the recorded drive, flights and pendulum; takes minutes."""
+    if not (root.parent / "shared/data/emps/emps.csv").is_file():
+        raise Skipped("the readings of drive and pendulum are not in ../shared/data")
+    made = {name: traced_record(snare, root, folder, name) for name in ("emps", "flight_attachment", "pendulum")}
+    return stored_json("traced_records.json", made)
+
+
 # ---- the impact of docs/results/speed.md ----
 
 COUNTERS = ("peak_force_error", "impulse_error", "quasi_static_peak_N", "undamped_quasi_static_peak_N", "steps", "jacobians", "energy_error", "momentum_error")
@@ -346,10 +517,17 @@ def examples(snare, root, folder):
     return made
 
 
-@maker(gallery("bench_to_odds.png"), long=True)
+READING = {"left_open_N": r"leaves open of it: ([\d.]+) N", "place_mm": r"next reading: at ([\d.]+) mm", "travel_mm": r"and ([\d.]+) mm of travel",
+           "left_after_N": r"of travel, leaves ([\d.]+) N"}
+
+
+@maker(gallery("bench_to_odds.png"), results("next_reading.json"), relative=2e-2, long=True)
 def bench_to_odds(snare, root, folder):
-    """The picture of the odds of 2000 captures; takes minutes."""
-    return picture_of(snare, root, folder, "bench_to_odds", "bench_to_odds.py", "data")
+    """What one more reading on the bench tells of 2000 captures: picture and numbers; takes minutes."""
+    picture = folder / "odds.png"
+    printed = run(["/usr/bin/python3", root / "examples/bench_to_odds.py", "data", picture], root, module_of(snare))
+    numbers = {name: float(re.search(pattern, printed)[1]) for name, pattern in READING.items()}
+    return {gallery("bench_to_odds.png"): picture.read_bytes(), **stored_json("next_reading.json", numbers)}
 
 
 def screenshot(page, target, width, height, options=("--disable-gpu",)):
