@@ -42,6 +42,7 @@ if(CMAKE_UNITY_BUILD)
   # GCC 12 also warns falsely about strings and matrices of the standard library and Eigen once more of them is inlined.
   target_compile_options(snare_build_settings INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage;-Wno-shadow;-Wno-stringop-overflow;-Wno-maybe-uninitialized>
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-free-nonheap-object>
     $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
 endif()
 
