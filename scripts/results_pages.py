@@ -515,7 +515,7 @@ def flight_families(stored):
             f"{number(honda['chi2_dof'] / newton['chi2_dof'], 3)} times the least sum of squares.\n")
 
 
-# A record that is traced, by its file: what it is, what is fitted, and what is held out or watched.
+# Traced records by file: description, fitted numbers, held-out or watched data.
 TRACED_RECORDS = {"emps": ("25,000 readings of a drive", "inertia, viscous friction", "position under its own control"),
                   "flight_attachment": ("two flights of a visitor on an arm, a minute of rates", "stiffness of the joints", "second flight"),
                   "air_table": ("the force of two impacts whose impulse is right and whose peak is wrong", "time of the touch", "second impact"),

@@ -388,7 +388,7 @@ def snare_rope(snare, root, folder):
     return stored_json("snare_rope.json", {"verdict_kind": result["verdict_kind"], "parameters": parameters})
 
 
-# The fits of a record file, by what is changed in them.
+# The fits of a record file and their settings.
 FITS = {"gauss_newton": (), "nelder_mead": ('fit.method="nelder_mead"',), "honda": ('fit.method="nelder_mead"', "fit.simplex_change=0.01")}
 
 
@@ -523,7 +523,7 @@ READING = {"left_open_N": r"leaves open of it: ([\d.]+) N", "place_mm": r"next r
 
 @maker(gallery("bench_to_odds.png"), results("next_reading.json"), relative=2e-2, long=True)
 def bench_to_odds(snare, root, folder):
-    """What one more reading on the bench tells of 2000 captures: picture and numbers; takes minutes."""
+    """The value of one more bench reading for the odds of 2000 captures: picture and numbers; takes minutes."""
     picture = folder / "odds.png"
     printed = run(["/usr/bin/python3", root / "examples/bench_to_odds.py", "data", picture], root, module_of(snare))
     numbers = {name: float(re.search(pattern, printed)[1]) for name, pattern in READING.items()}

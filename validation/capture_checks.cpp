@@ -156,7 +156,7 @@ std::vector<Row> payload_rows(const std::filesystem::path& data) {
 }
 
 // The visitor of 1.3 t and one of 13 t rigidized, the first also by wires, and the capture by an arm on an attachment that gives, with
-// strings. By a ball joint alone at a hundredth of the file's tolerances of bodies: what of the momentum is not accounted for follows these.
+// strings. With the ball joint alone the tolerances of bodies are a hundredth of the file's: the momentum error is proportional to them.
 std::vector<Row> visitor_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   const double speed = Eigen::Vector3d(0.0028, -0.009, -0.025).norm();
