@@ -318,10 +318,11 @@ LawWirePart::Action<S> LawWirePart::push(const std::array<FrameMotion<S>, 3>& fr
   a.touches = law.depth > 0.0;
   a.point = on.point;
   a.share = on.along_chord / on.span;
-  if (!a.touches || law.force.isZero(0.0)) return a;
-  a.acts = true;
-  a.energy = law.energy;
+  if (!a.touches) return a;
+  a.energy = law.energy;  // stored and lost also where the force is cut off at zero
   a.lost = law.lost;
+  if (law.force.isZero(0.0)) return a;
+  a.acts = true;
   const auto along = [&](Eigen::Index k) {
     const S by_place = lifted(law.force[k], law.by_place(k, 0), on.along_chord, law.by_place(k, 1), height);
     return S(by_place + lifted(0.0, law.by_rate[k], rate, 0.0, rate));

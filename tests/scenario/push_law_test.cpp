@@ -82,6 +82,20 @@ TEST(PushLaws, QuadraticHeadOn) {
   EXPECT_NEAR(r.energy.dissipated, 0.0, 1e-3 * 0.5 * 8.9 * 0.01);  // an elastic law gives all back
 }
 
+// What the law has stored up to where it is cut off stays stored there: a run that ends at 0.7 mm, between the zeros at 0.35 and 1.11 mm.
+TEST(PushLaws, KeepTheirEnergyWhereTheyAreCutOff) {
+  const NamedMotion run = air_table_with(
+      {"wires[wire].model=\"quadratic\"", "shapes[probe].position_mm=[0.0, 100.0, 0.0]",
+       "bodies[target].position_mm=[90.0, -88.0123, 0.0]", "bodies[target].velocity_m_s=[0.0, 0.02, 0.0]",
+       "duration_s=0.04", "solver.relative_tolerance=1e-7"});
+  const coupling::MotionResult r = coupling::simulate(run.motion, run.options);
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const double d = (1297.6 - std::sqrt(1297.6 * 1297.6 - 4.0 * 890183.0 * 0.3457)) / (2.0 * 890183.0);
+  const double stored = ((890183.0 / 3.0 * d - 1297.6 / 2.0) * d + 0.3457) * d;
+  EXPECT_NEAR(r.energy.strain, stored, 1e-9 * stored);
+  EXPECT_NEAR(r.energy.integrator, 0.0, 1e-3 * 0.5 * 8.9 * 0.02 * 0.02);
+}
+
 TEST(PushLaws, SayWhatIsWrong) {
   const test::WrongSetting wrong[] = {
       {"wires[wire].model=\"cubic\"", "wires[wire].model = \"cubic\", must be \"full\", \"quasi_static\""},
