@@ -108,25 +108,37 @@ std::string toml_text(std::string_view text) {
   return result + '"';
 }
 
-/// The change by which a file of a push or the like takes a column as what it is wanted for.
-std::string change(const FoundColumn& found, const CsvColumn& wanted) {
-  std::string text = fmt::format("columns = {{ {} = {} }}", toml_text(found.name), toml_text(wanted.meaning));
-  const auto asked = unit_in_name(wanted.meaning);
-  const auto unit = found.unit;
-  if (asked && unit && unit->quantity == asked->quantity && unit->si != asked->si)
-    text += fmt::format(", scale = {{ {} = {:.12g} }}", toml_text(found.name), unit->si / asked->si);
-  return text;
-}
+/// The keys of a push or the like by which it takes columns as what they are wanted for.
+class Changes {
+ public:
+  void add(const FoundColumn* found, const CsvColumn& wanted) {
+    const std::string name = found != nullptr ? toml_text(found->name) : "\"COLUMN\"";
+    columns_.push_back(fmt::format("{} = {}", name, toml_text(wanted.meaning)));
+    const auto asked = unit_in_name(wanted.meaning);
+    all_near_ = all_near_ && found != nullptr;
+    if (found == nullptr || !asked || !found->unit) return;
+    const NamedUnit& unit = *found->unit;
+    if (unit.quantity == asked->quantity && unit.si != asked->si)
+      scales_.push_back(fmt::format("{} = {:.12g}", name, unit.si / asked->si));
+  }
+  [[nodiscard]] std::string text() const {
+    if (columns_.empty()) return "";
+    const std::string scale = scales_.empty() ? "" : fmt::format(" and scale = {{ {} }}", fmt::join(scales_, ", "));
+    return fmt::format("; {} columns = {{ {} }}{}", all_near_ ? "if so, write" : "name it:", fmt::join(columns_, ", "),
+                       scale);
+  }
 
-std::string missing_column(const std::vector<FoundColumn>& there, const CsvColumn& wanted) {
+ private:
+  std::vector<std::string> columns_, scales_;
+  bool all_near_ = true;
+};
+
+std::string missing_column(const std::vector<FoundColumn>& there, const FoundColumn* near) {
   std::string text = "no such column; the file has ";
   const std::size_t shown = std::min(there.size(), most_shown);
   for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? ", " : "") + toml_text(there[i].name);
   if (shown < there.size()) text += fmt::format(" and {} more", there.size() - shown);
-  const FoundColumn* near = nearest(there, wanted);
-  if (wanted.meaning.empty()) return near == nullptr ? text : text + "; the nearest is " + toml_text(near->name);
-  if (near != nullptr) return text + "; if it is " + toml_text(near->name) + ", write " + change(*near, wanted);
-  return text + fmt::format("; name it: columns = {{ \"COLUMN\" = {} }}", toml_text(wanted.meaning));
+  return near == nullptr ? text : text + "; the nearest is " + toml_text(near->name);
 }
 
 /// The line that is most likely to be the header: the most columns that are near a wanted one, then the most cells.
@@ -228,13 +240,17 @@ std::vector<InputProblem> missing_columns(const std::string& file, const CsvLine
   const auto is_there = [&](const CsvColumn& wanted) {
     return std::ranges::any_of(header.columns, [&](const FoundColumn& f) { return f.name == wanted.name; });
   };
+  const bool nameless = lines.size() == 1 && holds_numbers(lines.front().second);
+  Changes changes;
   for (const CsvColumn& wanted : columns) {
     if (!is_required(wanted) || is_there(wanted)) continue;
-    std::string requirement = lines.size() == 1 && holds_numbers(lines.front().second)
-                                  ? "no such column; the first line that is not a comment must name the columns"
-                                  : missing_column(header.columns, wanted);
+    const FoundColumn* near = nearest(header.columns, wanted);
+    std::string requirement = nameless ? "no such column; the first line that is not a comment must name the columns"
+                                       : missing_column(header.columns, near);
     problems.push_back({file, header.line, wanted.name, "", std::move(requirement)});
+    if (!nameless && !wanted.meaning.empty()) changes.add(near, wanted);
   }
+  if (!problems.empty()) problems.back().requirement += changes.text();
   return problems;
 }
 

@@ -1,6 +1,7 @@
 #include "results/push_result.hpp"
-#include "results/in_mm.hpp"
 
+#include "identification/tracing/reading_findings.hpp"
+#include "results/in_mm.hpp"
 #include "results/warnings.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,12 @@ PushResult push(const identification::Experiment& experiment, const Watch& watch
         interrupted || result.predictions[k].curve.curve.report.termination == numerics::Termination::interrupted;
   }
   result.document["interrupted"] = interrupted;
-  result.document["warnings"] = push_warnings(experiment.series, result.predictions);
+  std::vector<std::string> warnings = push_warnings(experiment.series, result.predictions);
+  std::vector<std::vector<double>> forces;
+  for (const identification::Prediction& p : result.predictions) forces.push_back(p.force);
+  for (const identification::Finding& f : identification::sign_findings(experiment.series, forces, experiment.solver))
+    warnings.push_back(f.what);
+  result.document["warnings"] = warnings;
   return result;
 }
 

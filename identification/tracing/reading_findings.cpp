@@ -164,8 +164,8 @@ std::vector<Finding> sign_findings(const std::vector<Series>& series, const std:
                              100.0 * *against)
                : std::string();
     const std::string travels = "displacement_mm goes below zero only, where it should count along the push";
-    f.what = fmt::format("{}: {}{}{}; turn the sign of the readings round", key, down ? travels : "",
-                         down && turned ? ", and " : "", forces);
+    f.what = fmt::format("{}: {}{}{}; turn the sign of the readings round, in a file by scale = {{ \"COLUMN\" = -1 }}",
+                         key, down ? travels : "", down && turned ? ", and " : "", forces);
     findings.push_back(std::move(f));
   }
   return findings;

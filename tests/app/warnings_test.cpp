@@ -44,6 +44,17 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
       "series s: the curve runs along an unstable branch from a travel of ");
 }
 
+// Readings of the other sign are no misfit of the wire.
+TEST_F(Warnings, ForcesOfTheOtherSign) {
+  std::string text = experiment("");
+  text.replace(text.find("travel_mm = 1.0\npoints = 5\n"), 27, "file = \"s.csv\"\n");
+  write("x.toml", text);
+  write("s.csv", "displacement_mm,force_N\n0,0\n0.2,-0.2\n0.4,-0.4\n0.6,-0.7\n0.8,-1\n1,-1.4\n");
+  expect_said("", "series[s]: 100 % of the forces have the other sign than a wire that resists the push");
+  expect_said("--set 'series[s].scale={ displacement_mm = -1 }'",
+              "series[s]: displacement_mm goes below zero only, where it should count along the push");
+}
+
 // A pusher that is drawn back past first touch leaves the wire as it should.
 TEST_F(Warnings, AWithdrawnPusherIsNone) {
   write("x.toml", experiment(""));

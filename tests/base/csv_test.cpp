@@ -194,22 +194,21 @@ TEST(Csv, ExportsOfMachinesAreReadByTheirNames) {
   EXPECT_EQ(test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("Load", "Extension", 1.0)); }),
             "m.csv:3: Extension, is in mm, must be in a unit like that of force_N\n"
             "m.csv:3: Load, is in kN, must be in a unit like that of displacement_mm");
-  EXPECT_EQ(test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("displacement_mm", "force_N", 1.0)); }),
-            "m.csv:2: displacement_mm, no such column; the file has \"Time\", \"Extension\", \"Load\"; if it is "
-            "\"Extension\", "
-            "write columns = { \"Extension\" = \"displacement_mm\" }\n"
-            "m.csv:2: force_N, no such column; the file has \"Time\", \"Extension\", \"Load\"; if it is \"Load\", "
-            "write columns = { "
-            "\"Load\" = \"force_N\" }, scale = { \"Load\" = 1000 }");
+  EXPECT_EQ(
+      test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("displacement_mm", "force_N", 1.0)); }),
+      "m.csv:2: displacement_mm, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest is "
+      "\"Extension\"\n"
+      "m.csv:2: force_N, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest is \"Load\"; "
+      "if so, write columns = { \"Extension\" = \"displacement_mm\", \"Load\" = \"force_N\" } and "
+      "scale = { \"Load\" = 1000 }");
   EXPECT_EQ(test::refusal([&] {
               return parse_csv("m.csv", "displacement_m,Force_N\n1,2\n", renamed("displacement_mm", "force_N", 1.0));
             }),
-            "m.csv:1: displacement_mm, no such column; the file has \"displacement_m\", \"Force_N\"; if it is "
-            "\"displacement_m\", "
-            "write columns = { \"displacement_m\" = \"displacement_mm\" }, scale = { \"displacement_m\" = 1000 }\n"
-            "m.csv:1: force_N, no such column; the file has \"displacement_m\", \"Force_N\"; if it is \"Force_N\", "
-            "write columns = { "
-            "\"Force_N\" = \"force_N\" }");
+            "m.csv:1: displacement_mm, no such column; the file has \"displacement_m\", \"Force_N\"; the nearest is "
+            "\"displacement_m\"\n"
+            "m.csv:1: force_N, no such column; the file has \"displacement_m\", \"Force_N\"; the nearest is "
+            "\"Force_N\"; if so, write columns = { \"displacement_m\" = \"displacement_mm\", "
+            "\"Force_N\" = \"force_N\" } and scale = { \"displacement_m\" = 1000 }");
 }
 
 TEST(Csv, ListsTheFirstProblemsOnly) {
