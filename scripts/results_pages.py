@@ -99,6 +99,10 @@ def duration(seconds):
     return f"{number(seconds / size)} {unit}"
 
 
+def minutes(seconds):
+    return f"{seconds / 60:.1f} min" if seconds >= 60 else f"{seconds:.0f} s"
+
+
 def when(*contexts):
     dates = sorted({c["date"][:10] for c in contexts})
     machines = sorted({c["processor"] for c in contexts})
@@ -113,6 +117,17 @@ def set_up(stored):
     result = stored.json("set_up.json")
     rows = [[f"`{name}`", c["packages"], f"{c['download_MB']} MB", f"{c['disk_MB']} MB"] for name, c in result["commands"].items()]
     return table(["on a minimal Debian 12", "packages", "download", "on disk"], rows)
+
+
+@region
+def set_up_times(stored):
+    times = stored.json("set_up.json")["times"]
+    before, now = times["revisions"].values()
+    names = [("first result of `./run`", "./run", "first_result_s"), ("its whole call", "./run", "whole_s"),
+             ("processor time of that", "./run", "processor_s"), ("a second call", "./run again", "whole_s")]
+    rows = [[words, minutes(before[command][what] or before[command]["whole_s"]), minutes(now[command][what])]
+            for words, command, what in names]
+    return table([f"{times['date']}, {times['processors']} processors", *(f"`{r}`" for r in times["revisions"])], rows)
 
 
 @region

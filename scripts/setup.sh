@@ -159,7 +159,7 @@ snare_say_time() {
   snare_say "Building $snare_root/build/$preset: $steps compilations by $CMAKE_BUILD_PARALLEL_LEVEL processors," \
     "some $(((steps * snare_seconds_a_step / CMAKE_BUILD_PARALLEL_LEVEL + 59) / 60)) minutes."
 }
-snare_seconds_a_step=13  # processor seconds, the mean of the command's build; docs/decisions/0074-set-up.md
+snare_seconds_a_step=20  # processor seconds, the mean of the command's build; docs/results/speed.md
 
 # snare_build PRESET [TARGET...]: everything up to date, or status 1 with the compiler's messages above, or 2 where the set-up
 # failed.

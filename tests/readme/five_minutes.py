@@ -6,7 +6,7 @@ usage: five_minutes.py REPOSITORY SNARE
 Takes the marked blocks of a page in their order, in a folder that looks like the repository's (see readme_commands.py):
     <!-- test: run -->                    the commands of the block
     <!-- test: file NAME -->              the file as it stands
-    <!-- test: from TEXT on NAME -->      NAME has the block in place of everything from the line TEXT on
+    <!-- test: from TEXT on NAME -->      NAME has the block in place of everything from the line that begins with TEXT
 First README.md's commands to the trace of the starter files, then docs/tutorial.md from its first block, the published tests, to the trace of one's
 own wire; last the trace of docs/examples.md from Python, where the module was built. What counts is processor time, which does not depend on other work
 of the machine; wall-clock time is printed as well.
@@ -25,7 +25,7 @@ import time
 from readme_commands import commands, marked_blocks, prepare
 
 LIMIT = 300.0  # [s]
-MARKER = re.compile(r"^<!-- test: (?:(run)|file (\S+)|from (\S+) on (\S+)) -->\n```\w*\n(.*?)^```$", re.M | re.S)
+MARKER = re.compile(r"^<!-- test: (?:(run)|file (\S+)|from (.+?) on (\S+)) -->\n```\w*\n(.*?)^```$", re.M | re.S)
 
 
 def clocks():
@@ -50,6 +50,8 @@ def run(command, folder, page):
 def follow(page, name, folder):
     """Runs a page; returns the time to the first result of a file that the user has written."""
     begin, own, first = clocks(), False, None
+    if len(MARKER.findall(page)) != page.count("<!-- test: "):
+        raise SystemExit(f"{name}: a marker does not stand before a block, or says what is not known")
     for runs, file, text, edited, block in MARKER.findall(page):
         if runs:
             for command in commands(block):
@@ -61,9 +63,9 @@ def follow(page, name, folder):
             own = True
         else:
             whole = (folder / edited).read_text(encoding="utf-8")
-            if f"\n{text}\n" not in whole:
-                raise SystemExit(f"{name}: {edited} has no line {text}")
-            (folder / edited).write_text(whole.split(f"\n{text}\n", 1)[0] + "\n" + block, encoding="utf-8")
+            if f"\n{text}" not in whole:
+                raise SystemExit(f"{name}: {edited} has no line that begins with {text}")
+            (folder / edited).write_text(whole.split(f"\n{text}", 1)[0] + "\n" + block, encoding="utf-8")
     if first is None:
         raise SystemExit(f"{name}: no command runs a file of one's own")
     return first

@@ -1,0 +1,99 @@
+#include "identification/published/fit_ranges.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace snare::identification {
+
+namespace {
+
+/// Height over the chord to which a point of an inextensible wire can be pushed [m]: an ellipse about the mounts.
+double taut_height(const coupling::PushProblem& test) {
+  const double a = 0.5 * test.wire.length, c = 0.5 * test.mount.span, x = test.contact_position - c;
+  return std::sqrt(std::max(0.0, (a * a - c * c) * (1.0 - x * x / (a * a))));
+}
+
+}  // namespace
+
+std::string to_string(FitRange::Kind kind) {
+  switch (kind) {
+    case FitRange::Kind::common:
+      return "common";
+    case FitRange::Kind::taut_from_touch:
+      return "taut_from_touch";
+    case FitRange::Kind::taut_from_chord:
+      return "taut_from_chord";
+  }
+  return "";
+}
+
+FitCell fit_cell(const QuadraticLaw& law, double to, int readings) {
+  FitCell cell;
+  Eigen::MatrixXd powers(readings, 3);
+  Eigen::VectorXd parabola(readings);
+  for (int i = 0; i < readings; ++i) {
+    const double d = to * i / (readings - 1);
+    cell.travel.push_back(d);
+    powers.row(i) << d * d, d, 1.0;
+    parabola[i] = law.force(d);
+  }
+  cell.basis = quadratic_basis(cell.travel);
+  cell.log_scale = std::log(std::abs((cell.basis * powers).determinant()));
+  const double about_mean = (parabola.array() - parabola.mean()).square().sum();
+  cell.numbers = published_numbers(cell.basis * parabola, about_mean, law.r_squared, law.r_squared_digits);
+  cell.log_scatter = 0.5 * std::log(about_mean * (1.0 - law.r_squared) / law.r_squared / readings);
+  return cell;
+}
+
+FitRanges::FitRanges(const std::vector<Series>& series, const std::vector<double>& touch, const Options& options)
+    : options_(options), series_(series.size()) {
+  for (int i = 0; i < options.ranges; ++i) {
+    const double to = options.least * std::pow(options.most / options.least, i / (options.ranges - 1.0));
+    ranges_.push_back({FitRange::Kind::common, std::vector<double>(series_, to)});
+  }
+  FitRange from_touch{FitRange::Kind::taut_from_touch, {}}, from_chord{FitRange::Kind::taut_from_chord, {}};
+  for (std::size_t k = 0; k < series_; ++k) {
+    const double height = taut_height(series[k].test);
+    from_chord.to.push_back(height);
+    from_touch.to.push_back(height - touch[k]);
+  }
+  for (const FitRange& range : {from_touch, from_chord})
+    if (std::ranges::all_of(range.to, [](double to) { return to > 1e-4; })) ranges_.push_back(range);
+  std::vector<QuadraticLaw> laws;
+  for (const Series& s : series) laws.push_back(*s.law);
+  fill(laws);
+}
+
+void FitRanges::fill(const std::vector<QuadraticLaw>& laws) {
+  cells_.clear();
+  for (const FitRange& range : ranges_) {
+    for (const int readings : options_.readings) {
+      for (std::size_t k = 0; k < series_; ++k) cells_.push_back(fit_cell(laws[k], range.to[k], readings));
+    }
+  }
+}
+
+FitRanges FitRanges::of(const std::vector<QuadraticLaw>& laws) const {
+  FitRanges result = *this;
+  result.fill(laws);
+  return result;
+}
+
+double FitRanges::longest() const {
+  double most = 0.0;
+  for (const FitRange& range : ranges_) most = std::max(most, std::ranges::max(range.to));
+  return most;
+}
+
+double FitRanges::mass(std::size_t range, bool uniform) const {
+  const auto common = static_cast<std::size_t>(options_.ranges);
+  const double taut = ranges_.size() > common ? 0.5 : 0.0, counts = static_cast<double>(options_.readings.size());
+  if (range >= common) return taut / static_cast<double>(ranges_.size() - common) / counts;
+  double all = 0.0;
+  for (std::size_t i = 0; i < common; ++i) all += uniform ? ranges_[i].to[0] : 1.0;
+  return (1.0 - taut) * (uniform ? ranges_[range].to[0] : 1.0) / all / counts;
+}
+
+}  // namespace snare::identification

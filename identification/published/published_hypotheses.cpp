@@ -1,0 +1,67 @@
+#include "identification/published/published_map.hpp"
+
+namespace snare::identification {
+
+namespace {
+
+constexpr double mm = 1e-3, degree = 0.017453292519943295;
+
+PriorNumber logarithmic(const char* key, double lower, double upper) {
+  return {key, lower, upper, true};
+}
+PriorNumber even(const char* key, double half) {
+  return {key, -half, half, false};
+}
+
+const PriorNumber bending = logarithmic("wire.bending_stiffness_Nm2", 0.01, 2.0);
+const PriorNumber axial = logarithmic("wire.axial_stiffness_N", 0.005, 2.0);
+const PriorNumber length = even("wire.length_mm", 3.0 * mm);
+const PriorNumber mounts_give = logarithmic("mount_axial_compliance.compliance_m_N", 1e-7, 1e-4);
+const PriorNumber clamps_turn = logarithmic("mount_rotational_compliance.compliance_rad_Nm", 0.01, 10.0);
+const PriorNumber friction{"pusher.friction", 0.0, 0.6, false};
+
+PriorNumber slip(const char* key) {
+  return logarithmic(key, 0.5, 1000.0);
+}
+
+}  // namespace
+
+std::vector<Hypothesis> published_hypotheses() {
+  return {
+      {"declared", "the wire and the bench as declared", {}},
+      {"bending_stiffness", "another bending stiffness", {bending}},
+      {"axial_stiffness", "another axial stiffness", {axial}},
+      {"wire_length", "another length of the wire", {length}},
+      {"span", "another distance of the mounts", {even("mount.span_mm", 3.0 * mm)}},
+      {"contact_position", "the pusher stands elsewhere along the wire", {even("contact_position.shift_mm", 3.0 * mm)}},
+      {"push_misalignment", "the pusher moves askew", {even("pusher.misalignment_deg", 5.0 * degree)}},
+      {"mount_axial_compliance", "the mounts give way along the wire", {mounts_give}},
+      {"mount_rotational_compliance", "the clamps turn", {clamps_turn}},
+      {"mount_slip", "the wire slips in its left mount", {slip("mount_slip.tension_N")}},
+      {"mount_slip_right", "the wire slips in its right mount", {slip("mount_slip_right.tension_N")}},
+      {"clamp_slide", "the left mount slides", {slip("clamp_slide.tension_N")}},
+      {"clamp_slide_right", "the right mount slides", {slip("clamp_slide_right.tension_N")}},
+      {"clamp_slide_both", "both mounts slide", {slip("clamp_slide_both.tension_N")}},
+      {"contact_friction", "the pusher rubs", {friction}},
+      {"pusher_compliance", "the pusher gives way", {logarithmic("pusher.compliance_m_N", 1e-7, 1e-4)}},
+      {"force_gain", "the load cell reads another multiple", {logarithmic("reading.force_gain", 0.5, 2.0)}},
+      {"force_offset", "the load cell has another zero", {even("reading.force_offset_N", 2.0)}},
+      {"natural_curvature", "the wire is bent when it is free", {even("wire.natural_curvature_1_m", 5.0)}},
+      {"plasticity", "the wire yields", {logarithmic("plasticity.yield_stress_MPa", 1e8, 2e9)}},
+      {"pinned", "the ends turn freely", {}, [](coupling::PushProblem& p) { p.mount.kind = wire::MountKind::pinned; }},
+      {"inward",
+       "the push is against the bulge",
+       {},
+       [](coupling::PushProblem& p) { p.pusher.direction = coupling::PushDirection::inward; }},
+      {"rope", "the wire is a rope", {bending, axial}},
+      {"rope_of_another_length", "the wire is a rope of another length", {bending, axial, length}},
+      {"mounts_give_and_length", "the mounts give way, another length", {mounts_give, length}},
+      {"mounts_give_and_bending", "the mounts give way, another bending stiffness", {mounts_give, bending}},
+      {"mounts_give_and_turn", "the mounts give way and turn", {mounts_give, clamps_turn}},
+      {"mounts_give_and_friction", "the mounts give way, the pusher rubs", {mounts_give, friction}},
+      {"mounts_give_and_slip", "the mounts give way, the wire slips", {mounts_give, slip("mount_slip.tension_N")}},
+      {"slip_and_friction", "the wire slips, the pusher rubs", {slip("mount_slip.tension_N"), friction}},
+  };
+}
+
+}  // namespace snare::identification

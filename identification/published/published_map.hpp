@@ -1,0 +1,71 @@
+#pragma once
+
+#include "identification/fitting/experiment.hpp"
+#include "identification/fitting/model.hpp"
+#include "identification/published/fit_ranges.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace snare::identification {
+
+/// A number of a hypothesis with its prior, even between two values or in their logarithm.
+struct PriorNumber {
+  std::string key;
+  double lower = 0.0, upper = 0.0;  ///< in the number's SI unit; of ratios over the declared value
+  bool logarithmic = false;
+};
+
+/// How published fits may have come about: the declared test, with effects beside it. A zero of the travel a series is part of each.
+struct Hypothesis {
+  std::string name;     ///< "mount_axial_compliance"
+  std::string meaning;  ///< "the mounts give way along the wire"
+  std::vector<PriorNumber> numbers;
+  void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
+};
+/// The declared test; with each effect of the catalogue that published fits can show; with pairs of them; the rope; pinned ends; the inward push.
+[[nodiscard]] std::vector<Hypothesis> published_hypotheses();
+
+/// What a hypothesis makes of the published fits at one range and number of readings.
+struct MapCell {
+  std::size_t range = 0, readings = 0;
+  double log_evidence = 0.0;   ///< numbers, zeros and scatter integrated out [-]
+  double log_best = 0.0;       ///< largest over the numbers, zeros and scatter integrated out [-]
+  std::vector<double> values;  ///< of the numbers there, SI
+};
+struct HypothesisMap {
+  Hypothesis hypothesis;
+  std::vector<MapCell> cells;
+  std::vector<std::vector<double>> likely;  ///< numbers of the computed tests with most weight, the first of all
+  double log_evidence[2] = {
+      0.0, 0.0};  ///< ranges and numbers integrated out: ranges even in their logarithm, and in themselves
+  double probability[2] = {0.0, 0.0};  ///< among all hypotheses
+};
+
+/// How finely a map is made.
+struct MapOptions {
+  FitRanges::Options ranges;
+  int elements = 64;                        ///< of the computed wire
+  int first = 24, batch = 16, batches = 4;  ///< computed tests a number, see sample_by_importance
+  std::function<bool(const std::string& stage)> progress = {};
+};
+
+/// The evidence of every hypothesis over range and number of readings.                                      theory.md (I.33)
+[[nodiscard]] std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
+                                                       const std::vector<Hypothesis>& hypotheses,
+                                                       const MapOptions& options);
+
+/// P [-] that published fits which this hypothesis made, at its leading range and number of readings, are as far from it as these: by a
+/// parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers | parabolas, a scatter each), both over ranges and numbers
+/// of readings, the former also over `likely` numbers of the test. A multiple of 1 / (replicates + 1).
+[[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& ranges, const HypothesisMap& map,
+                                 const MapOptions& options, int replicates);
+
+/// The cell with most posterior mass, common ranges even in their logarithm.
+[[nodiscard]] const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges);
+
+/// Ranges for an experiment of published fits.
+[[nodiscard]] FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options);
+
+}  // namespace snare::identification
