@@ -10,6 +10,7 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
 #include "results/curves.hpp"
+#include "results/published_map.hpp"
 #include "results/trace_findings.hpp"
 #include "results/warnings.hpp"
 
@@ -297,6 +298,27 @@ bool has_laws(const Experiment& experiment) {
   return std::ranges::any_of(experiment.series, [](const Series& s) { return s.law.has_value(); });
 }
 
+/// How the published fits may have come about: the stored map that belongs to them, else a coarse one, which takes up to a minute; null
+/// where there are no published fits, or the run was interrupted.
+std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experiment, const Progress& progress,
+                                                       Console& console) {
+  if (!std::ranges::all_of(experiment.series, [](const Series& s) { return s.law.has_value(); })) return nullptr;
+  const std::filesystem::path stored = data_directory() / "published" / "published_static_map.json";
+  if (std::filesystem::exists(stored)) {
+    auto map = std::make_shared<nlohmann::json>(nlohmann::json::parse(base::read_text(stored)));
+    if (map->at("inputs") == published_inputs(experiment)) return map;
+  }
+  console.end_progress();
+  console.complain("no stored map of hypotheses belongs to these published fits: a coarse one is made");
+  identification::MapOptions options = identification::coarse_map();
+  options.progress = [&](const std::string& stage) { return progress("map of hypotheses: " + stage); };
+  const identification::FitRanges ranges = identification::fit_ranges(experiment, options);
+  const std::vector<identification::HypothesisMap> maps =
+      identification::published_map(experiment, ranges, identification::published_hypotheses(), options);
+  if (interrupted()) return nullptr;
+  return std::make_shared<nlohmann::json>(published_map_json(experiment, ranges, maps, {}, true));
+}
+
 /// Every verdict goes to `found` when it is known.
 void look_at_ranges(const Progress& progress, const std::function<void(const RangeVerdict&)>& found,
                     Reproduction& result) {
@@ -497,6 +519,11 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     }
   }
   say(fits_in_words(result));
+  if (!interrupted()) {
+    result.map = published_map_of(experiment, progress, console);
+    if (result.map) say(published_verdict(*result.map).headline);
+    finished.reached(result);
+  }
   if (!interrupted()) {
     look_at_ranges(
         progress,

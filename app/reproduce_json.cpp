@@ -3,6 +3,7 @@
 #include "app/commands.hpp"
 #include "app/report/plot.hpp"
 #include "results/in_mm.hpp"
+#include "results/published_map.hpp"
 #include "results/trace_findings.hpp"
 #include "results/trace_json.hpp"
 
@@ -112,6 +113,23 @@ json comparison_json(const identification::FitComparison& c) {
   return result;
 }
 
+/// How the published fits may have come about; the map of every range and number of readings stays in its file.
+void add_map(const Reproduction& reproduction, json& result) {
+  result["published"] = nullptr;
+  result["leading"] = nullptr;
+  result["map"] = json::array();
+  if (!reproduction.map) return;
+  const PublishedVerdict verdict = published_verdict(*reproduction.map);
+  result["published"] = {{"answer", to_string(verdict.answer)},
+                         {"headline", verdict.headline},
+                         {"coarse", reproduction.map->at("coarse")}};
+  for (json entry : reproduction.map->at("map")) {
+    entry.erase("by_range_and_readings");
+    if (entry["model"] == verdict.leading) result["leading"] = entry;
+    result["map"].push_back(std::move(entry));
+  }
+}
+
 json summary_json(const Reproduction& reproduction) {
   if (!reproduction.summary) return nullptr;
   const identification::SummaryStatistics& s = *reproduction.summary;
@@ -168,6 +186,7 @@ json reproduce_json(const Reproduction& reproduction) {
               {"verdicts", json::array()},
               {"models", json::array()},
               {"series", json::array()}};
+  add_map(reproduction, result);
   if (reproduction.trace) {
     result["trace"] = trace_json(experiment, *reproduction.trace);
     result["trace"].erase("series");

@@ -5,6 +5,7 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/experiment.hpp"
 #include "identification/published/published_map.hpp"
+#include "results/published_map.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,45 +14,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace {
-
 using namespace snare;
 using namespace snare::identification;
-
-double rounded(double value, double unit) {
-  return std::isfinite(value) ? std::round(value / unit) * unit : -1e9;
-}
-
-nlohmann::json mm_of(const FitRange& range) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const double to : range.to) all.push_back(rounded(1e3 * to, 1e-3));
-  return all;
-}
-
-nlohmann::json json_of(const HypothesisMap& map, const FitRanges& ranges) {
-  const MapCell& best = leading_cell(map, ranges);
-  nlohmann::json values = nlohmann::json::object();
-  nlohmann::json evidence(ranges.ranges().size(), nlohmann::json::array());
-  for (std::size_t j = 0; j < best.values.size(); ++j) values[map.hypothesis.numbers[j].key] = best.values[j];
-  for (const MapCell& c : map.cells) evidence[c.range].push_back(rounded(c.log_evidence, 0.01));
-  return {{"model", map.hypothesis.name},
-          {"meaning", map.hypothesis.meaning},
-          {"numbers", map.hypothesis.numbers.size()},
-          {"log_evidence", map.log_evidence},
-          {"probability", map.probability},
-          {"range", to_string(ranges.ranges()[best.range].kind)},
-          {"range_mm", mm_of(ranges.ranges()[best.range])},
-          {"readings", ranges.readings()[best.readings]},
-          {"values_SI", values},
-          {"by_range_and_readings", evidence}};
-}
-
-}  // namespace
 
 int main(int argc, char** argv) try {
   std::string file = SNARE_BENCHMARK_DATA "/experiments/published_static.toml", out;
@@ -66,13 +35,7 @@ int main(int argc, char** argv) try {
   app.add_option("--out", out);
   CLI11_PARSE(app, argc, argv);
   const Experiment experiment = read_experiment(file, parameters());
-  MapOptions options;
-  if (coarse) {
-    options.ranges.ranges = 9;
-    options.ranges.readings = {6, 13, 30, 68, 200};
-    options.elements = 32;
-    options.first = 12, options.batch = 8, options.batches = 2;
-  }
+  MapOptions options = coarse ? coarse_map() : MapOptions{};
   auto begin = std::chrono::steady_clock::now();
   std::string last;
   options.progress = [&](const std::string& name) {
@@ -89,22 +52,24 @@ int main(int argc, char** argv) try {
   std::vector<Hypothesis> hypotheses = published_hypotheses();
   if (!only.empty())
     std::erase_if(hypotheses, [&](const Hypothesis& h) { return std::ranges::find(only, h.name) == only.end(); });
-  nlohmann::json result{
-      {"schema", "snare-published-map/1"}, {"readings", ranges.readings()}, {"map", nlohmann::json::array()}};
-  for (const FitRange& r : ranges.ranges())
-    result["ranges"].push_back({{"range", to_string(r.kind)}, {"to_mm", mm_of(r)}});
-  for (const HypothesisMap& map : published_map(experiment, ranges, hypotheses, options)) {
-    nlohmann::json one = json_of(map, ranges);
-    if (replicates > 0 && map.probability[0] > 1e-3)
-      one["p"] = published_p(experiment, ranges, map, options, replicates);
-    fmt::print("{:<26} {:9.2f} {:9.2f}  {:.4f} {:.4f}  {} {:.1f} mm, {} readings, {}\n", map.hypothesis.name,
-               map.log_evidence[0], map.log_evidence[1], map.probability[0], map.probability[1],
-               one["range"].get<std::string>(), one["range_mm"][0].get<double>(), one["readings"].get<int>(),
-               one["values_SI"].dump());
-    if (one.contains("p")) fmt::print("    p = {:.3f}\n", one["p"].get<double>());
-    result["map"].push_back(one);
+  const std::vector<HypothesisMap> maps = published_map(experiment, ranges, hypotheses, options);
+  std::vector<std::optional<double>> p(maps.size());
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    constexpr double worth = 0.02;
+    if (replicates > 0 && maps[k].probability[0] > worth)
+      p[k] = published_p(experiment, ranges, maps[k], options, replicates);
   }
-  if (!out.empty()) base::write_text(out, result.dump(1) + "\n");
+  const nlohmann::json result = results::published_map_json(experiment, ranges, maps, p, coarse);
+  for (const nlohmann::json& one : result["map"])
+    fmt::print("{:<26} {:9.2f} {:9.2f}  {:.4f} {:.4f}  {} {:.1f} mm, {} readings, p {}, {:.0f} um/N, {}\n",
+               one["model"].get<std::string>(), one["log_evidence"][0].get<double>(),
+               one["log_evidence"][1].get<double>(), one["probability"][0].get<double>(),
+               one["probability"][1].get<double>(), one["range"].get<std::string>(), one["range_mm"].get<double>(),
+               one["readings"].get<int>(), one["p"].dump(), one["more_compliance_um_N"].get<double>(),
+               one["values"].dump());
+  const results::PublishedVerdict verdict = results::published_verdict(result);
+  fmt::print("{}: {}\n", to_string(verdict.answer), verdict.headline);
+  if (!out.empty()) base::write_text(out, result.dump() + "\n");
 } catch (const std::exception& error) {
   fmt::print(stderr, "{}\n", error.what());
   return 1;

@@ -165,6 +165,21 @@ def published_made(stored):
 
 
 @region
+def published_headline(stored):
+    return stored.json("reproduce.json")["published"]["headline"] + "\n"
+
+
+@region
+def published_map(stored):
+    entries = stored.json("../../data/published/published_static_map.json")["map"]
+    entries.sort(key=lambda e: -e["probability"][0])
+    rows = [[e["meaning"], number(e["probability"][0], 2), number(e["probability"][1], 2), number(e["range_mm"], 3), e["readings"],
+             "" if e["p"] is None else number(e["p"], 2), number(e["more_compliance_um_N"], 2)] for e in entries[:12]]
+    return table(["what differs from the declared test", "probability", "ranges even", "range [mm]", "readings", "p",
+                  "more compliance along the wire [um/N]"], rows)
+
+
+@region
 def published_curves(stored):
     result = stored.json("reproduce.json")
     names = [m["name"] for m in result["models"]]

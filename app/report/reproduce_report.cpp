@@ -4,6 +4,7 @@
 #include "app/report/report_words.hpp"
 #include "app/report/reproduce_plots.hpp"
 #include "app/report/reproduce_verdicts.hpp"
+#include "results/published_map.hpp"
 #include "results/trace_findings.hpp"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace snare::app {
 
@@ -90,6 +92,38 @@ std::string model_sentence(const Reproduction& result, const ReproducedModel& mo
   return fmt::format("The {}{} differs from the published force by {} N rms over {}, {}{}. {}", model.label, freedom,
                      measured(misfit->rmse), model.complete(result.experiment) ? "all positions" : "what was computed",
                      share_of(misfit->nrmse, "its range"), over_scatter, description);
+}
+
+/// How the published fits may have come about, by falling probability.
+void add_map(ReportPage& page, const Reproduction& result) {
+  if (!result.map) return;
+  using results::PublishedAnswer;
+  const results::PublishedVerdict verdict = results::published_verdict(*result.map);
+  page.heading("What the published fits show");
+  const bool good = verdict.answer == PublishedAnswer::explained;
+  page.callout(verdict.headline, good ? Tone::good : Tone::plain);
+  std::vector<nlohmann::json> entries = result.map->at("map");
+  std::ranges::stable_sort(entries, std::greater(),
+                           [](const nlohmann::json& e) { return e["probability"][0].get<double>(); });
+  Table table{
+      "Probability among all that were weighed, ranges of the fits even in their logarithm and even in themselves. "
+      "Range, readings and "
+      "numbers: the likeliest. p: that such a test gives published fits as far from it, ranges and readings fitted "
+      "too.",
+      {"What differs from the declared test"_text, "Probability"_number, "ranges even"_number, "Range [mm]"_number,
+       "Readings"_number, "p"_number, "More compliance along the wire [\u00b5m/N]"_number}};
+  constexpr std::size_t shown_rows = 12;
+  for (const nlohmann::json& e : entries) {
+    if (table.rows.size() == shown_rows) break;
+    const auto probability = [&](std::size_t prior) {
+      return format_significant(e["probability"][prior].get<double>(), 2);
+    };
+    table.rows.push_back({e["meaning"].get<std::string>(), probability(0), probability(1),
+                          format_significant(e["range_mm"].get<double>(), 3), std::to_string(e["readings"].get<int>()),
+                          e["p"].is_null() ? absent : format_significant(e["p"].get<double>(), 2),
+                          format_significant(e["more_compliance_um_N"].get<double>(), 2)});
+  }
+  page.table(table);
 }
 
 void add_summary(ReportPage& page, const Reproduction& result) {
@@ -204,6 +238,7 @@ void add_wire(ReportPage& page, const Reproduction& result) {
 std::string reproduce_report_html(const Reproduction& result, const std::string& version) {
   ReportPage page(result.experiment.title, result.experiment.source);
   page.doubts(result.warnings, result.interrupted);
+  add_map(page, result);
   add_summary(page, result);
   add_overview(page, result);
   add_error_table(page, result);

@@ -3,7 +3,10 @@
 #include "identification/fitting/published_fit.hpp"
 #include "identification/tracing/trace.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,6 +77,8 @@ struct Reproduction {
   std::optional<identification::SummaryStatistics> summary;    ///< of the best fit; none without published fits
   std::map<int, identification::SummaryStatistics> by_digits;  ///< the same with R2 printed to so many decimals
   std::vector<Adequacy> adequacy;
+  std::shared_ptr<const nlohmann::json>
+      map;                            ///< of how the fits may have come about, results/published_map.hpp; or null
   std::vector<std::string> warnings;  ///< what is doubtful about the models
   bool interrupted = false;           ///< this is a part of what was asked for
 

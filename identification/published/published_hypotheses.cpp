@@ -1,5 +1,8 @@
 #include "identification/published/published_map.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 namespace snare::identification {
 
 namespace {
@@ -27,41 +30,57 @@ PriorNumber slip(const char* key) {
 }  // namespace
 
 std::vector<Hypothesis> published_hypotheses() {
-  return {
-      {"declared", "the wire and the bench as declared", {}},
-      {"bending_stiffness", "another bending stiffness", {bending}},
-      {"axial_stiffness", "another axial stiffness", {axial}},
-      {"wire_length", "another length of the wire", {length}},
-      {"span", "another distance of the mounts", {even("mount.span_mm", 3.0 * mm)}},
-      {"contact_position", "the pusher stands elsewhere along the wire", {even("contact_position.shift_mm", 3.0 * mm)}},
-      {"push_misalignment", "the pusher moves askew", {even("pusher.misalignment_deg", 5.0 * degree)}},
-      {"mount_axial_compliance", "the mounts give way along the wire", {mounts_give}},
-      {"mount_rotational_compliance", "the clamps turn", {clamps_turn}},
-      {"mount_slip", "the wire slips in its left mount", {slip("mount_slip.tension_N")}},
-      {"mount_slip_right", "the wire slips in its right mount", {slip("mount_slip_right.tension_N")}},
-      {"clamp_slide", "the left mount slides", {slip("clamp_slide.tension_N")}},
-      {"clamp_slide_right", "the right mount slides", {slip("clamp_slide_right.tension_N")}},
-      {"clamp_slide_both", "both mounts slide", {slip("clamp_slide_both.tension_N")}},
-      {"contact_friction", "the pusher rubs", {friction}},
-      {"pusher_compliance", "the pusher gives way", {logarithmic("pusher.compliance_m_N", 1e-7, 1e-4)}},
-      {"force_gain", "the load cell reads another multiple", {logarithmic("reading.force_gain", 0.5, 2.0)}},
-      {"force_offset", "the load cell has another zero", {even("reading.force_offset_N", 2.0)}},
-      {"natural_curvature", "the wire is bent when it is free", {even("wire.natural_curvature_1_m", 5.0)}},
-      {"plasticity", "the wire yields", {logarithmic("plasticity.yield_stress_MPa", 1e8, 2e9)}},
-      {"pinned", "the ends turn freely", {}, [](coupling::PushProblem& p) { p.mount.kind = wire::MountKind::pinned; }},
-      {"inward",
-       "the push is against the bulge",
-       {},
-       [](coupling::PushProblem& p) { p.pusher.direction = coupling::PushDirection::inward; }},
-      {"rope", "the wire is a rope", {bending, axial}},
-      {"rope_of_another_length", "the wire is a rope of another length", {bending, axial, length}},
-      {"mounts_give_and_length", "the mounts give way, another length", {mounts_give, length}},
-      {"mounts_give_and_bending", "the mounts give way, another bending stiffness", {mounts_give, bending}},
-      {"mounts_give_and_turn", "the mounts give way and turn", {mounts_give, clamps_turn}},
-      {"mounts_give_and_friction", "the mounts give way, the pusher rubs", {mounts_give, friction}},
-      {"mounts_give_and_slip", "the mounts give way, the wire slips", {mounts_give, slip("mount_slip.tension_N")}},
-      {"slip_and_friction", "the wire slips, the pusher rubs", {slip("mount_slip.tension_N"), friction}},
+  const auto one = [](const char* name, const char* meaning, std::vector<PriorNumber> numbers = {},
+                      void (*change)(coupling::PushProblem&) = nullptr) {
+    const bool along = std::ranges::any_of(
+        numbers, [](const PriorNumber& n) { return n.key == axial.key || n.key == mounts_give.key; });
+    return Hypothesis{name, meaning, along ? along_the_wire : name, std::move(numbers), change};
   };
+  return {
+      one("declared", "wire and bench as declared"),
+      one("bending_stiffness", "another bending stiffness", {bending}),
+      one("axial_stiffness", "another axial stiffness", {axial}),
+      one("wire_length", "another length of the wire", {length}),
+      one("span", "another distance of the mounts", {even("mount.span_mm", 3.0 * mm)}),
+      one("contact_position", "the pusher stands elsewhere along the wire",
+          {even("contact_position.shift_mm", 3.0 * mm)}),
+      one("push_misalignment", "the pusher moves askew", {even("pusher.misalignment_deg", 5.0 * degree)}),
+      one("mount_axial_compliance", "the mounts give way along the wire", {mounts_give}),
+      one("mount_rotational_compliance", "the clamps turn", {clamps_turn}),
+      one("mount_slip", "the wire slips in its left mount", {slip("mount_slip.tension_N")}),
+      one("mount_slip_right", "the wire slips in its right mount", {slip("mount_slip_right.tension_N")}),
+      one("clamp_slide", "the left mount slides", {slip("clamp_slide.tension_N")}),
+      one("clamp_slide_right", "the right mount slides", {slip("clamp_slide_right.tension_N")}),
+      one("clamp_slide_both", "both mounts slide", {slip("clamp_slide_both.tension_N")}),
+      one("contact_friction", "the pusher rubs", {friction}),
+      one("pusher_compliance", "the pusher gives way", {logarithmic("pusher.compliance_m_N", 1e-7, 1e-4)}),
+      one("force_gain", "the load cell reads a multiple", {logarithmic("reading.force_gain", 0.5, 2.0)}),
+      one("force_offset", "the load cell has another zero", {even("reading.force_offset_N", 2.0)}),
+      one("natural_curvature", "the free wire is curved", {even("wire.natural_curvature_1_m", 5.0)}),
+      one("plasticity", "the wire yields", {logarithmic("plasticity.yield_stress_MPa", 1e8, 2e9)}),
+      one("pinned", "the ends turn freely", {},
+          [](coupling::PushProblem& p) { p.mount.kind = wire::MountKind::pinned; }),
+      one("inward", "the push is against the bulge", {},
+          [](coupling::PushProblem& p) { p.pusher.direction = coupling::PushDirection::inward; }),
+      one("rope", "the wire is a rope: both stiffnesses are others", {bending, axial}),
+      one("rope_of_another_length", "the wire is a rope of another length", {bending, axial, length}),
+      one("mounts_give_and_length", "the mounts give way, another length", {mounts_give, length}),
+      one("mounts_give_and_bending", "the mounts give way, another bending stiffness", {mounts_give, bending}),
+      one("mounts_give_and_turn", "the mounts give way and turn", {mounts_give, clamps_turn}),
+      one("mounts_give_and_friction", "the mounts give way, the pusher rubs", {mounts_give, friction}),
+      one("mounts_give_and_slip", "the mounts give way, the wire slips", {mounts_give, slip("mount_slip.tension_N")}),
+      one("slip_and_friction", "the wire slips, the pusher rubs", {slip("mount_slip.tension_N"), friction}),
+  };
+}
+
+double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis, const std::vector<double>& values) {
+  const wire::WireSpecification& wire = experiment.series.front().test.wire;
+  double more = 0.0;
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    if (hypothesis.numbers[j].key == mounts_give.key) more += 2.0 * values[j];
+    if (hypothesis.numbers[j].key == axial.key) more += wire.length / wire.axial_stiffness() * (1.0 / values[j] - 1.0);
+  }
+  return more;
 }
 
 }  // namespace snare::identification

@@ -243,6 +243,15 @@ double published_p(const Experiment& experiment, const FitRanges& ranges, const 
   return (1.0 + std::accumulate(as_far.begin(), as_far.end(), 0.0)) / (replicates + 1.0);
 }
 
+MapOptions coarse_map() {
+  MapOptions options;
+  options.ranges.ranges = 9;
+  options.ranges.readings = {6, 13, 30, 68, 200};
+  options.elements = 32;
+  options.first = 12, options.batch = 8, options.batches = 2;
+  return options;
+}
+
 FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options) {
   std::vector<Series> series = experiment.series;
   for (Series& s : series) s.test.travel = {0.0, 1e-4, 2e-4, 3e-4};

@@ -21,6 +21,7 @@ struct PriorNumber {
 struct Hypothesis {
   std::string name;     ///< "mount_axial_compliance"
   std::string meaning;  ///< "the mounts give way along the wire"
+  std::string family;   ///< of hypotheses that do the same to published fits: "along_the_wire"; else its own name
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
 };
@@ -51,10 +52,19 @@ struct MapOptions {
   std::function<bool(const std::string& stage)> progress = {};
 };
 
+/// A map within a minute of one core, for fits that no map is stored of.
+[[nodiscard]] MapOptions coarse_map();
+
 /// The evidence of every hypothesis over range and number of readings.                                      theory.md (I.33)
 [[nodiscard]] std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
                                                        const std::vector<Hypothesis>& hypotheses,
                                                        const MapOptions& options);
+
+/// Something gives along the wire: the family of the wire's own stretch and of its mounts.
+inline constexpr const char* along_the_wire = "along_the_wire";
+/// By how much more than declared, wire and mounts together [m/N]; 0 where the hypothesis has neither.
+[[nodiscard]] double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis,
+                                     const std::vector<double>& values);
 
 /// P [-] that published fits which this hypothesis made, at its leading range and number of readings, are as far from it as these: by a
 /// parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers | parabolas, a scatter each), both over ranges and numbers

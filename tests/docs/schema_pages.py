@@ -23,7 +23,7 @@ RESULTS = ["result_fields"]
 UNITS = {"mm": "mm", "m": "m", "deg": "deg", "N": "N", "Nm": "N m", "s": "s", "kg": "kg", "J": "J", "Hz": "Hz", "Nm2": "N m^2",
          "m_s": "m/s", "rad_s": "rad/s", "GPa": "GPa", "MPa": "MPa", "kg_m3": "kg/m^3", "kg_m2": "kg m^2", "N_m": "N/m", "Nm_rad": "N m/rad",
          "Nms_rad": "N m s/rad", "Ns_m": "N s/m", "m_s2": "m/s^2", "1_m": "1/m", "1_s": "1/s", "deg_s": "deg/s", "N_m2": "N/m^2", "s_m": "s/m",
-         "Ns": "N s", "Nms": "N m s", "N_mm": "N/mm", "mm_s": "mm/s", "m_N": "m/N", "rad_Nm": "rad/(N m)"}
+         "Ns": "N s", "Nms": "N m s", "N_mm": "N/mm", "mm_s": "mm/s", "m_N": "m/N", "um_N": "um/N", "rad_Nm": "rad/(N m)"}
 
 
 def unit_of(name):

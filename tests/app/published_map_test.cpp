@@ -1,0 +1,60 @@
+// What a map of hypotheses says in words, and to which published fits it belongs.
+
+#include "results/published_map.hpp"
+
+#include "identification/effects/catalogue.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace snare::results {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json entry(const char* model, const char* family, double log_even, double even, const json& p, double more) {
+  return {{"model", model},  {"meaning", model}, {"family", family}, {"probability", {log_even, even}}, {"p", p},
+          {"range_mm", 9.3}, {"readings", 13},   {"numbers", 1},     {"more_compliance_um_N", more}};
+}
+
+PublishedVerdict verdict_of(const std::vector<json>& entries) {
+  return published_verdict({{"map", entries}});
+}
+
+TEST(PublishedVerdict, HasDegrees) {
+  const char* along = identification::along_the_wire;
+  const auto shared =
+      verdict_of({entry("wire", along, 0.3, 0.4, 0.2, 24.2), entry("mounts", along, 0.66, 0.57, 0.31, 29.6),
+                  entry("slip", "slip", 0.04, 0.03, nullptr, 0.0)});
+  EXPECT_EQ(shared.answer, PublishedAnswer::explained);
+  EXPECT_EQ(shared.leading, "mounts");
+  EXPECT_THAT(shared.headline,
+              HasSubstr("something gives along the wire, by 24 to 30 micrometres a newton more than declared"));
+  EXPECT_THAT(shared.headline, HasSubstr("(96 % of what was weighed"));
+  EXPECT_THAT(shared.headline, HasSubstr("They cannot tell which: mounts (57 %); wire (30 %)"));
+  // Not under both priors; P not known or too small; nothing agrees; nobody leads.
+  EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.9, 0.5, 0.0), entry("b", "b", 0.01, 0.1, nullptr, 0.0)}).answer,
+            PublishedAnswer::most_likely);
+  EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.99, nullptr, 0.0)}).answer, PublishedAnswer::most_likely);
+  EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.99, 0.03, 0.0)}).answer, PublishedAnswer::most_likely);
+  EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.99, 0.005, 0.0)}).answer, PublishedAnswer::none_of_these);
+  EXPECT_EQ(verdict_of({entry("a", "a", 0.6, 0.4, 0.5, 0.0), entry("b", "b", 0.4, 0.6, 0.5, 0.0)}).answer,
+            PublishedAnswer::cannot_tell);
+}
+
+TEST(PublishedMap, BelongsToItsInputs) {
+  const auto read = [](const std::vector<base::Override>& changes) {
+    return published_inputs(identification::read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml",
+                                                            identification::parameters(), changes));
+  };
+  const std::string declared = read({});
+  EXPECT_EQ(read({{"solver.elements", "32"}}), declared);
+  EXPECT_EQ(read({{"series[s40].law.to_mm", "9.0"}}), declared);  // unknown to the map
+  EXPECT_NE(read({{"wire.length_mm", "180.1"}}), declared);
+  EXPECT_NE(read({{"mount.span_mm", "175.1"}}), declared);
+  EXPECT_NE(read({{"series[s40].law.C_N", "0.06"}}), declared);
+}
+
+}  // namespace
+}  // namespace snare::results
