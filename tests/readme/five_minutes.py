@@ -51,7 +51,7 @@ def follow(page, name, folder):
     """Runs a page; returns the time to the first result of a file that the user has written."""
     begin, own, first = clocks(), False, None
     if len(MARKER.findall(page)) != page.count("<!-- test: "):
-        raise SystemExit(f"{name}: a marker does not stand before a block, or says what is not known")
+        raise SystemExit(f"{name}: a marker does not stand before a block, or is unknown")
     for runs, file, text, edited, block in MARKER.findall(page):
         if runs:
             for command in commands(block):
