@@ -108,7 +108,7 @@ std::string toml_text(std::string_view text) {
   return result + '"';
 }
 
-/// The keys of a push or the like by which it takes columns as what they are wanted for.
+/// The keys by which an experiment assigns columns of a file to its quantities.
 class Changes {
  public:
   void add(const FoundColumn* found, const CsvColumn& wanted) {

@@ -106,16 +106,15 @@ std::string meaning_of(const Family& family) {
     least = std::min(least, more);
     most = std::max(most, more);
   }
-  return fmt::format("something gives along the wire, by {:.0f} to {:.0f} micrometres a newton more than declared",
+  return fmt::format("something gives along the wire, by some {:.0f} to {:.0f} micrometres a newton more than declared",
                      least, most);
 }
 
-/// Of members that share a family, how it is shared.
+/// The members of a family that count; the sampling does not settle how they share its probability.
 std::string members_of(const Family& family) {
   std::vector<std::string> all;
   for (const json& m : family.members)
-    if (probability(m) >= 0.02 * family.least())
-      all.push_back(fmt::format("{} ({})", m["meaning"].get<std::string>(), percent(probability(m))));
+    if (probability(m) >= 0.02 * family.least()) all.push_back(m["meaning"].get<std::string>());
   return fmt::format("{}", fmt::join(all, "; "));
 }
 
@@ -190,33 +189,30 @@ PublishedVerdict published_verdict(const json& map) {
   } else if (family.least() >= 0.5) {
     verdict.answer = PublishedAnswer::most_likely;
   }
-  const std::string what = meaning_of(family), sure = percent(family.least());
+  const std::string meaning = meaning_of(family);
+  const std::string sure = fmt::format("probability {} among {} explanations, over all ranges and numbers of readings",
+                                       percent(family.least()), map["map"].size());
   switch (verdict.answer) {
     case PublishedAnswer::explained:
-      verdict.headline = fmt::format(
-          "The published fits agree with the declared wire if {} ({} of what was weighed, whatever their range and "
-          "number of "
-          "readings).",
-          what, sure);
+      verdict.headline = fmt::format("The published fits agree with the declared wire if {} ({}).", meaning, sure);
       break;
     case PublishedAnswer::most_likely:
-      verdict.headline =
-          fmt::format("Most likely: {} ({} of what was weighed, over all ranges and numbers of readings).", what, sure);
+      verdict.headline = fmt::format("Most likely: {} ({}).", meaning, sure);
       break;
     case PublishedAnswer::none_of_these:
-      verdict.headline =
-          fmt::format("None of what was weighed agrees with the published fits; the nearest is: {}.", what);
+      verdict.headline = fmt::format("No explanation agrees with the published fits; the nearest is: {}.", meaning);
       break;
     case PublishedAnswer::cannot_tell:
       verdict.headline =
-          fmt::format("The published fits cannot tell; the likeliest of what was weighed is: {} ({}).", what, sure);
+          fmt::format("The published fits cannot tell; the likeliest explanation is: {} ({}).", meaning, sure);
       break;
   }
   const std::string fits =
       fmt::format("range {:.1f} mm, {} readings", leading["range_mm"].get<double>(), leading["readings"].get<int>());
   if (family.members.size() > 1)
     verdict.headline += fmt::format(
-        " They cannot tell which: {}; the range of the test, its largest force or one raw reading would tell more "
+        " They cannot tell which of these it is: {}; the range of the test, its largest force or one raw reading would "
+        "tell more "
         "(the likeliest rests on: {}{}).",
         members_of(family), fits, p.is_null() ? "" : fmt::format(", p = {:.2g}", p.get<double>()));
   else

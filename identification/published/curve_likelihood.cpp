@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Recorded forces of a zero: the coefficients of their parabola, and what lies off it.
+/// Recorded forces of a zero: the coefficients of their parabola, and the part off it.
 struct AtZero {
   Vector3d coefficients;
   double off = 0.0;  ///< q [N^2]

@@ -17,7 +17,7 @@ struct PriorNumber {
   bool logarithmic = false;
 };
 
-/// How published fits may have come about: the declared test, with effects beside it. A zero of the travel a series is part of each.
+/// How published fits may have come about: the declared test with further effects. A zero of the travel a series is part of each.
 struct Hypothesis {
   std::string name;     ///< "mount_axial_compliance"
   std::string meaning;  ///< "the mounts give way along the wire"

@@ -1,4 +1,4 @@
-// The evidence of published fits: integrals over numbers, zeros and what is not printed.
+// The evidence of published fits: integrals over numbers, zeros, ranges and numbers of readings.
 
 #include "identification/published/published_map.hpp"
 
