@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -101,19 +100,16 @@ std::vector<Prediction> curves_of(const Experiment& experiment, const std::vecto
   return result;
 }
 
-/// The experiment with its published fits taken to reach to `to` [m] and to rest on `readings` of them, evenly spread.
-Experiment with_range(Experiment experiment, double to, int readings) {
-  for (Series& s : experiment.series) {
-    if (!s.law) continue;
-    s.law->to = to;
+/// The experiment with its published fits taken to reach to `to` [mm], one a series, and to rest on `readings` each, evenly spread.
+Experiment with_ranges(Experiment experiment, const std::vector<double>& to_mm, int readings) {
+  for (std::size_t k = 0; k < experiment.series.size(); ++k) {
+    Series& s = experiment.series[k];
+    s.law->to = 1e-3 * to_mm.at(k);
     s.test.travel.clear();
-    for (int i = 0; i < readings; ++i) s.test.travel.push_back(to * i / (readings - 1));
+    for (int i = 0; i < readings; ++i) s.test.travel.push_back(s.law->to * i / (readings - 1));
   }
   return experiment;
 }
-
-/// Readings that a published fit is taken to rest on where nothing else is said.
-constexpr int usual_readings = 20;
 
 /// On fewer edges, for fits that are only compared: 1e-4 of the force.
 Experiment coarse(Experiment experiment) {
@@ -132,59 +128,6 @@ Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free,
   return identification::trace(experiment, options);
 }
 
-/// Sets of fewer numbers than the file frees: of a number that every series has for itself none, one for all, one for all
-/// but one; then those that it frees.
-std::vector<std::vector<std::string>> number_sets(const Experiment& experiment) {
-  std::vector<std::string> shared, own;
-  std::string key;
-  for (const std::string& name : experiment.free) {
-    const std::size_t end = name.find("].");
-    if (!name.starts_with("series[") || end == std::string::npos) {
-      shared.push_back(name);
-      continue;
-    }
-    own.push_back(name);
-    key = name.substr(end + 2);
-  }
-  std::vector<std::vector<std::string>> sets;
-  if (!own.empty()) {
-    sets.push_back(shared);
-    std::vector<std::string> common = shared;
-    common.push_back(key);
-    sets.push_back(common);
-    for (const std::string& name : own) {
-      sets.push_back(common);
-      sets.back().push_back(name);
-    }
-  }
-  sets.push_back(experiment.free);
-  std::erase_if(sets, [](const std::vector<std::string>& set) { return set.empty(); });
-  return sets;
-}
-
-/// Those of the fitted settings that belong to `numbers`; of a number for all series that had been one each, their mean; the
-/// declared value of any other.
-std::vector<identification::Setting> starts_of(const Experiment& experiment, const std::vector<std::string>& numbers,
-                                               const std::vector<identification::Setting>& fitted) {
-  const identification::Model model(experiment.series, experiment.solver);
-  std::vector<identification::Setting> result;
-  for (const std::string& name : numbers) {
-    const identification::Parameter& parameter = identification::parameters().at(name);
-    const double declared = model.declared(parameter);
-    identification::Setting start{&parameter, parameter.coordinate(declared, declared)};
-    double sum = 0.0;
-    double count = 0.0;
-    for (const identification::Setting& s : fitted) {
-      if (s.parameter != &parameter && !s.parameter->key.ends_with("]." + name)) continue;
-      sum += s.coordinate;
-      count += 1.0;
-    }
-    if (count > 0.0) start.coordinate = sum / count;
-    result.push_back(start);
-  }
-  return result;
-}
-
 /// The published fits against one wire whose numbers are fitted to them, from these settings; no replicates: no bootstrap.
 identification::SummaryStatistics refitted(const Experiment& experiment,
                                            const std::vector<identification::Setting>& start, std::size_t free,
@@ -200,57 +143,6 @@ identification::SummaryStatistics refitted(const Experiment& experiment,
       {.scatter = experiment.published_scatter, .replicates = replicates, .bootstrap = replicates > 0});
 }
 
-/// Keys of the fitted numbers of a wire, and their fitted settings.
-struct NumbersFit {
-  std::vector<std::string> numbers;
-  std::vector<identification::Setting> settings;
-  double deviance = std::numeric_limits<double>::infinity();
-};
-
-/// For every count of numbers the set that fits best. Fits are begun at the traced numbers and at the answer with fewer
-/// numbers, the first at that of a tracing of its own.
-std::vector<NumbersFit> best_sets(const Experiment& experiment, const std::vector<identification::Setting>& traced,
-                                  const Progress& progress) {
-  std::vector<NumbersFit> best;
-  std::vector<identification::Setting> fewer;
-  for (const std::vector<std::string>& numbers : number_sets(experiment)) {
-    const Progress here = [&](const std::string& stage) {
-      return progress(fmt::format("{} numbers: {}", numbers.size(), stage));
-    };
-    if (best.empty() && numbers != experiment.free) fewer = fit_of(experiment, numbers, here).final_settings;
-    NumbersFit one{numbers, {}};
-    for (const std::vector<identification::Setting>& from : {traced, fewer}) {
-      if (interrupted() || !here("fit")) return best;
-      const auto fit = refitted(experiment, starts_of(experiment, numbers, from), numbers.size(), 0);
-      if (fit.p > 0.0 && fit.chi2 < one.deviance) one = {numbers, fit.settings, fit.chi2};
-    }
-    if (one.settings.empty()) continue;
-    if (best.empty() || best.back().numbers.size() != numbers.size())
-      best.push_back(one);
-    else if (one.deviance < best.back().deviance)
-      best.back() = one;
-    fewer = best.back().settings;
-  }
-  return best;
-}
-
-/// How well one wire with the numbers that the file frees does, and with fewer of them, for every number of the lost
-/// readings. Which set of as many numbers is best is asked at the usual number of readings.
-void add_adequacy(const Experiment& experiment, double to, const std::vector<identification::Setting>& traced,
-                  const Progress& progress, std::vector<Adequacy>& all) {
-  for (const NumbersFit& best : best_sets(coarse(with_range(experiment, to, usual_readings)), traced, progress)) {
-    std::vector<identification::Setting> start = best.settings;
-    const std::size_t count = best.numbers.size();
-    for (const int readings : {usual_readings, 10, 40, 100}) {
-      if (interrupted() || !progress(fmt::format("{} numbers, {} readings", count, readings))) return;
-      constexpr int replicates = 299;  // P of 1 % to half of itself: one of many rows
-      const auto fit = refitted(coarse(with_range(experiment, to, readings)), start, count, replicates);
-      start = fit.settings;
-      all.push_back({to, readings, best.numbers, fit.chi2, fit.dof, fit.p});
-    }
-  }
-}
-
 /// The statistics as they would be with R2 rounded to four decimals and to three.
 std::map<int, identification::SummaryStatistics> by_digits(const Experiment& experiment, const Trace& fitted) {
   std::map<int, identification::SummaryStatistics> result;
@@ -264,38 +156,6 @@ std::map<int, identification::SummaryStatistics> by_digits(const Experiment& exp
         refitted(rounded, fitted.final_settings, fitted.final.numbers.size(), identification::published_replicates);
   }
   return result;
-}
-
-/// What the tracing says when the unprinted range of the fits is taken to be another one.
-RangeVerdict verdict_at(const Experiment& experiment, double to, const Progress& progress,
-                        std::vector<Adequacy>& adequacy) {
-  const Experiment other = with_range(experiment, to, usual_readings);
-  RangeVerdict result;
-  result.to = to;
-  result.numbers = experiment.free.size();
-  identification::TraceOptions tracing;
-  tracing.intervals = false;
-  tracing.progress = progress;
-  const Trace traced = identification::trace(other, tracing);
-  add_adequacy(experiment, to, traced.final_settings, progress, adequacy);
-  if (!traced.report.usable()) {
-    result.verdict = "not computed: " + traced.report.message;
-    return result;
-  }
-  result.within_scatter = true;
-  for (std::size_t k = 0; k < other.series.size(); ++k) {
-    const Series& s = other.series[k];
-    if (!s.law) continue;
-    const RangeVerdict::Fit& fit = result.fit[s.name] = {traced.base.series_rmse[k], s.law->scatter()};
-    result.within_scatter = result.within_scatter && fit.rmse <= fit.scatter;
-  }
-  result.verdict = verdict(traced);
-  result.tracing = {traced.selected, traced.explained, traced.base.chi2_dof, traced.final.chi2_dof};
-  return result;
-}
-
-bool has_laws(const Experiment& experiment) {
-  return std::ranges::any_of(experiment.series, [](const Series& s) { return s.law.has_value(); });
 }
 
 /// How the published fits may have come about: the stored map that belongs to them, else a coarse one, which takes up to a minute; null
@@ -319,19 +179,31 @@ std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experim
   return std::make_shared<nlohmann::json>(published_map_json(experiment, ranges, maps, {}, true));
 }
 
-/// Every verdict goes to `found` when it is known.
-void look_at_ranges(const Progress& progress, const std::function<void(const RangeVerdict&)>& found,
-                    Reproduction& result) {
-  const Experiment& experiment = result.experiment;
-  if (!has_laws(experiment)) return;
-  for (const double to : {3e-3, 4e-3, 5e-3, 18e-3}) {  // the last near the geometric limit
-    if (interrupted()) return;
-    const Progress here = [&](const std::string& stage) {
-      return progress(fmt::format("range {:g} mm: {}", 1e3 * to, stage));
-    };
-    result.verdicts.push_back(verdict_at(experiment, to, here, result.adequacy));
-    found(result.verdicts.back());
+/// The leading explanation of the map, computed anew at its ranges and number of readings: values and P beside those of the map.
+std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nlohmann::json& map) {
+  const std::string leading = published_verdict(map).leading;
+  const auto& entries = map.at("map");
+  const auto entry = std::ranges::find_if(entries, [&](const nlohmann::json& e) { return e["model"] == leading; });
+  const std::vector<identification::Hypothesis> all = identification::published_hypotheses();
+  const auto hypothesis =
+      std::ranges::find_if(all, [&](const identification::Hypothesis& h) { return h.name == leading; });
+  if (entry == entries.end() || hypothesis == all.end()) return std::nullopt;
+  experiment = with_ranges(std::move(experiment), (*entry)["to_mm"].get<std::vector<double>>(), (*entry)["readings"]);
+  experiment = coarse(std::move(experiment));
+  if (hypothesis->change != nullptr)
+    for (Series& s : experiment.series) hypothesis->change(s.test);
+  const identification::Model model(experiment.series, experiment.solver);
+  std::vector<identification::Setting> start;
+  for (const auto& [key, value] : (*entry)["values"].items()) {
+    const identification::Parameter& p = identification::parameters().at(key);
+    start.push_back({&p, p.coordinate(model.declared(p), value.get<double>() * p.unit_size)});
   }
+  for (const Series& s : experiment.series)
+    start.push_back({&identification::parameters().at("series[" + s.name + "].reading.displacement_offset_mm"), 0.0});
+  const auto fit = refitted(experiment, start, start.size(), identification::published_replicates);
+  RefittedLeader result{leading, fit.p, {}};
+  for (const identification::Setting& s : fit.settings) result.values[s.parameter->key] = model.shown(s);
+  return result;
 }
 
 /// The wire, mounts and pusher exactly as the experiment file declares them.
@@ -430,9 +302,8 @@ void write_files(const CommonOptions& options, Reproduction& result) {
 std::string partial_words(const Reproduction& result) {
   std::string models;
   for (const ReproducedModel& model : result.models) models += (models.empty() ? "" : ", ") + model.label;
-  return fmt::format(
-      "interrupted: what was finished is kept and marked as a part (models: {}; tracing: {}; other ranges: {})", models,
-      result.trace ? "finished" : "none", result.verdicts.size());
+  return fmt::format("interrupted: what was finished is kept and marked as a part (models: {}; tracing: {})", models,
+                     result.trace ? "finished" : "none");
 }
 
 /// What of a reproduction is whole, for an interruption that comes while the next part is under way.
@@ -521,14 +392,11 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
   say(fits_in_words(result));
   if (!interrupted()) {
     result.map = published_map_of(experiment, progress, console);
-    if (result.map) say(published_verdict(*result.map).headline);
+    if (result.map) {
+      say(published_verdict(*result.map).headline);
+      result.leader = leading_refitted(experiment, *result.map);
+    }
     finished.reached(result);
-  }
-  if (!interrupted()) {
-    look_at_ranges(
-        progress,
-        [&](const RangeVerdict& v) { say(fmt::format("if the fits reach to {:g} mm: {}", 1e3 * v.to, v.verdict)); },
-        result);
   }
   console.end_progress();
   begin_writing();

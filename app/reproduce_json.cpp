@@ -87,22 +87,6 @@ json model_json(const identification::Experiment& experiment, const ReproducedMo
           {"free", model.free}};
 }
 
-json verdict_json(const RangeVerdict& v) {
-  json fit = json::object();
-  for (const auto& [name, one] : v.fit) fit[name] = {{"rmse_N", one.rmse}, {"scatter_N", one.scatter}};
-  json result{{"to_mm", in_mm(v.to)},
-              {"fit", fit},
-              {"numbers", v.numbers},
-              {"within_scatter", v.within_scatter},
-              {"verdict", v.verdict}};
-  if (v.tracing) {
-    result["selected"] = v.tracing->selected;
-    result["explained"] = v.tracing->explained;
-    result["chi2_dof"] = {{"base", v.tracing->base_chi2_dof}, {"final", v.tracing->final_chi2_dof}};
-  }
-  return result;
-}
-
 json comparison_json(const identification::FitComparison& c) {
   json result{
       {"chi2", c.chi2}, {"R2_published", c.published_r2}, {"R2_computed", c.computed_r2}, {"scatter_N", c.scatter}};
@@ -128,6 +112,8 @@ void add_map(const Reproduction& reproduction, json& result) {
     if (entry["model"] == verdict.leading) result["leading"] = entry;
     result["map"].push_back(std::move(entry));
   }
+  if (const auto& leader = reproduction.leader; leader && !result["leading"].is_null())
+    result["leading"]["recomputed"] = {{"p", leader->p}, {"values", leader->values}};
 }
 
 json summary_json(const Reproduction& reproduction) {
@@ -138,29 +124,14 @@ json summary_json(const Reproduction& reproduction) {
   for (const Series& one : reproduction.experiment.series) {
     if (one.law && at < s.series.size()) series[one.name] = comparison_json(s.series[at++]);
   }
-  json adequacy = json::array();
-  for (const Adequacy& a : reproduction.adequacy) {
-    adequacy.push_back({{"to_mm", in_mm(a.to)},
-                        {"readings", a.readings},
-                        {"numbers", a.numbers.size()},
-                        {"keys", a.numbers},
-                        {"chi2", a.chi2},
-                        {"dof", a.dof},
-                        {"p", a.p}});
-  }
   json by_digits = json::array();
   for (const auto& [digits, one] : reproduction.by_digits) {
     by_digits.push_back({{"R2_digits", digits}, {"chi2", one.chi2}, {"dof", one.dof}, {"p", one.p}});
   }
-  return {{"chi2", s.chi2},
-          {"chi2_coefficients", s.coefficients},
-          {"dof", s.dof},
-          {"numbers", s.numbers},
-          {"p", s.p},
-          {"scatter_N", s.scatter},
-          {"series", series},
-          {"by_R2_digits", by_digits},
-          {"adequacy", adequacy}};
+  return {{"chi2", s.chi2},   {"chi2_coefficients", s.coefficients},
+          {"dof", s.dof},     {"numbers", s.numbers},
+          {"p", s.p},         {"scatter_N", s.scatter},
+          {"series", series}, {"by_R2_digits", by_digits}};
 }
 
 }  // namespace
@@ -183,7 +154,6 @@ json reproduce_json(const Reproduction& reproduction) {
                 {"axial_stiffness_N", test.wire.axial_stiffness()}}},
               {"summary_statistics", summary_json(reproduction)},
               {"trace", nullptr},
-              {"verdicts", json::array()},
               {"models", json::array()},
               {"series", json::array()}};
   add_map(reproduction, result);
@@ -191,7 +161,6 @@ json reproduce_json(const Reproduction& reproduction) {
     result["trace"] = trace_json(experiment, *reproduction.trace);
     result["trace"].erase("series");
   }
-  for (const RangeVerdict& v : reproduction.verdicts) result["verdicts"].push_back(verdict_json(v));
   for (const ReproducedModel& model : reproduction.models) result["models"].push_back(model_json(experiment, model));
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     result["series"].push_back(series_json(reproduction, k));

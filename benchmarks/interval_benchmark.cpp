@@ -1,5 +1,5 @@
 // How often the intervals of sweeps contain the truth: subset simulations, shares of hits and Sobol indices of functions with closed forms.
-//   interval_benchmark [--studies N] [--out FILE]
+//   interval_benchmark [--studies N] [--first SEED] [--out FILE]
 // Intervals are said to be of 95 %; those of shares hold at least that often.
 
 #include "base/files.hpp"
@@ -14,13 +14,13 @@ using nlohmann::json;
 
 namespace {
 
-json subsets(int studies) {
+json subsets(const benchmarks::Seeds& seeds) {
   constexpr std::uint64_t cases = 1000;
   json all = json::array();
   for (const double probability : {1e-2, 1e-4, 1e-6}) {
     for (const benchmarks::LimitFunction& smooth : benchmarks::limit_functions(probability)) {
       for (const benchmarks::LimitFunction& limit : {smooth, benchmarks::yes_or_no(smooth)}) {
-        const double held = benchmarks::subset_coverage(limit, cases, studies).share();
+        const double held = benchmarks::subset_coverage(limit, cases, seeds).share();
         fmt::print("subset, {}, P = {:g}: {:.3f}\n", limit.name, probability, held);
         all.push_back({{"limit", limit.name}, {"probability", probability}, {"cases", cases}, {"held", held}});
       }
@@ -29,7 +29,7 @@ json subsets(int studies) {
   return all;
 }
 
-json shares(int studies) {
+json shares(const benchmarks::Seeds& seeds) {
   constexpr std::uint64_t cases = 1000;
   json all = json::array();
   using study::DesignKind;
@@ -37,7 +37,7 @@ json shares(int studies) {
        {std::pair{"latin_hypercube", DesignKind::latin_hypercube}, std::pair{"sobol", DesignKind::sobol}}) {
     for (const double probability : {1e-1, 1e-2, 1e-4}) {
       for (const benchmarks::LimitFunction& limit : benchmarks::limit_functions(probability)) {
-        const double held = benchmarks::share_coverage(limit, kind, cases, studies).share();
+        const double held = benchmarks::share_coverage(limit, kind, cases, seeds).share();
         fmt::print("share, {}, {}, P = {:g}: {:.3f}\n", name, limit.name, probability, held);
         all.push_back({{"design", name}, {"limit", limit.name}, {"probability", probability}, {"held", held}});
       }
@@ -46,13 +46,13 @@ json shares(int studies) {
   return all;
 }
 
-json indices(int studies) {
+json indices(const benchmarks::Seeds& seeds) {
   json all = json::array();
   const std::vector<double> a{0.0, 1.0, 4.5, 9.0, 99.0, 99.0};
   for (const benchmarks::IndexFunction& f :
        {benchmarks::ishigami(), benchmarks::g_function(a), benchmarks::box(0.1, 2), benchmarks::box(0.01, 2)}) {
     for (const std::uint64_t rows : {256u, 1024u, 4096u}) {
-      const benchmarks::IndexCoverage c = benchmarks::index_coverage(f, rows, studies);
+      const benchmarks::IndexCoverage c = benchmarks::index_coverage(f, rows, seeds);
       if (c.first.studies == 0) continue;
       fmt::print("Sobol, {}, {} rows: {:.3f} {:.3f}\n", f.name, rows, c.first.share(), c.total.share());
       all.push_back({{"function", f.name},
@@ -70,14 +70,16 @@ json indices(int studies) {
 
 int main(int argc, char** argv) {
   CLI::App app{"coverage of the intervals of sweeps"};
-  int studies = 400;
+  benchmarks::Seeds seeds;
   std::string out;
-  app.add_option("--studies", studies, "studies a row, with seeds from 1")->check(CLI::Range(1, 100000));
+  app.add_option("--studies", seeds.count, "studies a row, one a seed")->check(CLI::Range(1, 100000));
+  app.add_option("--first", seeds.first, "the first seed")->check(CLI::Range(1, 1000000));
   app.add_option("--out", out, "file for the result");
   CLI11_PARSE(app, argc, argv);
-  const json result{{"studies", studies},
-                    {"subset", subsets(studies)},
-                    {"shares", shares(studies)},
-                    {"sobol_indices", indices(studies)}};
+  const json result{{"studies", seeds.count},
+                    {"first_seed", seeds.first},
+                    {"subset", subsets(seeds)},
+                    {"shares", shares(seeds)},
+                    {"sobol_indices", indices(seeds)}};
   if (!out.empty()) base::write_text(out, result.dump(1) + "\n");
 }

@@ -65,6 +65,13 @@ inline study::SubsetSimulation simulated(const LimitFunction& limit, std::uint64
   return simulation;
 }
 
+/// Seeds of studies: `count` of them from `first` on, both >= 1.
+struct Seeds {
+  int first = 1;
+  int count = 400;
+  [[nodiscard]] int end() const { return first + count; }
+};
+
 /// How many of so many studies have the truth in an interval, and how many gave one at all.
 struct Coverage {
   int held = 0;
@@ -80,21 +87,22 @@ inline bool contains(const study::ProbabilityInterval& interval, double probabil
   return interval.low <= probability && probability <= interval.high;
 }
 
-/// Subset simulations with seeds from 1.
-inline Coverage subset_coverage(const LimitFunction& limit, std::uint64_t cases, int studies) {
+/// Subset simulations.
+inline Coverage subset_coverage(const LimitFunction& limit, std::uint64_t cases, const Seeds& seeds) {
   Coverage coverage;
-  for (int seed = 1; seed <= studies; ++seed)
+  for (int seed = seeds.first; seed < seeds.end(); ++seed)
     coverage.add(contains(simulated(limit, cases, static_cast<std::uint64_t>(seed)).interval(), limit.probability));
   return coverage;
 }
 
 /// The share of hits of a design of independent standard normal variables.
-inline Coverage share_coverage(const LimitFunction& limit, study::DesignKind kind, std::uint64_t cases, int studies) {
+inline Coverage share_coverage(const LimitFunction& limit, study::DesignKind kind, std::uint64_t cases,
+                               const Seeds& seeds) {
   Coverage coverage;
   std::vector<study::Variable> variables;
   for (std::size_t j = 0; j < limit.dimension; ++j)
     variables.push_back({"z", {"z"}, {}, {study::Distribution::Shape::normal, 0.0, 1.0}});
-  for (int seed = 1; seed <= studies; ++seed) {
+  for (int seed = seeds.first; seed < seeds.end(); ++seed) {
     const study::Design design(variables, {.kind = kind, .cases = cases, .seed = static_cast<std::uint64_t>(seed)});
     std::uint64_t hits = 0;
     for (std::uint64_t k = 0; k < cases; ++k) hits += limit.margin(design.values(k)) >= 0.0 ? 1 : 0;
@@ -162,15 +170,15 @@ inline study::SobolIndices indices_of(const IndexFunction& f, std::uint64_t rows
   return study::sobol_indices(variables.size(), rows, [&](std::uint64_t k) { return f.value(design.values(k)); });
 }
 
-/// All first indices and all total indices of studies with seeds from 1; studies without indices do not count.
+/// All first indices and all total indices of studies; studies without indices do not count.
 struct IndexCoverage {
   Coverage first, total;
   double half = 0.0;  ///< mean half interval of the first indices
 };
-inline IndexCoverage index_coverage(const IndexFunction& f, std::uint64_t rows, int studies) {
+inline IndexCoverage index_coverage(const IndexFunction& f, std::uint64_t rows, const Seeds& seeds) {
   IndexCoverage coverage;
   constexpr double round_off = 1e-12;
-  for (int seed = 1; seed <= studies; ++seed) {
+  for (int seed = seeds.first; seed < seeds.end(); ++seed) {
     const study::SobolIndices found = indices_of(f, rows, static_cast<std::uint64_t>(seed));
     for (std::size_t j = 0; j < found.of.size(); ++j) {
       const study::SobolIndex& s = found.of[j];

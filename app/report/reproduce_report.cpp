@@ -2,8 +2,8 @@
 
 #include "app/report/report_page.hpp"
 #include "app/report/report_words.hpp"
+#include "app/report/reproduce_evidence.hpp"
 #include "app/report/reproduce_plots.hpp"
-#include "app/report/reproduce_verdicts.hpp"
 #include "results/published_map.hpp"
 #include "results/trace_findings.hpp"
 
@@ -53,8 +53,9 @@ std::optional<double> overall_sigma(const Reproduction& result) {
   return std::sqrt(sum / count);
 }
 
-/// The verdict of the tracing; until it has ended, the error of the best model over the scatter.
+/// The verdict of the tracing where no map of explanations stands above it; until it has ended, the error of the best model over the scatter.
 void add_verdict(ReportPage& page, const Reproduction& result) {
+  if (result.map) return;
   if (result.trace) {
     page.callout(results::verdict(*result.trace), result.trace->explained ? Tone::good : Tone::bad);
     return;
@@ -243,7 +244,7 @@ std::string reproduce_report_html(const Reproduction& result, const std::string&
   add_overview(page, result);
   add_error_table(page, result);
   add_parameters(page, result);
-  add_verdicts(page, result);
+  add_evidence(page, result);
   add_wire(page, result);
   for (std::size_t k = 0; k < result.experiment.series.size(); ++k) add_series(page, result, k);
   if (!result.assumptions.empty()) {

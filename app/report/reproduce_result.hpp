@@ -37,50 +37,26 @@ struct ReproducedModel {
   [[nodiscard]] bool complete(const identification::Experiment& experiment) const;
 };
 
-/// What is said when the unprinted range of the published fits is taken to be another one.
-struct RangeVerdict {
-  struct Fit {
-    double rmse = 0.0;     ///< of the fitted wire against the published curve [N]
-    double scatter = 0.0;  ///< of the readings about that curve [N]
-  };
-  struct Tracing {
-    std::vector<std::string> selected;
-    bool explained = false;
-    double base_chi2_dof = 0.0;
-    double final_chi2_dof = 0.0;
-  };
-  double to = 0.0;                 ///< the range [m]
-  std::map<std::string, Fit> fit;  ///< by series
-  std::size_t numbers = 0;         ///< fitted
-  bool within_scatter = false;     ///< every series is
-  std::string verdict;             ///< of the tracing, in words
-  std::optional<Tracing> tracing;  ///< none where it could not be computed
+/// The leading explanation of published fits, fitted anew at its ranges and number of readings.
+struct RefittedLeader {
+  std::string model;
+  double p = 1.0;                        ///< SummaryStatistics::p there
+  std::map<std::string, double> values;  ///< by key, in the unit of the key
 };
 
-/// How well the published numbers agree with one wire of which these numbers are fitted.
-struct Adequacy {
-  double to = 0.0;                   ///< range that the fits are taken to have [m]
-  int readings = 0;                  ///< that they are taken to rest on, at every position
-  std::vector<std::string> numbers;  ///< keys
-  double chi2 = 0.0;                 ///< deviance of the published numbers
-  double dof = 0.0;
-  double p = 1.0;
-};
-
-/// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, fewer verdicts.
+/// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, no map.
 struct Reproduction {
   identification::Experiment experiment;
   std::vector<std::string> assumptions;
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
-  std::vector<RangeVerdict> verdicts;
   std::optional<identification::SummaryStatistics> summary;    ///< of the best fit; none without published fits
   std::map<int, identification::SummaryStatistics> by_digits;  ///< the same with R2 printed to so many decimals
-  std::vector<Adequacy> adequacy;
   std::shared_ptr<const nlohmann::json>
-      map;                            ///< of how the fits may have come about, results/published_map.hpp; or null
-  std::vector<std::string> warnings;  ///< what is doubtful about the models
-  bool interrupted = false;           ///< this is a part of what was asked for
+      map;                               ///< of how the fits may have come about, results/published_map.hpp; or null
+  std::optional<RefittedLeader> leader;  ///< of the map
+  std::vector<std::string> warnings;     ///< what is doubtful about the models
+  bool interrupted = false;              ///< this is a part of what was asked for
 
   /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
   /// no model has one.

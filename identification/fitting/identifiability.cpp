@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 
 constexpr double error_margin = 3.0;   // differences by two steps tell the size of an error, not its bound
 constexpr double least_margin = 1e-9;  // rounding of the columns, and of the decomposition
-constexpr double in_doubt = 0.01;      // error of a direction, in columns of norm 1, from which it is checked
+constexpr double in_doubt = 1e-3;      // error of a direction, in columns of norm 1, from which a null one is checked
+constexpr double near_margin = 300.0;  // the same: below so many errors a direction that is seen is checked, too
+constexpr double weakly_seen = 0.1;    // if its numbers nearly go together
 
 /// Singular directions of the columns `live`, scaled to norm 1, parted into those that the readings see and null ones.
 struct Parted {
@@ -38,7 +40,8 @@ Parted part(const MatrixXd& scaled, const MatrixXd& error, const VectorXd& scale
     const VectorXd v = svd.V.col(k);
     const double doubt = error.size() > 0 ? (error * v).norm() : 0.0;
     bool is_null = svd.s[k] <= error_margin * doubt + least_margin;
-    if (is_null && doubt > in_doubt && check) is_null = check(v.cwiseProduct(scale));
+    const bool ask = is_null ? doubt > in_doubt : svd.s[k] <= near_margin * doubt && svd.s[k] < weakly_seen;
+    if (ask && check) is_null = check(v.cwiseProduct(scale));
     if (is_null) {
       null.push_back(k);
       largest_error = std::max(largest_error, doubt);

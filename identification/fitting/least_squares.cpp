@@ -197,6 +197,53 @@ ceres::Solver::Summary solve(const FitOptions& options, ceres::Problem& problem)
   return summary;
 }
 
+/// Numbers on a bound that a descent of chi2 would take beyond it, by their index.
+std::vector<int> kept_by_bounds(const ceres::Problem& problem, const Eigen::VectorXd& unknown,
+                                const Eigen::VectorXd& gradient) {
+  std::vector<int> result;
+  for (int k = 0; k < static_cast<int>(unknown.size()); ++k) {
+    const bool below = unknown[k] <= problem.GetParameterLowerBound(unknown.data(), k) && gradient[k] > 0.0;
+    const bool above = unknown[k] >= problem.GetParameterUpperBound(unknown.data(), k) && gradient[k] < 0.0;
+    if (below || above) result.push_back(k);
+  }
+  return result;
+}
+
+/// What chi2 can fall by, to first order, where the numbers `kept` stay: g^T (J^T J)^-1 g of the others.
+double fall_beside(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradient, const std::vector<int>& kept) {
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+    if (std::find(kept.begin(), kept.end(), k) == kept.end()) others.push_back(k);
+  }
+  if (others.empty()) return 0.0;
+  return (unit_directions(jacobian(Eigen::all, others)).transpose() * gradient(others)).squaredNorm();
+}
+
+/// Steps that are cut off at a bound may end where chi2 still falls along it: such a fit goes on with the numbers held that
+/// the bounds keep, until none of the others moves and none of these would leave its bound. Returns the iterations.
+int solve_along_bounds(const FitOptions& options, const Residuals& residuals, Eigen::VectorXd& unknown,
+                       ceres::Problem& problem, ceres::Solver::Summary& summary) {
+  constexpr int most = 4;
+  int iterations = 0;
+  const auto n = static_cast<int>(unknown.size());
+  Eigen::VectorXd r(residuals.num_residuals());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(r.size(), n);
+  for (int k = 0; k < most && summary.termination_type == ceres::CONVERGENCE; ++k) {
+    const double* at = unknown.data();
+    double* derivatives = jacobian.data();
+    if (!residuals.Evaluate(&at, r.data(), &derivatives)) return iterations;
+    const Eigen::VectorXd gradient = jacobian.transpose() * r;
+    const std::vector<int> kept = kept_by_bounds(problem, unknown, gradient);
+    const bool held = problem.HasManifold(unknown.data());
+    if (kept.empty() && !held) return iterations;
+    if (fall_beside(jacobian, gradient, kept) <= options.tolerance * r.squaredNorm()) return iterations;
+    problem.SetManifold(unknown.data(), new ceres::SubsetManifold(n, kept));
+    summary = solve(options, problem);
+    iterations += static_cast<int>(summary.iterations.size());
+  }
+  return iterations;
+}
+
 }  // namespace
 
 Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start, const std::vector<Setting>& fixed,
@@ -228,8 +275,9 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
   ceres::Problem problem(problem_options);
   problem.AddResidualBlock(&residuals, nullptr, unknown.data());
   if (!bound(model, result, scale, unknown, problem)) residuals.keep(unknown, result.evaluation);
-  const ceres::Solver::Summary summary = solve(options, problem);
+  ceres::Solver::Summary summary = solve(options, problem);
   result.report.iterations = static_cast<int>(summary.iterations.size());
+  result.report.iterations += solve_along_bounds(options, residuals, unknown, problem, summary);
   if (summary.termination_type == ceres::USER_FAILURE) {
     result.report.end(numerics::Termination::interrupted, "interrupted");
   } else if (!summary.IsSolutionUsable()) {
@@ -252,14 +300,16 @@ Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
 
 namespace {
 
-/// Whether chi2 stays where it is, within 1, when the number that moves most along `direction` is moved and held.
+/// Whether chi2 stays where it is when the number that moves most along `direction` is moved and held.
 bool stays_along(const Model& model, const Data& data, const Fit& optimum, const Eigen::VectorXd& direction) {
   Eigen::Index most = 0;
   optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&most);
   const Setting& centre = optimum.settings[static_cast<std::size_t>(most)];
   const double lower = model.lower(*centre.parameter), upper = model.upper(*centre.parameter);
-  // A fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it known.
-  double step = centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
+  const double promised = (optimum.jacobian * direction).norm() / std::abs(direction[most]);  // by a step of one
+  // At most a fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it known.
+  const double far = centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
+  double step = std::min(far, doubtful_change / std::max(promised, 1e-300));
   if (centre.coordinate + step > upper) step = -step;
   if (centre.coordinate + step < lower) return false;
   FitOptions options;
@@ -274,7 +324,7 @@ bool stays_along(const Model& model, const Data& data, const Fit& optimum, const
   const std::vector<Setting> fixed = optimum.fixed();
   held.insert(held.end(), fixed.begin(), fixed.end());
   const Fit moved = fit(model, data, others, held, options);
-  return moved.report.usable() && moved.chi2 < optimum.chi2 + 1.0;
+  return moved.report.usable() && is_no_rise(moved.chi2 - optimum.chi2, promised * step);
 }
 
 }  // namespace

@@ -13,6 +13,9 @@ namespace snare::identification {
 
 namespace {
 
+/// Without a detour over long double.
+using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
 /// With 0F1(; k/2; z^2/4) = Gamma(k/2) (z/2)^(-nu) I_nu(z), nu = k/2 - 1.
 struct Bessel {
   double scaled = 0.0;  ///< log(0F1 / Gamma(k/2)) - z
@@ -152,7 +155,7 @@ void add_panel(double a, double b, const auto& density_at, Sum& sum) {
 }  // namespace
 
 double log_noncentral_chi(double t, double components, double mean) {
-  return density(t, components, mean, 1.0, boost::math::lgamma(0.5 * components)).log;
+  return density(t, components, mean, 1.0, boost::math::lgamma(0.5 * components, in_double())).log;
 }
 
 // The density of t has one peak, near sqrt(k - 1 + m^2), and a standard deviation of at most one; above the peak it falls faster
@@ -160,7 +163,7 @@ double log_noncentral_chi(double t, double components, double mean) {
 IntervalProbability length_probability(double lower, double upper, double components, double square, double log_sigma) {
   const double sigma = std::exp(log_sigma);
   const double m = std::sqrt(square) / sigma;
-  const double log_gamma = boost::math::lgamma(0.5 * components);
+  const double log_gamma = boost::math::lgamma(0.5 * components, in_double());
   const auto at = [&](double t) { return density(t, components, m, sigma, log_gamma); };
   constexpr double far = 9.0;
   double a = lower / sigma;

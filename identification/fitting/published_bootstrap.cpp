@@ -12,8 +12,6 @@ using Eigen::Index;
 using Point = PublishedDeviance::Point;
 using Random = std::mt19937_64;
 
-/// Readings below which the bootstrap is itself corrected by a second one.
-constexpr double few_lost_readings = 20.0;
 constexpr int bias_replicates = 400;
 
 /// Numbers that would be printed of lost readings of these curves.
@@ -57,9 +55,6 @@ double tail(const std::vector<double>& values, double x) {
 
 }  // namespace
 
-// With few readings P depends on the unknown truth, which a second bootstrap corrects (Beran 1988), here with one
-// replicate of every first one (Davidson and MacKinnon 2007): P is the share of first deviances beyond the second ones'
-// quantile at the first P.
 BootstrapResult published_bootstrap(const PublishedDeviance& deviance, const Point& best, int replicates) {
   Random random(20070611);
   Printer printer(deviance);
@@ -73,22 +68,12 @@ BootstrapResult published_bootstrap(const PublishedDeviance& deviance, const Poi
     result.bias = sum / bias_replicates;
     truth.log_sigma -= 0.5 * std::log(result.bias);
   }
-  const bool twice =
-      std::ranges::any_of(deviance.series(), [](const PublishedSeries& s) { return s.count < few_lost_readings; });
-  std::vector<double> first, second;
+  std::vector<double> misfits;
   for (int k = 0; k < replicates; ++k) {
-    Point found = deviance.minimise(printer.draw(truth, random), truth);
-    first.push_back(found.deviance);
-    if (!twice) continue;
-    if (deviance.estimates_sigma()) found.log_sigma -= 0.5 * std::log(result.bias);
-    second.push_back(deviance.minimise(printer.draw(found, random), found).deviance);
+    const std::vector<PublishedNumbers> numbers = printer.draw(truth, random);
+    misfits.push_back(deviance.misfit(numbers, deviance.minimise(numbers, truth)));
   }
-  result.p = tail(first, best.deviance);
-  if (twice) {
-    std::ranges::sort(second);
-    const auto rank = static_cast<std::size_t>((1.0 - result.p) * static_cast<double>(second.size()));
-    result.p = tail(first, second[std::min(rank, second.size() - 1)]);
-  }
+  result.p = tail(misfits, deviance.misfit(best));
   return result;
 }
 

@@ -25,7 +25,7 @@ struct SummaryStatistics {
   double coefficients = 0.0;  ///< |Q^T (y - F)|^2 / sigma^2 of all coefficients, by the corrected standard deviation
   double dof = 0.0;           ///< printed numbers less fitted ones and estimated standard deviations
   std::size_t numbers = 0;    ///< fitted ones
-  double p = 1.0;             ///< that lost readings of this model give as large a deviance, by a parametric bootstrap
+  double p = 1.0;             ///< that lost readings of this model give as large a misfit, by a parametric bootstrap
   double scatter = 0.0;       ///< common standard deviation of a lost reading, its bias corrected [N]
   std::vector<Setting> settings;      ///< of greatest likelihood: the fitted ones, then the fixed ones
   std::vector<FitComparison> series;  ///< those with a law, in their order
@@ -46,13 +46,13 @@ struct SummaryOptions {
 };
 
 /// Fits the first `free` of `settings` to the published numbers by maximum likelihood, from where they are, and finds
-/// how often such a deviance comes by chance. As many lost readings are assumed as a series has travels, placed as they
+/// how often such a misfit comes by chance. As many lost readings are assumed as a series has travels, placed as they
 /// are. series: of the model, those that count; ones without a law are left out. The same bits for the same input.
 [[nodiscard]] SummaryStatistics summary_statistics(const Model& model, const std::vector<std::size_t>& series,
                                                    const std::vector<Setting>& settings, std::size_t free,
                                                    const SummaryOptions& options = {});
 
-/// P that a set of lost readings of the curves at `best` gives a deviance as large, by a parametric bootstrap with linear curves,
+/// P that a set of lost readings of the curves at `best` gives a misfit as large, by a parametric bootstrap with linear curves,
 /// which need no solves; sigma, corrected: the standard deviation is divided by its own bias first.
 struct BootstrapResult {
   double p = 1.0;

@@ -47,6 +47,22 @@ double middle_squares(const PublishedNumbers& numbers) {
   return std::isfinite(numbers.upper) ? 0.5 * (low + numbers.upper * numbers.upper) : 2.0 * low;
 }
 
+/// q >= 0 with the greatest probability of a printed R2 [N^2]: log P has one maximum, at zero or where its derivative changes sign.
+double likeliest_square(const PublishedNumbers& numbers, double components, double log_sigma) {
+  const auto rises_at = [&](double root) {
+    return length_probability(numbers.lower, numbers.upper, components, root * root, log_sigma).by_square > 0.0;
+  };
+  const double length = std::isfinite(numbers.upper) ? numbers.upper : numbers.lower;
+  double low = 0.0;
+  double high = length + 10.0 * std::exp(log_sigma);  // of sqrt(q)
+  if (!rises_at(0.0)) high = 0.0;
+  while (high - low > 1e-10 * high) {
+    const double middle = 0.5 * (low + high);
+    (rises_at(middle) ? low : high) = middle;
+  }
+  return high * high;
+}
+
 /// -2 log likelihood of a parabola of its own for a series, with its own standard deviation unless that is declared.
 double own_parabola(const PublishedSeries& series, const PublishedNumbers& numbers) {
   const double s = series.sigma
@@ -128,18 +144,9 @@ IntervalProbability PublishedRows::probability(double square) const {
                             std::log(sigma_));
 }
 
-// L(q) has one maximum, at zero or where its derivative changes sign.
 void PublishedRows::set_sigma(double sigma) {
   sigma_ = sigma;
-  const double length = std::isfinite(series_.numbers.upper) ? series_.numbers.upper : series_.numbers.lower;
-  double low = 0.0;
-  double high = length + 10.0 * sigma;  // of sqrt(q)
-  if (!(probability(0.0).by_square > 0.0)) high = 0.0;
-  while (high - low > 1e-10 * high) {
-    const double middle = 0.5 * (low + high);
-    (probability(middle * middle).by_square > 0.0 ? low : high) = middle;
-  }
-  best_square_ = high * high;
+  best_square_ = likeliest_square(series_.numbers, series_.count - 3.0, std::log(sigma));
   best_log_ = probability(best_square_).log;
 }
 
@@ -284,10 +291,59 @@ PublishedDeviance::Value PublishedDeviance::at(const std::vector<PublishedNumber
   return value;
 }
 
-PublishedDeviance::Point PublishedDeviance::minimise(const Point& start) const {
+std::vector<PublishedNumbers> PublishedDeviance::own_numbers() const {
   std::vector<PublishedNumbers> numbers;
   for (const PublishedSeries& s : series_) numbers.push_back(s.numbers);
-  return minimise(numbers, start);
+  return numbers;
+}
+
+PublishedDeviance::Point PublishedDeviance::minimise(const Point& start) const {
+  return minimise(own_numbers(), start);
+}
+
+namespace {
+
+/// max over s of log P(S | q, s) - 3 log s [-], by Newton's method from (S - q) / n.
+double through_the_parabola(const PublishedSeries& one, const PublishedNumbers& numbers, double square) {
+  constexpr int most = 12;
+  constexpr double longest = 0.5, enough = 1e-4;  // of log s: the maximum is flat
+  const double free = std::max(middle_squares(numbers) - square, 1e-3 * square) / one.count;
+  double s = std::max(0.5 * std::log(free), std::log(one.least_sigma));
+  double best = -std::numeric_limits<double>::infinity();
+  for (int k = 0; k < most; ++k) {
+    const IntervalProbability at = length_probability(numbers.lower, numbers.upper, one.count - 3.0, square, s);
+    best = std::max(best, at.log - 3.0 * s);
+    const double slope = at.by_scale - 3.0, bend = at.by_scale_scale;
+    const double step = bend < 0.0 ? -slope / bend : std::copysign(0.2 * longest, slope);
+    if (std::abs(step) < enough) break;
+    s += std::clamp(step, -longest, longest);
+  }
+  return best;
+}
+
+}  // namespace
+
+double PublishedDeviance::misfit(const std::vector<PublishedNumbers>& numbers, const Point& point) const {
+  constexpr double curved = 0.75;  // of SSE
+  double misfit = 0.0;
+  for (std::size_t k = 0; k < series_.size(); ++k) {
+    const PublishedSeries& one = series_[k];
+    const double sigma = point.sigma(one, static_cast<Index>(k)), s = std::log(sigma);
+    const Eigen::Vector3d r = numbers[k].coefficients - curves_[k].f - curves_[k].A * point.step;
+    const double square = (curves_[k].v + curves_[k].V * point.step).squaredNorm();
+    const auto log_of = [&](double q) {
+      return length_probability(numbers[k].lower, numbers[k].upper, one.count - 3.0, q, s).log;
+    };
+    const double through =
+        one.sigma ? log_of(likeliest_square(numbers[k], one.count - 3.0, s)) - 3.0 * s
+                  : through_the_parabola(one, numbers[k], std::min(square, curved * middle_squares(numbers[k])));
+    misfit += 6.0 * s + r.squaredNorm() / (sigma * sigma) - 2.0 * log_of(square) + 2.0 * through;
+  }
+  return misfit;
+}
+
+double PublishedDeviance::misfit(const Point& point) const {
+  return misfit(own_numbers(), point);
 }
 
 PublishedDeviance::Point PublishedDeviance::minimise(const std::vector<PublishedNumbers>& numbers,

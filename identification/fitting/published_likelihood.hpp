@@ -117,6 +117,13 @@ class PublishedDeviance {
   /// The least deviance, from a point near it; by Newton's method with damping. numbers: printed ones, one a series.
   [[nodiscard]] Point minimise(const std::vector<PublishedNumbers>& numbers, const Point& start) const;
   [[nodiscard]] Point minimise(const Point& start) const;
+  /// What tests the model: the deviance at a point, against a curve for every series that goes through the printed parabola, with a
+  /// standard deviation of its own s, and as curved as the computed one, up to three quarters of SSE:
+  ///   M = sum 6 log(sigma / s) + |Q^T (y - F)|^2 / sigma^2 - 2 log P(q, sigma) + 2 log P(min(q, 3/4 SSE), s),
+  /// s of greatest likelihood [-]; where sigma is declared, s = sigma and q is the likeliest one. Its law hardly depends on the curves;
+  /// that of `deviance` does.                                                                            theory.md (I.11)
+  [[nodiscard]] double misfit(const std::vector<PublishedNumbers>& numbers, const Point& point) const;
+  [[nodiscard]] double misfit(const Point& point) const;
   /// No step, the scatter about parabolas.
   [[nodiscard]] Point start() const;
 
@@ -131,6 +138,7 @@ class PublishedDeviance {
 
  private:
   struct Value;
+  [[nodiscard]] std::vector<PublishedNumbers> own_numbers() const;
   [[nodiscard]] Value at(const std::vector<PublishedNumbers>& numbers, const Eigen::VectorXd& x) const;
   [[nodiscard]] Eigen::Index unknowns() const;
   [[nodiscard]] Point point_of(const Eigen::VectorXd& x) const;

@@ -48,36 +48,49 @@ FitCell fit_cell(const QuadraticLaw& law, double to, int readings) {
 }
 
 FitRanges::FitRanges(const std::vector<Series>& series, const std::vector<double>& touch, const Options& options)
-    : options_(options), series_(series.size()) {
-  for (int i = 0; i < options.ranges; ++i) {
-    const double to = options.least * std::pow(options.most / options.least, i / (options.ranges - 1.0));
-    ranges_.push_back({FitRange::Kind::common, std::vector<double>(series_, to)});
-  }
+    : options_(options) {
+  for (const Series& s : series) laws_.push_back(*s.law);
+  const auto edge = [&](int i) {
+    return options.least * std::pow(options.most / options.least, i / static_cast<double>(options.bins));
+  };
+  for (int i = 0; i < options.bins; ++i)
+    ranges_.push_back({FitRange::Kind::common, std::vector<double>(laws_.size(), edge(i + 1)), edge(i)});
   FitRange from_touch{FitRange::Kind::taut_from_touch, {}}, from_chord{FitRange::Kind::taut_from_chord, {}};
-  for (std::size_t k = 0; k < series_; ++k) {
+  for (std::size_t k = 0; k < laws_.size(); ++k) {
     const double height = taut_height(series[k].test);
     from_chord.to.push_back(height);
     from_touch.to.push_back(height - touch[k]);
   }
   for (const FitRange& range : {from_touch, from_chord})
     if (std::ranges::all_of(range.to, [](double to) { return to > 1e-4; })) ranges_.push_back(range);
-  std::vector<QuadraticLaw> laws;
-  for (const Series& s : series) laws.push_back(*s.law);
-  fill(laws);
+  fill();
 }
 
-void FitRanges::fill(const std::vector<QuadraticLaw>& laws) {
-  cells_.clear();
-  for (const FitRange& range : ranges_) {
-    for (const int readings : options_.readings) {
-      for (std::size_t k = 0; k < series_; ++k) cells_.push_back(fit_cell(laws[k], range.to[k], readings));
-    }
-  }
+FitCells FitRanges::at(const std::vector<double>& to) const {
+  FitCells result{to, {}};
+  for (std::size_t n = 0; n < options_.readings.size(); ++n)
+    for (FitCell& cell : at(to, n).cells) result.cells.push_back(std::move(cell));
+  return result;
+}
+
+FitCells FitRanges::at(const std::vector<double>& to, std::size_t readings) const {
+  FitCells result{to, {}};
+  for (std::size_t k = 0; k < laws_.size(); ++k)
+    result.cells.push_back(fit_cell(laws_[k], to[k], options_.readings[readings]));
+  return result;
+}
+
+void FitRanges::fill() {
+  edges_.clear();
+  taut_.clear();
+  edges_.push_back(at(std::vector<double>(laws_.size(), ranges_.front().from)));
+  for (const FitRange& range : ranges_) (range.kind == FitRange::Kind::common ? edges_ : taut_).push_back(at(range.to));
 }
 
 FitRanges FitRanges::of(const std::vector<QuadraticLaw>& laws) const {
   FitRanges result = *this;
-  result.fill(laws);
+  result.laws_ = laws;
+  result.fill();
   return result;
 }
 
@@ -88,12 +101,11 @@ double FitRanges::longest() const {
 }
 
 double FitRanges::mass(std::size_t range, bool uniform) const {
-  const auto common = static_cast<std::size_t>(options_.ranges);
-  const double taut = ranges_.size() > common ? 0.5 : 0.0, counts = static_cast<double>(options_.readings.size());
-  if (range >= common) return taut / static_cast<double>(ranges_.size() - common) / counts;
-  double all = 0.0;
-  for (std::size_t i = 0; i < common; ++i) all += uniform ? ranges_[i].to[0] : 1.0;
-  return (1.0 - taut) * (uniform ? ranges_[range].to[0] : 1.0) / all / counts;
+  const double taut = taut_.empty() ? 0.0 : 0.5, counts = static_cast<double>(options_.readings.size());
+  if (range >= bins()) return taut / static_cast<double>(taut_.size()) / counts;
+  const double share = uniform ? (ranges_[range].to[0] - ranges_[range].from) / (options_.most - options_.least)
+                               : 1.0 / static_cast<double>(bins());
+  return (1.0 - taut) * share / counts;
 }
 
 }  // namespace snare::identification

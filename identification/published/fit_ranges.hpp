@@ -10,12 +10,13 @@ namespace snare::identification {
 /// How far the published fits of all series may reach: what their paper does not print.
 struct FitRange {
   enum class Kind {
-    common,           ///< one range for all
+    common,           ///< one range for all, somewhere in a bin
     taut_from_touch,  ///< to where an inextensible wire is taut, counted from first touch
     taut_from_chord   ///< the same, counted from the chord
   };
   Kind kind = Kind::common;
-  std::vector<double> to;  ///< one a series [m], > 0
+  std::vector<double> to;  ///< one a series [m], > 0; of a bin its upper edge
+  double from = 0.0;       ///< lower edge of a bin [m]
 };
 [[nodiscard]] std::string to_string(FitRange::Kind kind);
 
@@ -32,12 +33,21 @@ struct FitCell {
 /// to: [m], > 0; readings: >= 4.
 [[nodiscard]] FitCell fit_cell(const QuadraticLaw& law, double to, int readings);
 
+/// All published fits by every number of readings, if they reach so far.
+struct FitCells {
+  std::vector<double> to;      ///< one a series [m]
+  std::vector<FitCell> cells;  ///< by number of readings, then by series
+  [[nodiscard]] const FitCell& cell(std::size_t readings, std::size_t series) const {
+    return cells[readings * to.size() + series];
+  }
+};
+
 /// Ranges and numbers of readings that are looked at, and the published fits under each.            theory.md (I.33)
 class FitRanges {
  public:
   struct Options {
-    double least = 2e-3, most = 18e-3;                              ///< common ranges [m]
-    int ranges = 21;                                                ///< common ones, evenly in their logarithm, >= 2
+    double least = 2e-3, most = 18e-3;  ///< common ranges [m]
+    int bins = 20;                      ///< of common ranges, evenly in their logarithm, >= 1
     std::vector<int> readings{6, 9, 13, 20, 30, 45, 68, 101, 200};  ///< >= 4 each
   };
   /// series: with a law each; touch: heights over the chord at first touch [m], one a series.
@@ -46,16 +56,22 @@ class FitRanges {
   /// The same ranges and numbers of readings for other published fits, one a series.
   [[nodiscard]] FitRanges of(const std::vector<QuadraticLaw>& laws) const;
 
-  /// Common ones in ascending order, then those that end where the wire is taut.
+  /// Bins of common ranges in ascending order, then those that end where the wire is taut.
   [[nodiscard]] const std::vector<FitRange>& ranges() const { return ranges_; }
+  /// Number of bins of common ranges, the first of ranges().
+  [[nodiscard]] std::size_t bins() const { return static_cast<std::size_t>(options_.bins); }
   /// Numbers of readings that are looked at, ascending.
   [[nodiscard]] const std::vector<int>& readings() const { return options_.readings; }
   /// Number of published fits.
-  [[nodiscard]] std::size_t series() const { return series_; }
-  /// A published fit at a range and a number of readings, by their indices.
-  [[nodiscard]] const FitCell& cell(std::size_t range, std::size_t readings, std::size_t series) const {
-    return cells_[(range * options_.readings.size() + readings) * series_ + series];
-  }
+  [[nodiscard]] std::size_t series() const { return laws_.size(); }
+  /// The published fits at the edges of the bins, ascending.
+  [[nodiscard]] const std::vector<FitCells>& edges() const { return edges_; }
+  /// The published fits where the wire is taut: of ranges() behind the bins.
+  [[nodiscard]] const std::vector<FitCells>& taut() const { return taut_; }
+  /// The published fits at any ranges, one a series [m].
+  [[nodiscard]] FitCells at(const std::vector<double>& to) const;
+  /// The same ranges [m] with one number of readings, by its index.
+  [[nodiscard]] FitCells at(const std::vector<double>& to, std::size_t readings) const;
   /// The longest range [m].
   [[nodiscard]] double longest() const;
   /// Prior mass of a range with one of the numbers of readings; all sum to 1. Numbers of readings share evenly. Half is of fits that end
@@ -63,12 +79,12 @@ class FitRanges {
   [[nodiscard]] double mass(std::size_t range, bool uniform) const;
 
  private:
-  void fill(const std::vector<QuadraticLaw>& laws);
+  void fill();
 
   Options options_;
-  std::size_t series_;
+  std::vector<QuadraticLaw> laws_;
   std::vector<FitRange> ranges_;
-  std::vector<FitCell> cells_;
+  std::vector<FitCells> edges_, taut_;
 };
 
 }  // namespace snare::identification

@@ -3,13 +3,15 @@
 #include "base/parallel.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/prediction.hpp"
-#include "identification/published/curve_likelihood.hpp"
 #include "identification/published/importance_sampling.hpp"
+#include "identification/published/range_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -19,8 +21,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double none = -std::numeric_limits<double>::infinity();
 
 /// Series whose published fits are replaced by travels from first touch, as far as any fit may reach.
 std::vector<Series> long_pushes(std::vector<Series> series, double reach) {
@@ -51,52 +51,21 @@ double value_at(const PriorNumber& n, double u) {
   return n.logarithmic ? n.lower * std::pow(n.upper / n.lower, u) : n.lower + (n.upper - n.lower) * u;
 }
 
-/// log p of the published fits at one range and number of readings by every scatter, common to all series.
-struct ByScatter {
-  Eigen::ArrayXd log_sigma, log;
-};
-ByScatter by_scatter(const FitRanges& ranges, const std::vector<TouchCurve>& curves, std::size_t r, std::size_t n) {
-  double centre = 0.0;
-  for (std::size_t k = 0; k < curves.size(); ++k)
-    centre += ranges.cell(r, n, k).log_scatter / static_cast<double>(curves.size());
-  ByScatter all{centre + first_scatter + scatter_step * Eigen::ArrayXd::LinSpaced(scatters, 0.0, scatters - 1.0),
-                Eigen::ArrayXd::Zero(scatters)};
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    all.log += log_likelihoods(ranges.cell(r, n, k), curves[k], all.log_sigma);
-    if (!(all.log.maxCoeff() > none)) break;
-  }
-  return all;
-}
-
-/// log p of the published fits at every range and number of readings, range by range; the scatter even in its logarithm (Jeffreys).
-std::vector<double> of_all_ranges(const FitRanges& ranges, const std::vector<TouchCurve>& curves) {
-  std::vector<double> result;
-  for (std::size_t r = 0; r < ranges.ranges().size(); ++r) {
-    for (std::size_t n = 0; n < ranges.readings().size(); ++n) {
-      if (curves.size() != ranges.series()) {
-        result.push_back(none);
-        continue;
-      }
-      const ByScatter all = by_scatter(ranges, curves, r, n);
-      result.push_back(log_sum(std::vector<double>(all.log.begin(), all.log.end())) + std::log(scatter_step));
-    }
-  }
-  return result;
-}
-
 /// The largest log p over ranges and numbers of readings if every published parabola were exact, with a scatter of its own.
 double of_parabolas(const FitRanges& ranges) {
-  double best = none;
-  for (std::size_t r = 0; r < ranges.ranges().size(); ++r) {
-    for (std::size_t n = 0; n < ranges.readings().size(); ++n) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < ranges.series(); ++k) {
-        const FitCell& cell = ranges.cell(r, n, k);
-        const auto components = static_cast<double>(cell.basis.cols() - 3);
-        sum += length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter).log -
-               3.0 * cell.log_scatter + cell.log_scale;
+  double best = impossible;
+  for (const std::vector<FitCells>& some : {ranges.edges(), ranges.taut()}) {
+    for (const FitCells& cells : some) {
+      for (std::size_t n = 0; n < ranges.readings().size(); ++n) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < ranges.series(); ++k) {
+          const FitCell& cell = cells.cell(n, k);
+          const auto components = static_cast<double>(cell.basis.cols() - 3);
+          sum += length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter).log -
+                 3.0 * cell.log_scatter + cell.log_scale;
+        }
+        best = std::max(best, sum);
       }
-      best = std::max(best, sum);
     }
   }
   return best;
@@ -104,9 +73,9 @@ double of_parabolas(const FitRanges& ranges) {
 
 /// T of published_p.
 double fit_statistic(const FitRanges& ranges, const std::vector<std::vector<TouchCurve>>& likely) {
-  double best = none;
+  double best = impossible;
   for (const std::vector<TouchCurve>& curves : likely)
-    best = std::max(best, std::ranges::max(of_all_ranges(ranges, curves)));
+    best = std::max(best, range_profile(ranges, curves, best - std::log(scatter_step * scatters)).largest);
   return best - of_parabolas(ranges);
 }
 
@@ -151,59 +120,119 @@ class Computed {
   Model model_;
 };
 
-HypothesisMap map_of(const Experiment& experiment, const FitRanges& ranges, const Hypothesis& hypothesis,
-                     const MapOptions& options) {
-  const Computed computed(experiment, ranges, hypothesis, options.elements);
-  const std::size_t columns = ranges.readings().size(), cells = ranges.ranges().size() * columns;
-  std::vector<std::vector<double>> logs, values;  // one a computed test
-  std::vector<double> mass;
-  for (std::size_t c = 0; c < cells; ++c) mass.push_back(std::log(ranges.mass(c / columns, false)));
-  const auto integrand = [&](const std::vector<VectorXd>& points) {
-    const std::size_t before = logs.size();
-    logs.resize(before + points.size());
-    values.resize(logs.size());
+/// Computed tests of one hypothesis, drawn by their evidence.
+class HypothesisSampling {
+ public:
+  /// leading: the largest log p of the hypotheses before.
+  HypothesisSampling(const Experiment& experiment, const FitRanges& ranges, const Hypothesis& hypothesis,
+                     const MapOptions& options, double leading)
+      : hypothesis_(hypothesis),
+        ranges_(ranges),
+        computed_(experiment, ranges, hypothesis_, options.elements),
+        columns_(ranges.readings().size()),
+        batch_(options.batch * static_cast<int>(hypothesis.numbers.size())),
+        leading_(leading),
+        sampler_(static_cast<Index>(hypothesis.numbers.size()),
+                 options.first * static_cast<int>(hypothesis.numbers.size()),
+                 [this](const std::vector<VectorXd>& points) { return integrand(points); }) {}
+  HypothesisSampling(const HypothesisSampling&) = delete;
+  HypothesisSampling& operator=(const HypothesisSampling&) = delete;
+
+  void add_batch() {
+    sampler_.add_batch(batch_);
+    ++batches_;
+  }
+  [[nodiscard]] const Hypothesis& hypothesis() const { return hypothesis_; }
+  [[nodiscard]] double log_evidence() const { return sampler_.log_integral(); }
+  [[nodiscard]] double effective() const { return sampler_.effective(); }
+  [[nodiscard]] int batches() const { return batches_; }
+  [[nodiscard]] double largest() const { return best_; }
+  [[nodiscard]] HypothesisMap map() const;
+
+ private:
+  /// log p of a computed test over all ranges, even in their logarithm or in themselves.
+  [[nodiscard]] double over_ranges(std::size_t test, bool uniform) const {
+    std::vector<double> terms(logs_[test].size());
+    for (std::size_t c = 0; c < terms.size(); ++c)
+      terms[c] = std::log(ranges_.mass(c / columns_, uniform)) + logs_[test][c];
+    return log_sum(terms);
+  }
+  std::vector<double> integrand(const std::vector<VectorXd>& points) {
+    constexpr double nothing = 30.0,
+                     out_of_question = 40.0;  // of the logarithm: of the best so far, of the leading one
+    const double floor = std::max(best_ - nothing, leading_ - out_of_question);
+    const std::size_t before = logs_.size();
+    logs_.resize(before + points.size());
+    values_.resize(logs_.size());
+    best_to_.resize(logs_.size());
+    std::vector<double> largest(points.size());
     base::parallel_for(points.size(), [&](std::size_t i) {
-      values[before + i] = computed.values(points[i]);
-      logs[before + i] = of_all_ranges(ranges, computed.curves(values[before + i]));
+      values_[before + i] = computed_.values(points[i]);
+      RangeProfile profile = range_profile(ranges_, computed_.curves(values_[before + i]), floor);
+      logs_[before + i] = std::move(profile.log);
+      best_to_[before + i] = std::move(profile.best_to);
+      largest[i] = profile.largest;
     });
     std::vector<double> result;
-    for (std::size_t i = before; i < logs.size(); ++i) {
-      std::vector<double> terms(cells);
-      for (std::size_t c = 0; c < cells; ++c) terms[c] = mass[c] + logs[i][c];
-      result.push_back(log_sum(terms));
+    for (std::size_t i = before; i < logs_.size(); ++i) {
+      result.push_back(over_ranges(i, false));
+      best_ = std::max(best_, largest[i - before]);
     }
     return result;
-  };
-  const auto n = static_cast<Index>(hypothesis.numbers.size());
-  const int count = std::max(1, static_cast<int>(n));
-  const WeightedPoints points =
-      n == 0 ? WeightedPoints{{VectorXd(0)}, {0.0}}
-             : sample_by_importance(n, options.first * count, options.batch * count, options.batches, integrand);
-  if (n == 0) static_cast<void>(integrand(points.points));
+  }
+  [[nodiscard]] std::vector<std::vector<double>> likely(const MapCell& leading) const;
 
-  HypothesisMap map{.hypothesis = hypothesis, .cells = {}, .likely = {}};
+  Hypothesis hypothesis_;
+  const FitRanges& ranges_;
+  Computed computed_;
+  std::size_t columns_;
+  int batch_, batches_ = 0;
+  std::vector<std::vector<double>> logs_, best_to_, values_;  // one a computed test
+  double leading_, best_ = impossible;
+  ImportanceSampler sampler_;
+};
+
+HypothesisMap HypothesisSampling::map() const {
+  HypothesisMap map{.hypothesis = hypothesis_, .cells = {}, .posterior = {}, .likely = {}};
+  map.effective = effective();
+  const std::vector<double>& log_weight = sampler_.points().log_weight;
   std::vector<double> evidence[2];
-  for (std::size_t c = 0; c < cells; ++c) {
+  for (std::size_t c = 0; c < logs_.front().size(); ++c) {
     std::vector<double> terms;
     std::size_t best = 0;
-    for (std::size_t s = 0; s < logs.size(); ++s) {
-      terms.push_back(points.log_weight[s] + logs[s][c]);
-      if (logs[s][c] > logs[best][c]) best = s;
+    for (std::size_t s = 0; s < logs_.size(); ++s) {
+      terms.push_back(log_weight[s] + logs_[s][c]);
+      if (logs_[s][c] > logs_[best][c]) best = s;
     }
-    MapCell cell{c / columns, c % columns, log_sum(terms), logs[best][c], values[best]};
+    const FitRange& range = ranges_.ranges()[c / columns_];
+    const double to = best_to_[best][c];
+    MapCell cell{c / columns_,   c % columns_,  log_sum(terms),
+                 logs_[best][c], values_[best], to > 0.0 ? std::vector<double>(ranges_.series(), to) : range.to};
     for (int prior = 0; prior < 2; ++prior)
-      evidence[prior].push_back(cell.log_evidence + std::log(ranges.mass(cell.range, prior == 1)));
+      evidence[prior].push_back(cell.log_evidence + std::log(ranges_.mass(cell.range, prior == 1)));
     map.cells.push_back(std::move(cell));
   }
   for (int prior = 0; prior < 2; ++prior) map.log_evidence[prior] = log_sum(evidence[prior]);
-  const MapCell& leading = leading_cell(map, ranges);
-  const std::size_t at = leading.range * columns + leading.readings;
-  std::vector<std::size_t> order(logs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t s) { return logs[s][at]; });
-  constexpr std::size_t most_likely = 6;
-  for (std::size_t i = 0; i < std::min(most_likely, order.size()); ++i) map.likely.push_back(values[order[i]]);
+  constexpr double nothing = 15.0;  // e^-15 of the evidence
+  for (std::size_t s = 0; s < logs_.size(); ++s) {
+    PosteriorPoint point{values_[s], {log_weight[s] + over_ranges(s, false), log_weight[s] + over_ranges(s, true)}};
+    if (point.log_weight[0] > map.log_evidence[0] - nothing || point.log_weight[1] > map.log_evidence[1] - nothing)
+      map.posterior.push_back(std::move(point));
+  }
+  map.likely = likely(leading_cell(map, ranges_));
   return map;
+}
+
+/// Values of the computed tests that are the likeliest at a range and a number of readings.
+std::vector<std::vector<double>> HypothesisSampling::likely(const MapCell& leading) const {
+  const std::size_t at = leading.range * columns_ + leading.readings;
+  std::vector<std::size_t> order(logs_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t s) { return logs_[s][at]; });
+  constexpr std::size_t most_likely = 6;
+  std::vector<std::vector<double>> result;
+  for (std::size_t i = 0; i < std::min(most_likely, order.size()); ++i) result.push_back(values_[order[i]]);
+  return result;
 }
 
 }  // namespace
@@ -219,8 +248,10 @@ double published_p(const Experiment& experiment, const FitRanges& ranges, const 
   std::vector<std::vector<TouchCurve>> likely;
   for (const std::vector<double>& values : map.likely) likely.push_back(computed.curves(values));
   const MapCell& leading = leading_cell(map, ranges);
+  const FitCells cells = ranges.at(leading.to);
   const std::vector<TouchCurve>& truth = likely.front();
-  const ByScatter scatter = by_scatter(ranges, truth, leading.range, leading.readings);
+  std::vector<std::optional<double>> zeros(truth.size());
+  const ByScatter scatter = by_scatter(cells, leading.readings, truth, zeros, impossible);
   Eigen::Index best = 0;
   scatter.log.maxCoeff(&best);
   const double sigma = std::exp(scatter.log_sigma[best]);
@@ -231,8 +262,8 @@ double published_p(const Experiment& experiment, const FitRanges& ranges, const 
     std::normal_distribution<double> noise(0.0, sigma);
     std::vector<QuadraticLaw> laws;
     for (std::size_t k = 0; k < ranges.series(); ++k) {
-      const FitCell& cell = ranges.cell(leading.range, leading.readings, k);
-      const double zero = best_zero(cell, truth[k]);
+      const FitCell& cell = cells.cell(leading.readings, k);
+      const double zero = *zeros[k];
       VectorXd force(cell.basis.cols());
       for (Index j = 0; j < force.size(); ++j)
         force[j] = truth[k].force.value(std::max(0.0, cell.travel[static_cast<std::size_t>(j)] - zero)) + noise(random);
@@ -245,10 +276,11 @@ double published_p(const Experiment& experiment, const FitRanges& ranges, const 
 
 MapOptions coarse_map() {
   MapOptions options;
-  options.ranges.ranges = 9;
-  options.ranges.readings = {6, 13, 30, 68, 200};
+  options.ranges.bins = 8;
+  options.ranges.readings = {6, 13, 30, 100};
   options.elements = 32;
-  options.first = 12, options.batch = 8, options.batches = 2;
+  options.first = 10, options.batch = 8, options.batches = 2;
+  options.effective = 10.0, options.most_batches = 8;
   return options;
 }
 
@@ -262,11 +294,34 @@ FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options) {
 
 std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
                                          const std::vector<Hypothesis>& hypotheses, const MapOptions& options) {
-  std::vector<HypothesisMap> maps;
+  constexpr double rival = 12.0;  // of the logarithm of the evidence: what is farther behind needs no precision
+  bool stopped = false;
+  double leading = impossible;
+  const auto goes_on = [&](const std::string& stage) {
+    stopped = stopped || (options.progress && !options.progress(stage));
+    return !stopped;
+  };
+  std::deque<HypothesisSampling> all;
   for (const Hypothesis& h : hypotheses) {
-    if (options.progress && !options.progress(h.name)) break;
-    maps.push_back(map_of(experiment, ranges, h, options));
+    if (!goes_on(h.name)) break;
+    HypothesisSampling& one = all.emplace_back(experiment, ranges, h, options, leading);
+    for (int b = 0; b < options.batches; ++b) one.add_batch();
+    leading = std::max(leading, one.largest());
   }
+  for (bool added = true; added;) {
+    added = false;
+    double best = impossible;
+    for (const HypothesisSampling& h : all) best = std::max(best, h.log_evidence());
+    for (HypothesisSampling& h : all) {
+      if (h.log_evidence() < best - rival || h.effective() >= options.effective ||
+          h.batches() >= options.most_batches || !goes_on("more of " + h.hypothesis().name))
+        continue;
+      h.add_batch();
+      added = true;
+    }
+  }
+  std::vector<HypothesisMap> maps;
+  for (const HypothesisSampling& h : all) maps.push_back(h.map());
   for (int prior = 0; prior < 2; ++prior) {
     std::vector<double> all;
     for (const HypothesisMap& m : maps) all.push_back(m.log_evidence[prior]);

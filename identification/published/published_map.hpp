@@ -31,13 +31,21 @@ struct Hypothesis {
 /// What a hypothesis makes of the published fits at one range and number of readings.
 struct MapCell {
   std::size_t range = 0, readings = 0;
-  double log_evidence = 0.0;   ///< numbers, zeros and scatter integrated out [-]
+  double log_evidence = 0.0;   ///< numbers, zeros and scatter integrated out, the mean over a bin of ranges [-]
   double log_best = 0.0;       ///< largest over the numbers, zeros and scatter integrated out [-]
   std::vector<double> values;  ///< of the numbers there, SI
+  std::vector<double> to;      ///< the range there, one a series [m]
+};
+/// A computed test with its posterior weight: its share of the evidence.
+struct PosteriorPoint {
+  std::vector<double> values;         ///< of the numbers, SI
+  double log_weight[2] = {0.0, 0.0};  ///< of log_evidence of the same prior [-]
 };
 struct HypothesisMap {
   Hypothesis hypothesis;
   std::vector<MapCell> cells;
+  std::vector<PosteriorPoint> posterior;
+  double effective = 0.0;  ///< computed tests that count: the evidence is known to one part in its root
   std::vector<std::vector<double>> likely;  ///< numbers of the computed tests with most weight, the first of all
   double log_evidence[2] = {
       0.0, 0.0};  ///< ranges and numbers integrated out: ranges even in their logarithm, and in themselves
@@ -48,7 +56,10 @@ struct HypothesisMap {
 struct MapOptions {
   FitRanges::Options ranges;
   int elements = 64;                        ///< of the computed wire
-  int first = 24, batch = 16, batches = 4;  ///< computed tests a number, see sample_by_importance
+  int first = 24, batch = 16, batches = 4;  ///< computed tests a number, see ImportanceSampler
+  /// Hypotheses within e^-12 of the leading one go on until so many computed tests count, up to most_batches.
+  double effective = 100.0;
+  int most_batches = 40;
   std::function<bool(const std::string& stage)> progress = {};
 };
 

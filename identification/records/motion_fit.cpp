@@ -21,6 +21,29 @@ double step_of(const MotionSetting& s, Differences differences) {
   return step_share * (follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale);
 }
 
+/// Derivatives by numbers that hardly act, whose short steps show the errors of the integration: taken anew with a long step. A column of
+/// a number that does not act with a long step either is nought: the number stays where it is.
+void take_weak_ones_anew(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
+                         const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+                         Eigen::MatrixXd& jacobian) {
+  constexpr double weak =
+      0.02;  // standard deviations in all, by a change of a scale, that is of 1 % of a declared number
+  constexpr double long_step = 50.0;  // scales
+  constexpr double nothing = 0.1;     // standard deviations in all, by the long step
+  std::vector<MotionSetting> weak_ones, rest = fixed;
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
+    const bool anew = jacobian.col(k).norm() < weak && jacobian.col(k).norm() > 0.0;
+    if (anew) columns.push_back(k);
+    (anew ? weak_ones : rest).push_back(settings[static_cast<std::size_t>(k)]);
+  }
+  if (columns.empty()) return;
+  jacobian(Eigen::all, columns) =
+      signal_derivatives(model, data, weak_ones, base, rest, Differences::forward, long_step / step_share);
+  for (const Eigen::Index k : columns)
+    if (jacobian.col(k).norm() * long_step < nothing) jacobian.col(k).setZero();
+}
+
 void gauss_newton(const MotionModel& model, const MotionData& data, const MotionFitOptions& options, MotionFit& fit) {
   const auto count = static_cast<Eigen::Index>(fit.settings.size());
   Eigen::VectorXd start(count);
@@ -51,7 +74,9 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
   problem.residual_jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
     const std::vector<MotionSetting> settings = at(x);
     if (last_at != x) last = model.predict(together(settings, options.fixed), data.records, data.readings);
-    return -signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
+    Eigen::MatrixXd derivatives = signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
+    take_weak_ones_anew(model, data, settings, last, options.fixed, derivatives);
+    return -derivatives;
   };
   problem.progress = [&](int iteration, double chi2) {
     return !model.stopped() && (!options.progress || options.progress(iteration, chi2));
@@ -152,6 +177,42 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
   return fit;
 }
 
+namespace {
+
+/// Whether chi2 stays where it is when the number that moves most along `direction` is moved and held.
+bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                 const Eigen::VectorXd& direction) {
+  constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
+  const auto dof = static_cast<double>(std::max<Eigen::Index>(1, data.rows - optimum.jacobian.cols()));
+  const double noise = std::sqrt(std::max(optimum.chi2 / dof, 1e-300));  // of a row of the residual
+  Eigen::Index most = 0;
+  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&most);
+  const auto at = [](const MotionSetting& s, double change) {
+    return std::clamp(s.value + change * s.number.scale, s.number.lower, s.number.upper);
+  };
+  std::vector<MotionSetting> others;
+  MotionFitOptions options;
+  const double promised = (optimum.jacobian * direction).norm() / std::abs(direction[most]) / noise;  // by a scale
+  const double size = std::min(far, doubtful_change / std::max(promised, 1e-300));
+  for (const double step : {size, -size}) {
+    others.clear();
+    options.fixed.clear();
+    for (std::size_t k = 0; k < optimum.settings.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      std::vector<MotionSetting>& list = i == most ? options.fixed : others;
+      list.push_back(optimum.settings[k]);
+      list.back().value = at(optimum.settings[k], step * direction[i] / direction[most]);
+    }
+    if (options.fixed.front().value != optimum.settings[static_cast<std::size_t>(most)].value) break;
+  }
+  options.max_iterations = 15;
+  options.derivatives = FitDerivatives::last;
+  const MotionFit moved = fit_motion(model, data, others, options);
+  return moved.report.usable() && is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), promised * size);
+}
+
+}  // namespace
+
 void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit) {
   const auto numbers = static_cast<Eigen::Index>(fit.settings.size());
   if (numbers == 0 || !fit.report.usable() || fit.jacobian.cols() != numbers || model.stopped()) return;
@@ -159,7 +220,9 @@ void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit)
   const Eigen::MatrixXd wide =
       signal_derivatives(model, data, fit.settings, fit.predictions, {}, Differences::central, twice);
   if (model.stopped()) return;
-  fit.rank = identifiability_of(fit.jacobian, wide - fit.jacobian);
+  fit.rank = identifiability_of(fit.jacobian, wide - fit.jacobian, [&](const Eigen::VectorXd& direction) {
+    return stays_along(model, data, fit, direction);
+  });
   if (fit.rank.directions.empty() || fit.covariance.cols() != numbers) return;
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < numbers; ++k)

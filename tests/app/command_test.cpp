@@ -215,7 +215,8 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
   EXPECT_EQ(json["schema"], "snare-reproduce/1");
   EXPECT_EQ(json["series"].size(), 3u);
   ASSERT_GE(json["models"].size(), 2u);
-  EXPECT_EQ(json["verdicts"].size(), 4u);
+  EXPECT_EQ(json["leading"]["recomputed"]["values"].size(), json["leading"]["values"].size() + 3);
+  EXPECT_GT(json["leading"]["recomputed"]["p"].get<double>(), 0.01);
   EXPECT_FALSE(json["trace"]["verdict"].get<std::string>().empty());
   // The declared model is far off, the fitted one is not: both are said.
   EXPECT_GT(json["models"][0]["rmse_N"].get<double>(), 100.0);

@@ -19,7 +19,10 @@ json entry(const char* model, const char* family, double log_even, double even, 
 }
 
 PublishedVerdict verdict_of(const std::vector<json>& entries) {
-  return published_verdict({{"map", entries}});
+  return published_verdict(
+      {{"map", entries},
+       {"along_the_wire", {{"more_compliance_um_N", {{"median", 27.2}, {"lower95", 24.2}, {"upper95", 29.6}}}}},
+       {"region", {{"range_mm", {5.21, 16.4}}, {"readings", {6, 45}}}}});
 }
 
 TEST(PublishedVerdict, HasDegrees) {
@@ -29,10 +32,13 @@ TEST(PublishedVerdict, HasDegrees) {
                   entry("slip", "slip", 0.04, 0.03, nullptr, 0.0)});
   EXPECT_EQ(shared.answer, PublishedAnswer::explained);
   EXPECT_EQ(shared.leading, "mounts");
-  EXPECT_THAT(shared.headline,
-              HasSubstr("something gives along the wire, by some 24 to 30 micrometres a newton more than declared"));
-  EXPECT_THAT(shared.headline, HasSubstr("(probability 96 % among 3 explanations"));
-  EXPECT_THAT(shared.headline, HasSubstr("They cannot tell which of these it is: mounts; wire;"));
+  EXPECT_THAT(
+      shared.headline,
+      HasSubstr(
+          "if something gives along the wire, by 27 micrometres a newton more than declared (24 to 30 with 95 %)"));
+  EXPECT_THAT(shared.headline, HasSubstr(": probability 96 % among 3 explanations"));
+  EXPECT_THAT(shared.headline, HasSubstr("They cannot tell which of these it is: mounts (57 %), wire (30 %); "));
+  EXPECT_THAT(shared.headline, HasSubstr("the range of the test (5.2 to 16 mm and 6 to 45 readings fit)"));
   // Not under both priors; P not known or too small; nothing agrees; nobody leads.
   EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.9, 0.5, 0.0), entry("b", "b", 0.01, 0.1, nullptr, 0.0)}).answer,
             PublishedAnswer::most_likely);

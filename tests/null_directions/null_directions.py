@@ -10,7 +10,9 @@ from the Kth on. Every pair and triple is fitted from five starts. A case fails 
 - a number has an interval from one start and none from another, both of which end in the same minimum,
 - a run ends with a status other than 0 and 2, or a refusal without a reason.
 Starts that end at a chi2 that is higher than the least by more than 1 are counted as other minima, not as failures: the answer is
-then wrong for another reason. Prints a line a failure and the sums; status 1 with failures.
+then wrong for another reason; those that end with a number on its bound, which the fit says and which hangs on the start, are compared
+with those on the same bound. A number of which a warning says that it is not identifiable counts as one without an interval. Prints a line
+a failure and the sums; status 1 with failures.
 """
 
 import argparse
@@ -221,6 +223,7 @@ class Push:
             fitted += (f'[[series]]\nname = "{name}"\ncontact_position_mm = {place}\nfile = "{name}.csv"\n'
                        f"force_sigma_N = {sigma:.6g}\n")
         (folder / "x.toml").write_text(fitted)
+        self.readings = len(rows)
 
     def fit(self, keys, factor):
         """Answer of one start: the declared values of the numbers in the file times the factor."""
@@ -254,6 +257,7 @@ class Record:
         for r in rows[::max(1, len(rows) // self.count)]:
             lines.append(f'{r["time_s"]},{float(r[self.column]) + noise.gauss(0.0, sigma):.9g}')
         (folder / "v.csv").write_text("\n".join(lines) + "\n")
+        self.readings = len(lines) - 1
         (folder / "x.toml").write_text(f'schema = "snare-record/1"\ntitle = "small"\nscenario = "s.toml"\n[[records]]\nname = "one"\n'
                                        f'file = "v.csv"\ncolumns = {{ v = "{self.column}" }}\nsigma = {sigma}\n')
 
@@ -271,33 +275,50 @@ def interval(number):
     return (lower is not None and upper is not None), number.get("stderr")
 
 
-def judge(answers):
-    """What is wrong with the answers of several starts, and how many ended in another minimum."""
-    wrong, fits = [], []
+def known(result, key):
+    """Whether a fit determines a number, and its answer."""
+    number = result["fit"]["parameters"][key]
+    return number["identified"] and not any(w.startswith(f"{key} is not identifiable") for w in result.get("warnings", []))
+
+
+def judge(answers, readings, mirror=None):
+    """What is wrong with the answers of several starts, and how many ended in another minimum. mirror: place about which a push is the same."""
+    wrong, results = [], []
     for status, said, result in answers:
         if status == 0 and result:
-            fits.append(result["fit"])
+            results.append(result)
         elif status not in (0, 2, 3):
             wrong.append(f"status {status}: {said[-200:]}")
         elif status == 2 and len(said) < 40:
             wrong.append(f"refused without a reason: {said}")
-    if len(fits) < 2:
+    if len(results) < 2:
         return wrong, 0
-    dof = 25.0
-    least = min(f["chi2_dof"] for f in fits)
-    same = [f for f in fits if (f["chi2_dof"] - least) * dof < 1.0]
-    for key in same[0]["parameters"]:
-        numbers = [f["parameters"][key] for f in same]
-        has = [n["identified"] for n in numbers]
-        if any(has) and not all(has):
-            wrong.append(f"{key} is identified from {sum(has)} of {len(has)} starts")
-        known = [n for n in numbers if interval(n)[0]]
-        for a, b in itertools.combinations(known, 2):
-            limit = 0.2 * max(interval(a)[1], interval(b)[1]) + 1e-4 * abs(a["value"])
-            if abs(a["value"] - b["value"]) > limit:
-                wrong.append(f"{key}: {a['value']:.6g} and {b['value']:.6g}, standard error {interval(a)[1]:.3g}")
+    keys = list(results[0]["fit"]["parameters"])
+    dof = readings - len(keys)
+    least = min(r["fit"]["chi2_dof"] for r in results)
+    same = [r for r in results if (r["fit"]["chi2_dof"] - least) * dof < 1.0]
+
+    def bounds(result):
+        return [result["fit"]["parameters"][key].get("on_bound", "none") for key in keys]
+
+    for key in keys:
+        for a, b in itertools.combinations(same, 2):
+            if bounds(a) != bounds(b):
+                continue
+            if known(a, key) != known(b, key):
+                wrong.append(f"{key} is determined from some starts only")
                 break
-    return wrong, len(fits) - len(same)
+            first, second = (r["fit"]["parameters"][key] for r in (a, b))
+            if not known(a, key) or not interval(first)[1] or not interval(second)[1]:
+                continue
+            limit = 0.2 * max(interval(first)[1], interval(second)[1]) + 1e-4 * abs(first["value"])
+            apart = abs(first["value"] - second["value"])
+            if mirror and key.endswith("position_mm"):
+                apart = min(apart, abs(first["value"] + second["value"] - 2.0 * mirror))
+            if apart > limit and bounds(a).count("none") == len(keys):
+                wrong.append(f"{key}: {first['value']:.6g} and {second['value']:.6g}, standard error {interval(first)[1]:.3g}")
+                break
+    return wrong, len(results) - len(same)
 
 
 def free_keys():
@@ -391,7 +412,7 @@ def main():
                     case["reason"] = answers[0][1].strip()[-160:]
                     continue
                 answers += [place.fit(keys, f) for f in FACTORS[1:]]
-                wrong, elsewhere = judge(answers)
+                wrong, elsewhere = judge(answers, place.readings, 87.5)
                 best = next((a[2]["fit"] for a in answers if a[0] == 0 and a[2]), None)
                 case.pop("reason", None)
                 case.update(answer="fitted" if best else "stopped", where=place.folder.name, other_minima=elsewhere, wrong=wrong,

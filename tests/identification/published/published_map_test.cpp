@@ -38,10 +38,10 @@ TEST(ImportanceSampling, FindsANarrowPeak) {
       return log;
     };
     const int count = static_cast<int>(n);
-    const WeightedPoints w = sample_by_importance(n, 24 * count, 64 * count, 6, peak);
-    std::vector<double> log = peak(w.points);
-    for (std::size_t s = 0; s < log.size(); ++s) log[s] += w.log_weight[s];
-    EXPECT_NEAR(log_sum(log), 0.0, 0.1) << n;
+    ImportanceSampler sampler(n, 24 * count, peak);
+    for (int b = 0; b < 6; ++b) sampler.add_batch(64 * count);
+    EXPECT_NEAR(sampler.log_integral(), 0.0, 3.0 / std::sqrt(sampler.effective())) << n;
+    EXPECT_GT(sampler.effective(), 100.0) << n;
   }
 }
 
@@ -85,7 +85,20 @@ TEST(CurveLikelihood, IntegratesTheZeroOut) {
                           .log);
     }
     const double expected = log_sum(terms) - std::log(count) + cell.log_scale - 1.5 * std::log(2.0 * std::numbers::pi);
-    EXPECT_NEAR(log_likelihoods(cell, curve, log_sigma)[0], expected, 0.02) << shift;
+    EXPECT_NEAR(log_likelihoods(cell, curve, best_zero(cell, curve), log_sigma)[0], expected, 0.02) << shift;
+  }
+}
+
+// A zero that is looked for beside an estimate is the one that is looked for everywhere, and no integral is above its bound.
+TEST(CurveLikelihood, FindsTheZeroBesideAnEstimate) {
+  const TouchCurve curve = cubic(2000.0, 4e7);
+  for (const int readings : {6, 13, 68}) {
+    const FitCell cell = fit_cell({4.0e5, 1500.0, -0.2, 0.9985, 6e-3, 4}, 6e-3, readings);
+    const double zero = best_zero(cell, curve);
+    for (const double off : {-4e-4, 1e-4, 3e-4}) EXPECT_NEAR(best_zero(cell, curve, zero + off), zero, 2e-7) << off;
+    const Eigen::ArrayXd log_sigma = cell.log_scatter + Eigen::ArrayXd::LinSpaced(5, -1.0, 1.0);
+    const Eigen::ArrayXd most = most_likelihoods(cell, curve, zero, log_sigma);
+    EXPECT_TRUE((log_likelihoods(cell, curve, zero, log_sigma) <= most).all());
   }
 }
 
@@ -109,8 +122,10 @@ TEST(CurveLikelihood, IsADensityOfThePrintedNumbers) {
     }
     const QuadraticLaw law = printed_law(travel, force, 3);
     if (!(law.r_squared > 0.0)) continue;
-    const double own = log_likelihoods(fit_cell(law, 8e-3, 20), curve, log_sigma)[0];
-    const double other = log_likelihoods(fit_cell(law, 8.2e-3, 18), curve, log_sigma)[0];
+    const auto log_of = [&](const FitCell& cell) {
+      return log_likelihoods(cell, curve, best_zero(cell, curve), log_sigma)[0];
+    };
+    const double own = log_of(fit_cell(law, 8e-3, 20)), other = log_of(fit_cell(law, 8.2e-3, 18));
     const double ratio = std::exp(other - own);
     sum += ratio;
     squares += ratio * ratio;
@@ -143,7 +158,7 @@ TEST(PublishedMap, NamesTheEffectThatMadeTheNumbers) {
   }
   MapOptions options;
   options.elements = 32;
-  options.ranges.ranges = 9;
+  options.ranges.bins = 10;
   options.ranges.readings = {13, 25, 50};
   options.first = 12, options.batch = 8, options.batches = 3;
   std::vector<Hypothesis> some;

@@ -113,6 +113,25 @@ TEST(OpenNumbers, IndependentNumbersStayKnown) {
   EXPECT_TRUE(t.findings.empty());
 }
 
+// A wire that is stiffer than declared asks for less than no compliance: the others come to their minimum beside that bound.
+TEST(OpenNumbers, ANumberOnItsBoundLeavesTheOthersTheirMinimum) {
+  const std::string bending = "wire.bending_stiffness_Nm2", mounts = "mount_axial_compliance.compliance_m_N";
+  std::vector<double> found;
+  for (const double factor : {1.0, 0.9, 0.95, 1.05, 1.1}) {
+    Experiment e = loose_wire();
+    for (Series& s : e.series) {
+      s.test.wire.bending_stiffness_override = 0.0094 * factor;
+      s.test.wire.axial_stiffness_override = 19100.0;
+    }
+    e.free = {bending, mounts};
+    const Trace t = trace(e, only_fit());
+    EXPECT_EQ(number(t, mounts).value, 0.0);
+    ASSERT_TRUE(number(t, bending).standard_error);
+    found.push_back(number(t, bending).value / *number(t, bending).standard_error);
+  }
+  for (const double f : found) EXPECT_NEAR(f, found.front(), 0.02);
+}
+
 TEST(ReadingFindings, ForcesOfTheOtherSignAreNamed) {
   Experiment e = loose_wire();
   for (double& f : e.series[1].readings->force) f = -f;
