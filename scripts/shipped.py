@@ -195,7 +195,7 @@ MAP = "data/published/published_static_map.json"
 
 @maker(MAP, relative=1e-2, absolute=1e-2, long=True)
 def published_map(snare, root, folder):
-    """The map of hypotheses about the published static test, which `snare reproduce` reads; half an hour of two cores."""
+    """The map of hypotheses about the published static test, which `snare reproduce` reads; 25 minutes of one core."""
     program = pathlib.Path(snare).parent / "benchmarks/published_map_benchmark"
     if not program.is_file():
         raise Skipped(f"{program} was not built")
