@@ -165,8 +165,8 @@ std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experim
   if (!std::ranges::all_of(experiment.series, [](const Series& s) { return s.law.has_value(); })) return nullptr;
   const std::filesystem::path stored = data_directory() / "published" / "published_static_map.json";
   if (std::filesystem::exists(stored)) {
-    auto map = std::make_shared<nlohmann::json>(nlohmann::json::parse(base::read_text(stored)));
-    if (map->at("inputs") == published_inputs(experiment)) return map;
+    auto map = std::make_shared<nlohmann::json>(nlohmann::json::parse(base::read_text(stored), nullptr, false));
+    if (map->is_object() && map->value("inputs", "") == published_inputs(experiment)) return map;
   }
   console.end_progress();
   console.complain("no stored map of hypotheses belongs to these published fits: a coarse one is made");
@@ -179,7 +179,7 @@ std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experim
   return std::make_shared<nlohmann::json>(published_map_json(experiment, ranges, maps, {}, true));
 }
 
-/// The leading explanation of the map, computed anew at its ranges and number of readings: values and P beside those of the map.
+/// The leading explanation of the map, fitted again at its ranges and number of readings, with its P there.
 std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nlohmann::json& map) {
   const std::string leading = published_verdict(map).leading;
   const auto& entries = map.at("map");

@@ -283,11 +283,11 @@ PublishedVerdict published_verdict(const json& map) {
           fmt::format("The published fits cannot tell; the likeliest explanation is: {}: {}.", meaning, sure);
       break;
   }
-  const std::string more = fmt::format(
-      "the range of the test ({} fit), its largest force or one raw reading would tell more", region_of(map));
+  const std::string more = "the range of the test, its largest force or one raw reading would tell more";
   verdict.headline += family.members.size() > 1
-                          ? fmt::format(" They cannot tell which of these it is: {}; {}.", members_of(family), more)
-                          : fmt::format(" They leave its range open: {}.", more);
+                          ? fmt::format(" They cannot tell which of these it is: {}; {} ({} fit).", members_of(family),
+                                        more, region_of(map))
+                          : fmt::format(" They fit over {}; {}.", region_of(map), more);
   return verdict;
 }
 

@@ -37,7 +37,7 @@ struct ReproducedModel {
   [[nodiscard]] bool complete(const identification::Experiment& experiment) const;
 };
 
-/// The leading explanation of published fits, fitted anew at its ranges and number of readings.
+/// The leading explanation of published fits, fitted again at its ranges and number of readings.
 struct RefittedLeader {
   std::string model;
   double p = 1.0;                        ///< SummaryStatistics::p there
@@ -55,8 +55,8 @@ struct Reproduction {
   std::shared_ptr<const nlohmann::json>
       map;                               ///< of how the fits may have come about, results/published_map.hpp; or null
   std::optional<RefittedLeader> leader;  ///< of the map
-  std::vector<std::string> warnings;     ///< what is doubtful about the models
-  bool interrupted = false;              ///< this is a part of what was asked for
+  std::vector<std::string> warnings;     ///< doubts about the models
+  bool interrupted = false;              ///< only a part of the result was computed
 
   /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
   /// no model has one.

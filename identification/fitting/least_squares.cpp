@@ -210,7 +210,7 @@ std::vector<int> kept_by_bounds(const ceres::Problem& problem, const Eigen::Vect
 }
 
 /// What chi2 can fall by, to first order, where the numbers `kept` stay: g^T (J^T J)^-1 g of the others.
-double fall_beside(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradient, const std::vector<int>& kept) {
+double fall_of_others(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradient, const std::vector<int>& kept) {
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     if (std::find(kept.begin(), kept.end(), k) == kept.end()) others.push_back(k);
@@ -219,8 +219,8 @@ double fall_beside(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradi
   return (unit_directions(jacobian(Eigen::all, others)).transpose() * gradient(others)).squaredNorm();
 }
 
-/// Steps that are cut off at a bound may end where chi2 still falls along it: such a fit goes on with the numbers held that
-/// the bounds keep, until none of the others moves and none of these would leave its bound. Returns the iterations.
+/// Steps that are cut off at a bound may end where chi2 still falls along it. Such a fit is continued with the numbers held that
+/// are kept by their bounds, until the others come to rest and no held number would leave its bound. Returns the iterations.
 int solve_along_bounds(const FitOptions& options, const Residuals& residuals, Eigen::VectorXd& unknown,
                        ceres::Problem& problem, ceres::Solver::Summary& summary) {
   constexpr int most = 4;
@@ -236,7 +236,7 @@ int solve_along_bounds(const FitOptions& options, const Residuals& residuals, Ei
     const std::vector<int> kept = kept_by_bounds(problem, unknown, gradient);
     const bool held = problem.HasManifold(unknown.data());
     if (kept.empty() && !held) return iterations;
-    if (fall_beside(jacobian, gradient, kept) <= options.tolerance * r.squaredNorm()) return iterations;
+    if (fall_of_others(jacobian, gradient, kept) <= options.tolerance * r.squaredNorm()) return iterations;
     problem.SetManifold(unknown.data(), new ceres::SubsetManifold(n, kept));
     summary = solve(options, problem);
     iterations += static_cast<int>(summary.iterations.size());

@@ -47,7 +47,7 @@ double distance(const FitCell& cell, const TouchCurve& curve, double zero) {
 }
 
 /// The best zero by steps of the least distance from an estimate, if they come to an end.
-std::optional<double> zero_beside(const FitCell& cell, const TouchCurve& curve, double zero) {
+std::optional<double> zero_near(const FitCell& cell, const TouchCurve& curve, double zero) {
   constexpr int most = 8;
   constexpr double enough = 1e-3;  // of the standard deviation of the zero
   const double low = least_zero(cell, curve), sigma = std::exp(cell.log_scatter);
@@ -128,8 +128,8 @@ double log_constant(const FitCell& cell) {
 
 double best_zero(const FitCell& cell, const TouchCurve& curve, std::optional<double> near) {
   if (!(least_zero(cell, curve) < largest_zero)) return -largest_zero;
-  const std::optional<double> beside = near ? zero_beside(cell, curve, *near) : std::nullopt;
-  return beside ? *beside : zero_anywhere(cell, curve);
+  const std::optional<double> found = near ? zero_near(cell, curve, *near) : std::nullopt;
+  return found ? *found : zero_anywhere(cell, curve);
 }
 
 Eigen::ArrayXd most_likelihoods(const FitCell& cell, const TouchCurve& curve, double zero,

@@ -24,8 +24,8 @@ inline constexpr double largest_zero = 4e-3;
 inline constexpr double first_scatter = -1.5, scatter_step = 0.25;
 inline constexpr Eigen::Index scatters = 13;
 
-/// Zero of the travel at which the parabola of the computed curve is nearest to the published one [m]. near: a zero beside it, from which
-/// it is looked for; none: it is looked for everywhere. -largest_zero where the curve does not reach far enough.
+/// Zero of the travel at which the parabola of the computed curve is nearest to the published one [m]. near: an
+/// estimate from which the search begins; none: all zeros are searched. -largest_zero where the curve does not reach far enough.
 [[nodiscard]] double best_zero(const FitCell& cell, const TouchCurve& curve, std::optional<double> near = std::nullopt);
 
 /// log p(A, B, C, R2 | curve, sigma) of a published fit in SI units [-], the zero z of the travel integrated out, one a scatter:

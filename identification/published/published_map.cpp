@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -294,7 +293,7 @@ FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options) {
 
 std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
                                          const std::vector<Hypothesis>& hypotheses, const MapOptions& options) {
-  constexpr double rival = 12.0;  // of the logarithm of the evidence: what is farther behind needs no precision
+  constexpr double rival = 12.0;  // of the logarithm of the evidence: hypotheses farther behind need no precision
   bool stopped = false;
   double leading = impossible;
   const auto goes_on = [&](const std::string& stage) {

@@ -57,7 +57,7 @@ struct MapOptions {
   FitRanges::Options ranges;
   int elements = 64;                        ///< of the computed wire
   int first = 24, batch = 16, batches = 4;  ///< computed tests a number, see ImportanceSampler
-  /// Hypotheses within e^-12 of the leading one go on until so many computed tests count, up to most_batches.
+  /// Hypotheses within e^-12 of the leading one are sampled until so many computed tests count, up to most_batches.
   double effective = 100.0;
   int most_batches = 40;
   std::function<bool(const std::string& stage)> progress = {};

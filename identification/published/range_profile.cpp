@@ -52,14 +52,14 @@ std::vector<double> CommonRanges::by_readings(const FitCells& cells) const {
   for (std::size_t n = 0; n < ranges_.readings().size(); ++n) {
     const ByScatter all = by_scatter(cells, n, curves_, zeros, floor_);
     const double log = log_sum(std::vector<double>(all.log.begin(), all.log.end())) + std::log(scatter_step);
-    result.push_back(log > impossible ? log : all.most);
+    result.push_back(all.most > floor_ ? log : all.most);
   }
   return result;
 }
 
-/// Index of the interval (i, i + 1) that is to be halved next: beside the best node until p hardly changes, and wherever p matters.
+/// Index of the interval (i, i + 1) that is to be halved next: next to the best node until p hardly changes, and wherever p matters.
 std::optional<std::size_t> next_to_halve(const std::vector<Node>& nodes, double matters) {
-  constexpr double beside_best = 0.5, anywhere = 1.0, narrow = 1e-4, far = 1e3;
+  constexpr double next_to_best = 0.5, anywhere = 1.0, narrow = 1e-4, far = 1e3;
   const auto best =
       static_cast<std::size_t>(std::distance(nodes.begin(), std::ranges::max_element(nodes, {}, &Node::largest)));
   std::optional<std::size_t> found;
@@ -70,7 +70,7 @@ std::optional<std::size_t> next_to_halve(const std::vector<Node>& nodes, double 
     if (b.log_to - a.log_to < narrow) continue;
     if (!next && !(std::max(a.largest(), b.largest()) > nodes[best].largest() - matters)) continue;
     const double change = std::min(std::abs(a.largest() - b.largest()), far);
-    if (!(change > (next ? beside_best : anywhere))) continue;
+    if (!(change > (next ? next_to_best : anywhere))) continue;
     const double weight = next ? 10.0 * change : change;
     if (weight > largest_change) found = i, largest_change = weight;
   }

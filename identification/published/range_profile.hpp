@@ -10,7 +10,7 @@ struct ByScatter {
   Eigen::ArrayXd log;        ///< [-]
   double most = 0.0;         ///< the largest that `log` can be
 };
-/// zeros: of the travel [m], one a series; estimates beside them, if there are, are replaced. What is below `floor` is not computed: impossible.
+/// zeros: of the travel [m], one a series, replaced; the ones given are estimates. What is below `floor` is not computed: impossible.
 [[nodiscard]] ByScatter by_scatter(const FitCells& cells, std::size_t readings, const std::vector<TouchCurve>& curves,
                                    std::vector<std::optional<double>>& zeros, double floor);
 

@@ -21,21 +21,22 @@ double step_of(const MotionSetting& s, Differences differences) {
   return step_share * (follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale);
 }
 
-/// Derivatives by numbers that hardly act, whose short steps show the errors of the integration: taken anew with a long step. A column of
-/// a number that does not act with a long step either is nought: the number stays where it is.
-void take_weak_ones_anew(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
+/// Takes derivatives by numbers that hardly act again, with a long step: a short one shows the errors of the integration. The column of
+/// a number that does not act with a long step either becomes zero, and the number stays where it is.
+void retake_weak_columns(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
                          const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
                          Eigen::MatrixXd& jacobian) {
-  constexpr double weak =
-      0.02;  // standard deviations in all, by a change of a scale, that is of 1 % of a declared number
+  // Changes of the whole residual in standard deviations; a scale is 1 % of a declared number.
+  constexpr double weak = 0.02;       // by a scale
   constexpr double long_step = 50.0;  // scales
-  constexpr double nothing = 0.1;     // standard deviations in all, by the long step
+  constexpr double nothing = 0.1;     // by the long step
   std::vector<MotionSetting> weak_ones, rest = fixed;
   std::vector<Eigen::Index> columns;
   for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
-    const bool anew = jacobian.col(k).norm() < weak && jacobian.col(k).norm() > 0.0;
-    if (anew) columns.push_back(k);
-    (anew ? weak_ones : rest).push_back(settings[static_cast<std::size_t>(k)]);
+    const double norm = jacobian.col(k).norm();
+    const bool again = norm < weak && norm > 0.0;
+    if (again) columns.push_back(k);
+    (again ? weak_ones : rest).push_back(settings[static_cast<std::size_t>(k)]);
   }
   if (columns.empty()) return;
   jacobian(Eigen::all, columns) =
@@ -75,7 +76,7 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
     const std::vector<MotionSetting> settings = at(x);
     if (last_at != x) last = model.predict(together(settings, options.fixed), data.records, data.readings);
     Eigen::MatrixXd derivatives = signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
-    take_weak_ones_anew(model, data, settings, last, options.fixed, derivatives);
+    retake_weak_columns(model, data, settings, last, options.fixed, derivatives);
     return -derivatives;
   };
   problem.progress = [&](int iteration, double chi2) {

@@ -38,7 +38,9 @@ TEST(PublishedVerdict, HasDegrees) {
           "if something gives along the wire, by 27 micrometres a newton more than declared (24 to 30 with 95 %)"));
   EXPECT_THAT(shared.headline, HasSubstr(": probability 96 % among 3 explanations"));
   EXPECT_THAT(shared.headline, HasSubstr("They cannot tell which of these it is: mounts (57 %), wire (30 %); "));
-  EXPECT_THAT(shared.headline, HasSubstr("the range of the test (5.2 to 16 mm and 6 to 45 readings fit)"));
+  EXPECT_THAT(shared.headline, HasSubstr("one raw reading would tell more (5.2 to 16 mm and 6 to 45 readings fit)."));
+  EXPECT_THAT(verdict_of({entry("slip", "slip", 1.0, 1.0, 0.2, 0.0)}).headline,
+              HasSubstr(" They fit over 5.2 to 16 mm and 6 to 45 readings; the range of the test"));
   // Not under both priors; P not known or too small; nothing agrees; nobody leads.
   EXPECT_EQ(verdict_of({entry("a", "a", 0.99, 0.9, 0.5, 0.0), entry("b", "b", 0.01, 0.1, nullptr, 0.0)}).answer,
             PublishedAnswer::most_likely);

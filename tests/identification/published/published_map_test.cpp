@@ -89,7 +89,7 @@ TEST(CurveLikelihood, IntegratesTheZeroOut) {
   }
 }
 
-// A zero that is looked for beside an estimate is the one that is looked for everywhere, and no integral is above its bound.
+// The search for a zero from an estimate finds the one of the search everywhere, and no integral is above its bound.
 TEST(CurveLikelihood, FindsTheZeroBesideAnEstimate) {
   const TouchCurve curve = cubic(2000.0, 4e7);
   for (const int readings : {6, 13, 68}) {

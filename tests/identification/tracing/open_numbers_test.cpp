@@ -113,7 +113,7 @@ TEST(OpenNumbers, IndependentNumbersStayKnown) {
   EXPECT_TRUE(t.findings.empty());
 }
 
-// A wire that is stiffer than declared asks for less than no compliance: the others come to their minimum beside that bound.
+// A wire that is stiffer than declared asks for less than no compliance: the other numbers reach their minimum with that one on its bound.
 TEST(OpenNumbers, ANumberOnItsBoundLeavesTheOthersTheirMinimum) {
   const std::string bending = "wire.bending_stiffness_Nm2", mounts = "mount_axial_compliance.compliance_m_N";
   std::vector<double> found;
