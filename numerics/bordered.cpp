@@ -118,11 +118,13 @@ bool BorderedSolver::factorize_blocks(const BorderedSystem& system) {
     determinant_sign_ = factor_.negative_pivots() % 2 == 0 ? 1 : -1;
     return true;
   }
-  // Equations of different units: scale the rows before pivoting.
+  // Equations of different units: scale the rows before pivoting. What is not a number has no pivot, which Eigen does not check.
   Eigen::VectorXd scale = schur.rowwise().lpNorm<Eigen::Infinity>();
-  if (!scale.allFinite() || scale.minCoeff() == 0.0) return false;
+  if (!schur.allFinite() || scale.minCoeff() == 0.0) return false;
   scale = scale.cwiseInverse();
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * schur);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * schur;
+  if (!scaled.allFinite()) return false;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(scaled);
   int sign = factor_.negative_pivots() % 2 == 0 ? 1 : -1;
   sign *= static_cast<int>(lu.permutationP().determinant());
   for (Eigen::Index i = 0; i < m; ++i) {

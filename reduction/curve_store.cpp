@@ -35,6 +35,9 @@ std::string identity(const WireCase& wire, const DistilSettings& settings, const
   };
   add("kt", t.mount.translational_stiffness);
   add("kr", t.mount.rotational_stiffness);
+  for (const std::size_t k : {0, 1}) {
+    text += fmt::format(" {} {}", t.mount.own_translational_compliance[k], t.mount.own_rotational_compliance[k]);
+  }
   add("slip", t.mount.slip_tension);
   if (t.mount.slip_tension)
     text += fmt::format(" {} {}", static_cast<int>(t.mount.slip), static_cast<int>(t.mount.slip_at));

@@ -116,7 +116,7 @@ std::string effects_of(const Trace& t) {
 
 /// Why an answer is not the only one.
 std::string reservation(const Trace& t) {
-  if (t.decided || !t.alternatives.empty()) return "";
+  if (t.decided || t.serial || !t.alternatives.empty()) return "";
   if (t.one_condition) {
     return " All readings are of one position and one slack: a cause outside the catalogue that acts on the travel "
            "would "
@@ -145,6 +145,12 @@ bool impossible(const identification::Finding& f) {
 
 /// The readings do not determine the numbers of a model that describes them.
 std::string cannot_tell(const Trace& t) {
+  if (t.serial_rival) {
+    return fmt::format(
+        "Cannot tell: {} would explain the error of {:.3g} N, but noise that resembles itself from reading to reading "
+        "does as well. Repeat a series: what comes back is no noise.",
+        fmt::join(t.partial, " and "), t.base.rmse);
+  }
   return fmt::format(
       "Cannot tell: the base model describes the readings (rmse {:.3g} N), but they do not determine its numbers, so "
       "that an "
@@ -154,8 +160,23 @@ std::string cannot_tell(const Trace& t) {
       t.base.rmse);
 }
 
+/// What noise that resembles itself means for the intervals.
+std::string serial_words(const identification::SerialNoise& s, std::size_t readings) {
+  return fmt::format(
+      " What is left resembles itself over {:.2g} readings ({:.2g} % of its variance): these {} readings say as much "
+      "as "
+      "{:.2g} independent ones, which the intervals count.",
+      s.length, 100.0 * s.smooth, readings, s.effective);
+}
+
 std::string not_explained(const Trace& t) {
   std::string text;
+  const auto odd = std::ranges::find_if(t.findings, [](const identification::Finding& f) {
+    return f.kind == identification::FindingKind::series_of_another_specimen;
+  });
+  if (odd != t.findings.end()) {
+    return fmt::format("Not explained by one wire: {}. Leave it out, or trace it by itself.", odd->what);
+  }
   if (t.rival_explanation) {
     text = fmt::format(
         "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
@@ -212,6 +233,7 @@ std::string verdict(const Trace& t) {
       text = cannot_tell(t);
       break;
   }
+  if (t.serial && t.kind != VerdictKind::not_explained) text += serial_words(*t.serial, t.rows);
   if (t.zero && t.zero->doubtful) text += zero_words(*t.zero);
   return text;
 }

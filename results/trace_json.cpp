@@ -242,6 +242,8 @@ json findings_document(const identification::Experiment& experiment, const Trace
                 {"source", trace.noise.source},
                 {"smooth_share", trace.noise.smooth},
                 {"correlation_length_mm", in_mm(trace.noise.length)},
+                {"correlation_readings", trace.serial ? json(trace.serial->length) : json()},
+                {"effective_readings", trace.serial ? json(trace.serial->effective) : json()},
                 {"drawn_about_published_laws", false}}},
               {"declared", error_json(trace, trace.declared)},
               {"base", error_json(trace, trace.base)},

@@ -108,6 +108,11 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held) {
   return wire;
 }
 
+std::array<const char*, 7> keys_of_giving_mounts() {
+  return {"slip_tension_N",       "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", own_rotational_keys[0],
+          own_rotational_keys[1], own_translational_keys[0],     own_translational_keys[1]};
+}
+
 namespace {
 
 wire::MountSpecification read_mount(const TomlTable& table) {
@@ -126,6 +131,12 @@ wire::MountSpecification read_mount(const TomlTable& table) {
     mount.support_radius = table.number_or("support_radius_mm", 0.0, radius, mm);
   mount.translational_stiffness = table.optional_number("translational_stiffness_N_m", stiffness);
   mount.rotational_stiffness = table.optional_number("rotational_stiffness_Nm_rad", stiffness);
+  for (const std::size_t k : {0, 1}) {
+    if (const auto own = table.optional_number(own_translational_keys[k], stiffness))
+      mount.own_translational_compliance[k] = 1.0 / *own;
+    if (const auto own = table.optional_number(own_rotational_keys[k], stiffness))
+      mount.own_rotational_compliance[k] = 1.0 / *own;
+  }
   mount.slip_tension = table.optional_number("slip_tension_N", Range::above(0.0, largest_force));
   static constexpr Choice<wire::MountSlip> slips[] = {{"feeds", wire::MountSlip::feeds},
                                                       {"slides", wire::MountSlip::slides}};
@@ -142,9 +153,13 @@ wire::MountSpecification read_mount(const TomlTable& table) {
   };
   if (!kind) return mount;
   if (*kind != wire::MountKind::supports) refuse("support_radius_mm", "\"supports\"");
-  if (*kind != wire::MountKind::clamped) refuse("rotational_stiffness_Nm_rad", "\"clamped\"");
+  if (*kind != wire::MountKind::clamped) {
+    for (const char* key : {"rotational_stiffness_Nm_rad", own_rotational_keys[0], own_rotational_keys[1]})
+      refuse(key, "\"clamped\"");
+  }
   if (*kind == wire::MountKind::supports) {
-    refuse("translational_stiffness_N_m", "\"clamped\" or \"pinned\"");
+    for (const char* key : {"translational_stiffness_N_m", own_translational_keys[0], own_translational_keys[1]})
+      refuse(key, "\"clamped\" or \"pinned\"");
     refuse("slip_tension_N", "\"clamped\" or \"pinned\"");
   }
   return mount;
@@ -221,7 +236,7 @@ PushTables push_tables(const TomlTable& root) {
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test) {
   if (test.mount.kind == wire::MountKind::supports)
     tables.mount.fail("kind", "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
-  for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+  for (const char* key : keys_of_giving_mounts()) {
     if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
   }
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {

@@ -3,6 +3,7 @@
 #include "base/toml_reader.hpp"
 #include "coupling/statics/push_problem.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,14 @@ struct PushTables {
 /// Reads and checks wire, mounts, pusher, bulge and gravity; what is wrong is reported to the tables' document.
 /// Contact position and travel are left to the caller.
 [[nodiscard]] coupling::PushProblem read_push_problem(const PushTables& tables);
+
+/// Keys in [mount] of the stiffness of the left and of the right mount by itself, in series with that of each.
+inline constexpr std::array<const char*, 2> own_translational_keys{"translational_stiffness_left_N_m",
+                                                                   "translational_stiffness_right_N_m"};
+inline constexpr std::array<const char*, 2> own_rotational_keys{"rotational_stiffness_left_Nm_rad",
+                                                                "rotational_stiffness_right_Nm_rad"};
+/// Keys in [mount] with which mounts are not rigid.
+[[nodiscard]] std::array<const char*, 7> keys_of_giving_mounts();
 
 /// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural curvature.
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test);

@@ -2,9 +2,13 @@
 
 #include "base/in_unit.hpp"
 #include "base/units.hpp"
+#include "scenario/push_reader.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -18,6 +22,11 @@ using base::in_unit;
 using base::mm;
 
 constexpr double MPa = 1e6;  // [Pa]
+
+/// The stiffness of one mount beside that of each, none where it gives no more.
+std::optional<double> own_stiffness(double compliance) {
+  return compliance != 0.0 ? std::optional(1.0 / compliance) : std::nullopt;
+}
 
 /// A number as TOML has it: every digit, and a point or an exponent, so that it is no integer.
 std::string decimal(double value) {
@@ -97,8 +106,13 @@ std::string mount_table(const wire::MountSpecification& mount) {
     table.number("support_radius_mm", mount.support_radius, mm);
     return table.text();
   }
+  const bool clamped = mount.kind == wire::MountKind::clamped;
   table.number("translational_stiffness_N_m", mount.translational_stiffness);
-  if (mount.kind == wire::MountKind::clamped) table.number("rotational_stiffness_Nm_rad", mount.rotational_stiffness);
+  if (clamped) table.number("rotational_stiffness_Nm_rad", mount.rotational_stiffness);
+  for (const std::size_t k : {0, 1}) {
+    table.number(own_translational_keys[k], own_stiffness(mount.own_translational_compliance[k]));
+    if (clamped) table.number(own_rotational_keys[k], own_stiffness(mount.own_rotational_compliance[k]));
+  }
   if (mount.slip_tension) {
     constexpr const char* places[] = {"left", "right", "both"};
     table.number("slip_tension_N", *mount.slip_tension)

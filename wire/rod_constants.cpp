@@ -20,8 +20,9 @@ PlanarEnd planar_end(const MountSpecification& mount, SlipPlace place) {
       break;
   }
   end.position = {place == SlipPlace::left ? 0.0 : mount.span, 0.0};
-  if (mount.rotational_stiffness) end.rotational_stiffness = *mount.rotational_stiffness;
-  if (mount.translational_stiffness) end.translational_stiffness = *mount.translational_stiffness;
+  const std::size_t which = place == SlipPlace::left ? 0 : 1;
+  end.rotational_stiffness = mount.rotational_stiffness_of(which);
+  end.translational_stiffness = mount.translational_stiffness_of(which);
   // A mount that slides is no spring of the wire: what holds it is an unknown force (theory.md, C.8).
   const bool here = mount.slip_at == SlipPlace::both || mount.slip_at == place;
   if (mount.slip_tension && mount.slip == MountSlip::slides && here) end.translational_stiffness = 0.0;

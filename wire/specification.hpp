@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -74,9 +77,28 @@ struct MountSpecification {
   double support_radius = 0.0;                    ///< supports only [m], >= 0
   std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
   std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
-  std::optional<double> slip_tension;             ///< force on a mount beyond which it slips [N], > 0: theory.md (C.8)
+  /// Of the left and the right mount by itself, beside that of each: it gives by so much more [m/N], [rad/(N m)].
+  std::array<double, 2> own_translational_compliance{}, own_rotational_compliance{};
+  std::optional<double> slip_tension;  ///< force on a mount beyond which it slips [N], > 0: theory.md (C.8)
   MountSlip slip = MountSlip::feeds;
   SlipPlace slip_at = SlipPlace::left;
+
+  /// What holds the left (0) or the right (1) mount along the chord [N/m]; infinite where it is rigid.
+  [[nodiscard]] double translational_stiffness_of(std::size_t mount) const {
+    return in_series(translational_stiffness, own_translational_compliance[mount]);
+  }
+  /// What holds the direction of its clamp [N m/rad], likewise.
+  [[nodiscard]] double rotational_stiffness_of(std::size_t mount) const {
+    return in_series(rotational_stiffness, own_rotational_compliance[mount]);
+  }
+
+ private:
+  static double in_series(const std::optional<double>& each, double own) {
+    // 1e-11 m/N moves a mount by 10 nm under 1 kN: rigid, and a stiffer spring would only spoil the equations.
+    const bool rigid = own < 1e-11 && own > -1e-11;
+    if (rigid) return each.value_or(std::numeric_limits<double>::infinity());
+    return 1.0 / (own + (each ? 1.0 / *each : 0.0));
+  }
 };
 
 }  // namespace snare::wire

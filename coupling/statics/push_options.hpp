@@ -2,6 +2,7 @@
 
 #include "coupling/statics/push_problem.hpp"
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -14,9 +15,9 @@ struct PushVariation {
   double step = 0.0;
   /// d travel / d amount at every point: -1 for a zero of the travel that is displaced
   double travel = 0.0;
-  /// d compliance / d amount of both mounts along the chord [m/N], where they are rigid: each then moves by
-  /// its reaction.
-  double mount_compliance = 0.0;
+  /// d compliance / d amount of the left and the right mount along the chord [m/N], where they are rigid: each then moves
+  /// by its reaction.
+  std::array<double, 2> mount_compliance{};
 };
 
 /// How a push is computed, and what is asked of it beside the force.

@@ -172,7 +172,7 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
   for (std::size_t k = 0; k < states.mounts.size(); ++k) {
     SlippingMount& mount = states.mounts[k];
     mount.limit = side.mounts[k].limit;
-    mount.compliance = side.mounts[k].compliance + side.amount * varied.mount_compliance;
+    mount.compliance = side.mounts[k].compliance + side.amount * varied.mount_compliance[mount.right ? 1 : 0];
     mount.last += side.amount * memory.mounts[k];
   }
 }
@@ -180,14 +180,14 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
 numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numerics::PathPoint& at,
                                            numerics::PathWorkspace& workspace, Varied& varied) {
   numerics::PathPoint change{varied.held, Eigen::VectorXd::Zero(at.border.size()), varied.travel};
-  if (varied.mount_compliance != 0.0) {
+  if (varied.mount_compliance != std::array<double, 2>{}) {
     // A spring of stiffness 1/c under the gradient g of the wire's energy: q = x - c g.
     // Of a mount that slides that spring is part of its equation.
     const auto& reactions = system.mount_reactions();
     std::array<bool, 2> held{true, true};
     for (const SlippingMount& mount : system.mounts) held[mount.right ? 1 : 0] = mount.feeds();
-    if (held[0]) change.band[0] -= varied.mount_compliance * reactions[0].x();
-    if (held[1]) change.band[at.band.size() - 2] -= varied.mount_compliance * reactions[1].x();
+    if (held[0]) change.band[0] -= varied.mount_compliance[0] * reactions[0].x();
+    if (held[1]) change.band[at.band.size() - 2] -= varied.mount_compliance[1] * reactions[1].x();
   }
   // The differences begin with the change at the point before. A slider that has slipped by less than its memory differs would
   // turn back on one side if the unknowns did not go along.

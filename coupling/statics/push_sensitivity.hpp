@@ -78,9 +78,9 @@ class PushSensitivity {
     std::array<Side, 2> sides;  // minus, plus
     double step = 0.0;
     double travel = 0.0;
-    double mount_compliance = 0.0;
-    Eigen::VectorXd held;                 // d(positions that the mounts hold)/dp
-    std::vector<Eigen::Vector2d> centre;  // d(centre of the sliding contacts)/dp
+    std::array<double, 2> mount_compliance{};  // left, right
+    Eigen::VectorXd held;                      // d(positions that the mounts hold)/dp
+    std::vector<Eigen::Vector2d> centre;       // d(centre of the sliding contacts)/dp
     Memory memory;
   };
 

@@ -53,7 +53,7 @@ std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount
       one.last = controls[static_cast<std::size_t>(one.control())];
     } else {
       one.last = right ? mount.span : 0.0;
-      if (mount.translational_stiffness) one.compliance = 1.0 / *mount.translational_stiffness;
+      one.compliance = 1.0 / mount.translational_stiffness_of(right ? 1 : 0);
     }
     result.push_back(one);
   }

@@ -6,29 +6,40 @@
 namespace snare::identification {
 
 // The list: one line an effect, NAME of NAME.cpp, in the order in which equals are listed.
-#define SNARE_EFFECTS(EFFECT)         \
-  EFFECT(bending_stiffness)           \
-  EFFECT(axial_stiffness)             \
-  EFFECT(wire_length)                 \
-  EFFECT(span)                        \
-  EFFECT(contact_position)            \
-  EFFECT(push_misalignment)           \
-  EFFECT(mount_slip)                  \
-  EFFECT(mount_slip_right)            \
-  EFFECT(clamp_slide)                 \
-  EFFECT(clamp_slide_right)           \
-  EFFECT(clamp_slide_both)            \
-  EFFECT(mount_axial_compliance)      \
-  EFFECT(mount_rotational_compliance) \
-  EFFECT(contact_friction)            \
-  EFFECT(pusher_compliance)           \
-  EFFECT(displacement_offset)         \
-  EFFECT(force_offset)                \
-  EFFECT(force_gain)                  \
-  EFFECT(natural_curvature)           \
-  EFFECT(strand_hysteresis)           \
-  EFFECT(plasticity)                  \
-  EFFECT(gravity)                     \
+#define SNARE_EFFECTS(EFFECT)               \
+  EFFECT(bending_stiffness)                 \
+  EFFECT(axial_stiffness)                   \
+  EFFECT(wire_diameter)                     \
+  EFFECT(wire_length)                       \
+  EFFECT(span)                              \
+  EFFECT(contact_position)                  \
+  EFFECT(push_misalignment)                 \
+  EFFECT(mount_slip)                        \
+  EFFECT(mount_slip_right)                  \
+  EFFECT(clamp_slide)                       \
+  EFFECT(clamp_slide_right)                 \
+  EFFECT(clamp_slide_both)                  \
+  EFFECT(mount_axial_compliance)            \
+  EFFECT(mount_axial_compliance_left)       \
+  EFFECT(mount_axial_compliance_right)      \
+  EFFECT(mount_rotational_compliance)       \
+  EFFECT(mount_rotational_compliance_left)  \
+  EFFECT(mount_rotational_compliance_right) \
+  EFFECT(contact_friction)                  \
+  EFFECT(pusher_compliance)                 \
+  EFFECT(displacement_offset)               \
+  EFFECT(force_offset)                      \
+  EFFECT(force_gain)                        \
+  EFFECT(load_cell_nonlinearity)            \
+  EFFECT(travel_nonlinearity)               \
+  EFFECT(force_drift)                       \
+  EFFECT(creep)                             \
+  EFFECT(data_lag)                          \
+  EFFECT(pusher_play)                       \
+  EFFECT(natural_curvature)                 \
+  EFFECT(strand_hysteresis)                 \
+  EFFECT(plasticity)                        \
+  EFFECT(gravity)                           \
   EFFECT(rate_viscosity)
 
 #define SNARE_DECLARE(name) Effect name##_effect();
@@ -48,7 +59,11 @@ constexpr std::string_view order_in_messages[] = {"wire.bending_stiffness_Nm2",
                                                   "mount.span_mm",
                                                   "mount.support_radius_mm",
                                                   "mount_axial_compliance.compliance_m_N",
+                                                  "mount_axial_compliance_left.compliance_m_N",
+                                                  "mount_axial_compliance_right.compliance_m_N",
                                                   "mount_rotational_compliance.compliance_rad_Nm",
+                                                  "mount_rotational_compliance_left.compliance_rad_Nm",
+                                                  "mount_rotational_compliance_right.compliance_rad_Nm",
                                                   "mount_slip.tension_N",
                                                   "mount_slip_right.tension_N",
                                                   "clamp_slide.tension_N",
@@ -68,6 +83,13 @@ constexpr std::string_view order_in_messages[] = {"wire.bending_stiffness_Nm2",
                                                   "reading.displacement_offset_mm",
                                                   "reading.force_offset_N",
                                                   "reading.force_gain",
+                                                  "load_cell_nonlinearity.at_half_range",
+                                                  "travel_nonlinearity.at_half_range",
+                                                  "force_drift.rate_N_s",
+                                                  "creep.share",
+                                                  "creep.time_s",
+                                                  "data_lag.time_s",
+                                                  "pusher_play.width_mm",
                                                   "rate_viscosity.relaxation_time_s"};
 
 std::vector<const Parameter*> numbers_of_all() {

@@ -14,7 +14,7 @@ Parameter recorded_displacement() {
           .number = member([](auto&, auto& r) -> auto& { return r.displacement_offset; }),
           .limits = [](const PushProblem&) { return between(-5e-3, 5e-3); },
           .step = 1e-7,
-          .travel = -1.0};
+          .derivative = Derivative::travel};
 }
 
 }  // namespace

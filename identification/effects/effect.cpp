@@ -29,4 +29,25 @@ void set_compliance(std::optional<double>& stiffness, double value) {
     stiffness = 1.0 / value;
 }
 
+std::string needs_times(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.readings && !s.readings->time.empty()) return "";
+  }
+  return "the record has no times";
+}
+
+std::string needs_unloading(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.readings && s.readings->displacement.size() > 1 && legs_of(s.readings->displacement).size() > 1) return "";
+  }
+  return "no record turns back";
+}
+
+std::string needs_readings(const std::vector<Series>& series) {
+  for (const Series& s : series) {
+    if (s.readings) return "";
+  }
+  return "there are published fits only, no readings";
+}
+
 }  // namespace snare::identification

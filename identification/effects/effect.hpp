@@ -42,6 +42,8 @@ struct Effect {
   bool one_sided = false;  ///< the first number can only grow from its null value
   /// Coordinates of the numbers at which to try an effect that has no derivative at null; none: it has one.
   std::vector<std::vector<double>> (*trials)(const TrialContext&) = nullptr;
+  /// Coordinates of the first number, beside null, at which refits begin; none: the effect is nearly linear.
+  std::vector<double> (*sizes)(const PushProblem& declared) = nullptr;
   /// Why these series cannot show the effect; empty when they may.
   std::string (*unobservable)(const std::vector<Series>&) = nullptr;
   std::string independent_check{};  ///< a measurement that settles the effect by itself
@@ -53,5 +55,11 @@ struct Effect {
 /// A spring's compliance [m/N] or [rad/(N m)] in place of its stiffness; 0 for a rigid mount.
 [[nodiscard]] double compliance(const std::optional<double>& stiffness);
 void set_compliance(std::optional<double>& stiffness, double value);
+/// For Effect::unobservable: no record has times.
+[[nodiscard]] std::string needs_times(const std::vector<Series>& series);
+/// The same: no record turns back.
+[[nodiscard]] std::string needs_unloading(const std::vector<Series>& series);
+/// The same: only published fits, no readings of sensors.
+[[nodiscard]] std::string needs_readings(const std::vector<Series>& series);
 
 }  // namespace snare::identification

@@ -11,7 +11,7 @@ Parameter gain() {
           .number = member([](auto&, auto& r) -> auto& { return r.force_gain; }),
           .limits = [](const PushProblem&) { return between(0.2, 5.0); },
           .step = 1e-3,
-          .derivative = Derivative::force_gain};
+          .derivative = Derivative::record};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ Parameter recorded_force() {
           .number = member([](auto&, auto& r) -> auto& { return r.force_offset; }),
           .limits = [](const PushProblem&) { return between(-1e3, 1e3); },
           .step = 1e-3,
-          .derivative = Derivative::force_offset};
+          .derivative = Derivative::record};
 }
 
 }  // namespace

@@ -1,8 +1,17 @@
-#include "identification/effects/effect.hpp"
+#include "identification/effects/mount_compliance.hpp"
 
 namespace snare::identification {
 
 namespace {
+
+/// Those that are rigid.
+std::array<double, 2> rigid_mounts(const PushProblem& p) {
+  std::array<double, 2> result{};
+  for (const std::size_t k : {0, 1}) {
+    result[k] = std::isinf(p.mount.translational_stiffness_of(k)) ? 1.0 : 0.0;
+  }
+  return result;
+}
 
 /// Of each mount along the chord.
 Parameter axial_compliance() {
@@ -13,7 +22,7 @@ Parameter axial_compliance() {
                  [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); }},
       .limits = [](const PushProblem&) { return between(0.0, 1e-3); },
       .step = 1e-12,
-      .mount_gives = true};
+      .mounts_give = rigid_mounts};
 }
 
 }  // namespace
@@ -25,6 +34,7 @@ Effect mount_axial_compliance_effect() {
           .meaning = "the mounts give way along the wire",
           .numbers = {{axial_compliance(), 0.0, 1e-4}},
           .one_sided = true,
+          .sizes = sizes_beside_stretching,
           .unobservable = needs_mounts,
           .independent_check = "put a dial gauge between the mounts and read their approach under tension"};
 }

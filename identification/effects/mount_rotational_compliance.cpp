@@ -1,4 +1,4 @@
-#include "identification/effects/effect.hpp"
+#include "identification/effects/mount_compliance.hpp"
 
 namespace snare::identification {
 
@@ -10,20 +10,8 @@ Parameter rotational_compliance() {
           .unit = "rad/(N m)",
           .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
                      [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); }},
-          .limits = [](const PushProblem&) { return between(0.0, 10.0); },
+          .limits = [](const PushProblem&) { return between(0.0, 1000.0); },
           .step = 1e-6};
-}
-
-std::string needs_clamps(const std::vector<Series>& series) {
-  for (const Series& s : series) {
-    if (s.test.wire.yielding || s.test.wire.strand_friction) {
-      return "clamps that give are not computed together with sections that slip or yield";
-    }
-  }
-  for (const Series& s : series) {
-    if (s.test.mount.kind == wire::MountKind::clamped) return "";
-  }
-  return "only clamps hold the wire's direction";
 }
 
 }  // namespace
@@ -33,8 +21,9 @@ Effect mount_rotational_compliance_effect() {
   return {.name = "mount_rotational_compliance",
           .channel = Channel::mount,
           .meaning = "the clamps turn with the wire",
-          .numbers = {{rotational_compliance(), 0.0, 10.0}},
+          .numbers = {{rotational_compliance(), 0.0, 1000.0}},
           .one_sided = true,
+          .sizes = sizes_beside_bending,
           .unobservable = needs_clamps,
           .independent_check = "glue a small mirror or pointer on a clamp and read its rotation"};
 }

@@ -1,4 +1,4 @@
-#include "identification/effects/effect.hpp"
+#include "identification/effects/mount_compliance.hpp"
 
 namespace snare::identification {
 
@@ -22,6 +22,7 @@ Effect pusher_compliance_effect() {
           .meaning = "the machine behind the pusher gives way under load",
           .numbers = {{pusher_compliance(), 0.0, 1e-4}},
           .one_sided = true,
+          .sizes = sizes_beside_stretching,
           .independent_check = "push against a stiff block and read the apparent travel"};
 }
 

@@ -14,13 +14,6 @@ Parameter relaxation_time() {
           .derivative = Derivative::rate};
 }
 
-std::string needs_times(const std::vector<Series>& series) {
-  for (const Series& s : series) {
-    if (s.readings && !s.readings->time.empty()) return "";
-  }
-  return "the record has no times";
-}
-
 }  // namespace
 
 /// The wire resists the rate of its deformation (Kelvin-Voigt), to first order in the relaxation time.

@@ -15,13 +15,6 @@ bool weightless(const PushProblem& p) {
   return p.gravity == std::array<double, 3>{};
 }
 
-const char* diameter_unseen(const PushProblem& p) {
-  const bool touches = p.pusher.radius > 0.0 || p.mount.kind == wire::MountKind::supports;
-  return stiffnesses_declared(p) && weightless(p) && !touches
-             ? "both stiffnesses are declared, the wire has no weight, and its centreline meets a knife edge"
-             : "";
-}
-
 const char* modulus_unseen(const PushProblem& p) {
   return stiffnesses_declared(p) ? "both stiffnesses are declared: they do not follow from the modulus" : "";
 }
@@ -44,13 +37,6 @@ const std::vector<Parameter>& construction_numbers() {
   using base::GPa;
   using base::mm;
   static const std::vector<Parameter> all{
-      {.key = "wire.diameter_mm",
-       .unit = "mm",
-       .unit_size = mm,
-       .number = member([](auto& p, auto&) -> auto& { return p.wire.diameter; }),
-       .limits = [](const PushProblem& p) { return between(0.5 * p.wire.diameter, 1.5 * p.wire.diameter); },
-       .step = 1e-8,
-       .unseen = diameter_unseen},
       {.key = "wire.youngs_modulus_GPa",
        .unit = "GPa",
        .unit_size = GPa,

@@ -352,6 +352,20 @@ void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys, 
   }
 }
 
+/// How far the sensors of the machine went, in all series together.
+void note_largest_readings(std::vector<Series>& series) {
+  double displacement = 0.0, force = 0.0;
+  for (const Series& s : series) {
+    if (!s.readings) continue;
+    for (const double d : s.readings->displacement) displacement = std::max(displacement, std::abs(d));
+    for (const double f : s.readings->force) force = std::max(force, std::abs(f));
+  }
+  for (Series& s : series) {
+    s.largest_displacement = displacement;
+    s.largest_force = force;
+  }
+}
+
 /// root_node: the tree of the document, for tables whose keys the user chose.
 Experiment read_document(TomlDocument& document, const base::TomlNode& root_node, const std::filesystem::path& file,
                          const ParameterSet& parameters) {
@@ -374,6 +388,7 @@ Experiment read_document(TomlDocument& document, const base::TomlNode& root_node
     names.push_back(experiment.series.back().name);
   }
   check_names(experiment.series, tables);
+  note_largest_readings(experiment.series);
   if (!root.has("series")) root.fail("series", "missing, must be one or more tables, each headed [[series]]");
   if (tables.empty()) static_cast<void>(scenario::read_push_problem(base));  // what else is wrong
 

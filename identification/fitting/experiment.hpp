@@ -48,6 +48,8 @@ struct Series {
   std::optional<double> force_sigma;  ///< of one reading [N], > 0
   double position_sigma = 0.0;        ///< of the pusher's place about the declared one [m], >= 0; 0: exact
   bool modulus_declared = true;       ///< else the modulus is the one that gives the declared stiffness
+  /// Of all series of the file, which went through one machine: [m], [N]; 0: no readings.
+  double largest_displacement = 0.0, largest_force = 0.0;
 };
 
 /// How a push of an experiment is discretised and followed: its table [solver].

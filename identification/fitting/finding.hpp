@@ -8,11 +8,12 @@ namespace snare::identification {
 
 /// What a finding is about: `findings[].kind` of fit.json and trace.json.
 enum class FindingKind {
-  impossible_stiffness,  ///< a fitted stiffness that no wire of the declared section and modulus has
-  unit_slip,             ///< readings or fitted numbers differ by the factor between two units
-  sign_turned,           ///< readings have the other sign
-  on_bound,              ///< a fitted number stands on its bound
-  not_identifiable       ///< the readings do not determine a fitted number
+  impossible_stiffness,        ///< a fitted stiffness that no wire of the declared section and modulus has
+  unit_slip,                   ///< readings or fitted numbers differ by the factor between two units
+  sign_turned,                 ///< readings have the other sign
+  on_bound,                    ///< a fitted number stands on its bound
+  series_of_another_specimen,  ///< one series is of another wire than the others
+  not_identifiable             ///< the readings do not determine a fitted number
 };
 [[nodiscard]] std::string to_string(FindingKind kind);
 

@@ -149,6 +149,7 @@ void take(const Data& data, Evaluation evaluation, Fit& fit) {
   fit.chi2 = fit.residual.squaredNorm();
   fit.covariance = covariance_of(fit.jacobian);
   fit.estimated = data.noise.estimated;
+  fit.noise_dof = data.noise.dof;
 }
 
 void fail(const std::string& message, Fit& fit) {

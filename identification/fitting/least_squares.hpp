@@ -6,6 +6,7 @@
 #include "numerics/report.hpp"
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Fit {
   Identifiability rank;           ///< which numbers the data determine; empty where find_rank() was not asked
   double chi2 = 0.0;
   numerics::SolveReport report;
+  double noise_dof = std::numeric_limits<double>::infinity();  ///< of the noise by which it is whitened
   double estimated = 0.0;  ///< standard deviations that are estimated from the same data: those of published fits
   /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be negative.
   [[nodiscard]] double dof() const {

@@ -37,50 +37,62 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
         variations[k].push_back({nullptr, widen * p.step});
         continue;
       }
-      if (p.mount_gives && !applied[k].test.mount.translational_stiffness) {
-        variations[k].push_back({nullptr, widen * p.step, 0.0, 1.0});
+      if (p.mounts_give != nullptr && p.mounts_give(applied[k].test) != std::array<double, 2>{}) {
+        variations[k].push_back({nullptr, widen * p.step, 0.0, p.mounts_give(applied[k].test)});
         continue;
       }
       const double own = p.number.get(declared[k].test, {});
       variations[k].push_back({[&p, own, at](PushProblem& test, double amount) {
-                                 if (p.travel != 0.0) return;
                                  ReadingModel unused;
                                  p.number.set(test, unused, p.value(own, at + amount));
                                },
-                               widen * p.step, p.travel});
+                               widen * p.step});
     }
   }
   return variations;
 }
 
-/// Derivatives of the recorded forces of a series, F = offset + gain (F_wire + tau v k_viscous), by every number.
-Eigen::MatrixXd record_derivatives(const Series& series, const Prediction& prediction, const Eigen::VectorXd& force,
-                                   const ReadingModel& reading, const std::vector<const Parameter*>& by) {
-  const Eigen::Index rows = force.size();
+/// Change of the record of a series with its reading model: the true forces go along the curve to the changed travels.
+Eigen::VectorXd record_with(const Series& series, const Prediction& prediction, const ReadingModel& changed,
+                            const Eigen::VectorXd& slope) {
+  TrueForce wire = prediction.wire;
+  if (slope.size() > 0) {
+    const std::vector<double> before = true_travel(series, prediction.reading);
+    const std::vector<double> after = true_travel(series, changed);
+    for (std::size_t i = 0; i < wire.force.size(); ++i)
+      wire.force[i] += slope[static_cast<Eigen::Index>(i)] * (after[i] - before[i]);
+  }
+  const std::vector<double> force = recorded_force(series, changed, wire);
+  return Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size()));
+}
+
+/// Derivatives of the recorded forces of a series by every number: those of the push from the prediction, whose last column is
+/// the slope of the curve where a number moves the travels; those of the record by differences of the record alone.
+Eigen::MatrixXd record_derivatives(const Series& declared, const Prediction& prediction,
+                                   const std::vector<Setting>& settings, const std::vector<const Parameter*>& by) {
+  const auto rows = static_cast<Eigen::Index>(prediction.force.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(by.size()));
-  Eigen::Index variation = 0;  // numbers of the test in the order in which they were asked for
+  const Eigen::MatrixXd pushed = recorded_change(declared, prediction.reading, prediction.wire, prediction.force_by);
+  Eigen::Index variation = 0;  // numbers of the push in the order in which they were asked for
   for (std::size_t j = 0; j < by.size(); ++j) {
     auto out = result.col(static_cast<Eigen::Index>(j));
-    const bool concerned = concerns(*by[j], series);
-    switch (by[j]->derivative) {
-      case Derivative::implicit:
-        if (prediction.force_by.cols() > 0) out = prediction.force_by.col(variation++);
-        break;
-      case Derivative::force_offset:
-        if (concerned) out.setOnes();
-        break;
-      case Derivative::force_gain:  // by the logarithm of the gain
-        if (concerned) out = force.array() - reading.force_offset;
-        break;
-      case Derivative::rate: {
-        if (!concerned) break;
-        const std::vector<double> speed = speeds(series);
-        for (Eigen::Index i = 0; i < rows; ++i) {
-          const auto r = static_cast<std::size_t>(i);
-          out[i] = reading.force_gain * speed[r] * prediction.viscous_stiffness[r];
-        }
-      }
+    const Parameter& p = *by[j];
+    if (p.derivative == Derivative::push) {
+      if (pushed.cols() > 0) out = pushed.col(variation++);
+      continue;
     }
+    const bool moves = p.derivative == Derivative::travel;
+    if (!concerns(p, declared) || (moves && pushed.cols() == 0)) continue;
+    const Eigen::VectorXd slope = moves ? prediction.force_by.rightCols(1) : Eigen::MatrixXd();
+    const double at = find(settings, &p)->coordinate;
+    const double own = p.number.get(declared.test, {});
+    const auto side = [&](double step) {
+      PushProblem unused;
+      ReadingModel changed = prediction.reading;
+      p.number.set(unused, changed, p.value(own, at + step));
+      return record_with(declared, prediction, changed, slope);
+    };
+    out = (side(p.step) - side(-p.step)) / (2.0 * p.step);
   }
   return result;
 }
@@ -188,17 +200,22 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
   PredictionOptions options;
   options.thin = thin_;
   std::vector<const Parameter*> of_test;
+  bool slope = false;
   for (const Parameter* p : by) {
     options.examine_rates = options.examine_rates || p->derivative == Derivative::rate;
-    if (p->derivative == Derivative::implicit) of_test.push_back(p);
+    if (p->derivative == Derivative::push) of_test.push_back(p);
+    slope = slope || p->derivative == Derivative::travel;
   }
   std::vector<std::vector<coupling::PushVariation>> variations;
   if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test, widen);
+  if (slope) {
+    for (std::vector<coupling::PushVariation>& of_series : variations) of_series.push_back({nullptr, 1e-7, 1.0});
+  }
   std::vector<Prediction> predictions = predict_with(applied, options, variations);
   Evaluation result = forces_of(series, predictions);
   const bool derive = !by.empty() && result.complete;
   for (std::size_t k = 0; k < series.size() && derive; ++k) {
-    result.by.push_back(record_derivatives(series[k], predictions[k], result.force[k], applied.reading[k], by));
+    result.by.push_back(record_derivatives(series[k], predictions[k], settings, by));
     predictions[k].force_by.resize(0, 0);  // which `by` has
   }
   result.predictions = std::move(predictions);
@@ -211,7 +228,7 @@ void Model::difference_curves(std::vector<Setting> settings, const std::vector<c
   PredictionOptions plain;
   plain.thin = thin_;
   for (std::size_t j = 0; j < by.size(); ++j) {
-    if (by[j]->derivative != Derivative::implicit) continue;
+    if (by[j]->derivative != Derivative::push && by[j]->derivative != Derivative::travel) continue;
     Setting& s =
         *std::find_if(settings.begin(), settings.end(), [&](const Setting& o) { return o.parameter == by[j]; });
     const double centre = s.coordinate;
@@ -255,7 +272,10 @@ Evaluation Model::evaluate_windows(const std::vector<Setting>& settings, int win
   }
   std::vector<Prediction> predictions = predict_with(applied, options, variations);
   Evaluation result = forces_of(series, predictions);
-  for (Prediction& p : predictions) result.by.push_back(std::move(p.force_by));
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    Prediction& p = predictions[k];
+    result.by.push_back(recorded_change(series_[k], p.reading, p.wire, std::move(p.force_by)));
+  }
   result.predictions = std::move(predictions);
   return result;
 }

@@ -40,9 +40,8 @@ void add_published(const std::vector<Series>& series, Noise& noise) {
 // The smooth part is h_i x_i, x of unit variance with x_i = decay_i x_{i-1} + noise (Ornstein and Uhlenbeck): a Kalman
 // filter's innovations over their deviations are the whitened values, in order and linear in them.
 //   P = decay^2 P+ + 1 - decay^2,  S = h^2 P + w^2,  gain = P h / S,  P+ = (1 - gain h) P
-std::vector<Noise::Step> noise_filter(const Series& series, double white, double length,
+std::vector<Noise::Step> noise_filter(const std::vector<double>& d, double white, double length,
                                       const std::vector<double>& height) {
-  const std::vector<double>& d = measured_displacement(series);
   std::vector<Noise::Step> filter(d.size());
   double after = 1.0;
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -131,7 +130,8 @@ Noise noise_of_readings(const std::vector<Series>& series, const std::vector<Eig
     noise.sigma.push_back(std::sqrt(white * white + smooth));
     independent += white * white;
     all += white * white + smooth;
-    if (scatter->length > 0.0) noise.filter.push_back(noise_filter(series[k], white, scatter->length, height));
+    if (scatter->length > 0.0)
+      noise.filter.push_back(noise_filter(measured_displacement(series[k]), white, scatter->length, height));
   }
   noise.length = scatter->length;
   noise.smooth = 1.0 - independent / all;

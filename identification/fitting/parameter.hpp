@@ -3,6 +3,7 @@
 #include "coupling/statics/push_problem.hpp"
 #include "identification/fitting/reading_model.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,12 @@ enum class Parametrisation {
   magnitude  ///< exp(c) in SI units: a threshold that is absent (infinite) in the declared model
 };
 
-/// How the derivative of the recorded force by a number is found.                       theory.md (I.2)
-///   F = offset + gain (F_wire(p) + tau v k_viscous)
+/// What a number is one of, and so how the derivative of the recorded force by it is found.      theory.md (I.2)
 enum class Derivative {
-  implicit,      ///< p of the push, or the zero of its travel: implicit differentiation of the equilibrium
-  force_offset,  ///< 1
-  force_gain,    ///< (F - offset), by the gain's own ratio
-  rate           ///< gain v k_viscous, v the pusher's speed
+  push,    ///< of the push: implicit differentiation of the equilibrium
+  travel,  ///< of the record, moves the travels at which it was taken: by the slope of the curve
+  record,  ///< of the record, at the same travels
+  rate     ///< of the record, with the viscous stiffness of the wire
 };
 
 /// How a number is read and written.
@@ -59,10 +59,11 @@ struct Parameter {
   Access number{};
   Limits (*limits)(const PushProblem&) = nullptr;  ///< admissible values
   double step = 0.0;                               ///< of the coordinate, for differences of the residual, > 0
-  double travel = 0.0;                             ///< d travel / d coordinate: -1 for the zero of the displacement
-  Derivative derivative = Derivative::implicit;
+  Derivative derivative = Derivative::push;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
-  bool mount_gives = false;     ///< the compliance of the mounts: differentiated as such where they are rigid
+  /// Of a compliance along the chord: which of the left and the right mount, that are rigid, give by it (1, else 0). They are
+  /// differentiated as such. Null: it is none.
+  std::array<double, 2> (*mounts_give)(const PushProblem&) = nullptr;
   /// Why the forces of a test cannot depend on it; empty: they may. Null: they always may, or its effect says why.
   const char* (*unseen)(const PushProblem&) = nullptr;
   std::string only{};  ///< name of the one series that it belongs to; empty: all

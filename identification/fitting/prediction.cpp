@@ -12,12 +12,12 @@ namespace {
 
 /// Where a record is computed and how its readings follow from there.
 struct Sampling {
-  std::vector<double> displacement;  // to compute at
+  std::vector<double> travel;  // to compute at
   struct Weights {
     std::size_t first = 0;  // of four neighbours
     std::array<double, 4> weight{};
   };
-  std::vector<Weights> readings;  // empty: the displacements are the readings
+  std::vector<Weights> readings;  // empty: the travels are those of the readings
 };
 
 constexpr int points_a_leg = 60;
@@ -49,11 +49,11 @@ std::vector<std::size_t> turning_points(const std::vector<double>& d) {
 
 Sampling sample(const std::vector<double>& d, bool thin) {
   Sampling result;
-  result.displacement = d;
+  result.travel = d;
   if (!thin || d.size() <= dense_leg) return result;
   const std::vector<std::size_t> turns = turning_points(d);
   if (d.size() / (turns.size() - 1) <= dense_leg) return result;
-  result.displacement.clear();
+  result.travel.clear();
   for (std::size_t leg = 0; leg + 1 < turns.size(); ++leg) {
     const std::size_t begin = leg == 0 ? 0 : turns[leg] + 1;
     const std::size_t end = turns[leg + 1];
@@ -62,15 +62,15 @@ Sampling sample(const std::vector<double>& d, bool thin) {
     const bool up = d[end] >= d[turns[leg]];
     const double from = up ? *low : *high;
     const double to = up ? *high : *low;
-    const std::size_t first = result.displacement.size();
+    const std::size_t first = result.travel.size();
     // Denser towards the beginning of the leg, where a wire is touched or friction turns round.
     for (int k = 0; k < points_a_leg; ++k) {
       const double u = static_cast<double>(k) / (points_a_leg - 1);
-      result.displacement.push_back(from + (to - from) * u * (0.3 + 0.7 * u));
+      result.travel.push_back(from + (to - from) * u * (0.3 + 0.7 * u));
     }
     // Each reading by Lagrange's cubic through the four knots about it, w_a = prod_b (d - d_b) / (d_a - d_b).
     for (std::size_t i = begin; i <= end; ++i) {
-      const auto knot = [&](std::size_t k) { return result.displacement[first + k]; };
+      const auto knot = [&](std::size_t k) { return result.travel[first + k]; };
       std::size_t j = 1;
       while (j + 3 < static_cast<std::size_t>(points_a_leg) && (d[i] - knot(j + 1)) * (to - from) > 0.0) ++j;
       Sampling::Weights w;
@@ -123,24 +123,18 @@ std::vector<double> speeds(const Series& series) {
 Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading,
                    const PredictionOptions& options) {
   coupling::PushProblem test = series.test;
-  const Sampling sampling = sample(measured_displacement(series), options.thin);
-  const std::vector<double>& displacement = sampling.displacement;
+  const Sampling sampling = sample(true_travel(series, reading), options.thin);
+  const std::vector<double>& travel = sampling.travel;
   Prediction result;
   result.reading = reading;
   // Points before the first touch stand at the front; a later return to no contact is part of the path.
-  while (result.before_touch < displacement.size() && displacement[result.before_touch] < reading.displacement_offset) {
-    ++result.before_touch;
-  }
-  test.travel.clear();
-  for (std::size_t i = result.before_touch; i < displacement.size(); ++i) {
-    test.travel.push_back(displacement[i] - reading.displacement_offset);
-  }
+  while (result.before_touch < travel.size() && travel[result.before_touch] < 0.0) ++result.before_touch;
+  test.travel.assign(travel.begin() + static_cast<std::ptrdiff_t>(result.before_touch), travel.end());
   if (options.stop && options.stop()) {  // of many series some are not begun
     result.curve.curve.report.end(numerics::Termination::interrupted, "interrupted before the first point");
     result.force_by.setZero(0, static_cast<Eigen::Index>(options.variations.size()));
     return result;
   }
-  const bool flows = reading.relaxation_time > 0.0;
   coupling::PushOptions push;
   push.elements = solver.elements;
   push.instability = solver.instability;
@@ -149,35 +143,30 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
   push.stop = options.stop;
   push.examine_out_of_plane = options.examine_out_of_plane;
   push.variations = options.variations;
-  push.examine_rates = flows || options.examine_rates;
+  push.examine_rates = reading.relaxation_time > 0.0 || options.examine_rates;
   result.curve = solver.extrapolate ? coupling::solve_push_extrapolated(test, push)
                                     : coupling::solve_push_with_path_error(test, push);
   // Points that the path passed between the asked ones (arcs through folds) have no reading.
   std::vector<const coupling::PushPoint*> at(result.before_touch, nullptr);
   for (const coupling::PushPoint& p : result.curve.curve.points) {
-    if (at.size() == displacement.size()) break;
+    if (at.size() == travel.size()) break;
     if (p.travel == test.travel[at.size() - result.before_touch]) at.push_back(&p);
   }
   const auto numbers = static_cast<Eigen::Index>(options.variations.size());
-  const bool whole = at.size() == displacement.size();
+  const bool whole = at.size() == travel.size();
   const std::size_t readings = sampling.readings.empty() ? at.size() : (whole ? sampling.readings.size() : 0);
-  const std::vector<double> speed = flows ? speeds(series) : std::vector<double>();
-  result.force.assign(readings, reading.force_offset);
+  result.wire.force.assign(readings, 0.0);
   result.mount_pull.assign(readings, 0.0);
-  if (push.examine_rates) result.viscous_stiffness.assign(readings, 0.0);
+  if (push.examine_rates) result.wire.viscous.assign(readings, 0.0);
   result.force_by.setZero(static_cast<Eigen::Index>(readings), numbers);
-  // F = offset + gain (F_wire + tau v G), v the speed and G the viscous stiffness: theory.md (I.2)
   const auto add = [&](std::size_t i, const coupling::PushPoint* p, double weight) {
     if (p == nullptr) return;
-    result.force[i] += weight * reading.force_gain * p->force;
+    result.wire.force[i] += weight * p->force;
     result.mount_pull[i] -= weight * p->reaction_along_left;
-    if (push.examine_rates) result.viscous_stiffness[i] += weight * p->viscous_stiffness;
-    if (flows) {
-      result.force[i] += weight * reading.force_gain * reading.relaxation_time * speed[i] * p->viscous_stiffness;
-    }
+    if (push.examine_rates) result.wire.viscous[i] += weight * p->viscous_stiffness;
     if (p->force_by.empty()) return;
     result.force_by.row(static_cast<Eigen::Index>(i)) +=
-        weight * reading.force_gain * Eigen::Map<const Eigen::RowVectorXd>(p->force_by.data(), numbers);
+        weight * Eigen::Map<const Eigen::RowVectorXd>(p->force_by.data(), numbers);
   };
   for (std::size_t i = 0; i < readings; ++i) {
     if (sampling.readings.empty()) {
@@ -187,6 +176,7 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
     const Sampling::Weights& w = sampling.readings[i];
     for (std::size_t k = 0; k < 4; ++k) add(i, at[w.first + k], w.weight[k]);
   }
+  result.force = recorded_force(series, reading, result.wire);
   return result;
 }
 

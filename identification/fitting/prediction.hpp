@@ -16,13 +16,13 @@ namespace snare::identification {
 
 /// What a model says the machine records, at the displacements of a series.
 struct Prediction {
-  coupling::ExtrapolatedCurve curve;      ///< at the travels after first touch, in order
-  std::vector<double> force;              ///< recorded force [N], one a displacement that was reached
-  Eigen::MatrixXd force_by;               ///< d force / d number: a row a displacement, a column a variation asked for
-  std::vector<double> mount_pull;         ///< of the wire on the left mount along the chord, one a displacement [N]
-  std::vector<double> viscous_stiffness;  ///< as PushPoint's, one a displacement; only where it was asked for [N/m]
-  ReadingModel reading;                   ///< as it was predicted with
-  std::size_t before_touch = 0;           ///< points that lie before first touch: they have no entry in `curve`
+  coupling::ExtrapolatedCurve curve;  ///< at the travels after first touch, in order
+  std::vector<double> force;          ///< recorded force [N], one a displacement that was reached
+  TrueForce wire;                     ///< of which it is the record, likewise
+  Eigen::MatrixXd force_by;           ///< d wire.force / d number: a row a displacement, a column a variation asked for
+  std::vector<double> mount_pull;     ///< of the wire on the left mount along the chord, one a displacement [N]
+  ReadingModel reading;               ///< as it was predicted with
+  std::size_t before_touch = 0;       ///< points that lie before first touch: they have no entry in `curve`
 };
 
 /// Predictions of every series of which copies share what they hold: those of a million readings are large.

@@ -37,8 +37,10 @@ bool equal(const wire::WireSpecification& a, const wire::WireSpecification& b) {
 }
 
 auto members(const wire::MountSpecification& m) {
-  const auto& [kind, span, radius, translational, rotational, slip_tension, slip, slip_at] = m;
-  return std::tuple(kind, span, radius, translational, rotational, slip_tension, slip, slip_at);
+  const auto& [kind, span, radius, translational, rotational, own_translational, own_rotational, slip_tension, slip,
+               slip_at] = m;
+  return std::tuple(kind, span, radius, translational, rotational, own_translational, own_rotational, slip_tension,
+                    slip, slip_at);
 }
 
 auto members(const coupling::PusherSpecification& p) {
@@ -58,8 +60,8 @@ bool same_push(const PushProblem& a, const PushProblem& b) {
 }
 
 auto members(const ReadingModel& r) {
-  const auto& [displacement, force, gain, relaxation] = r;
-  return std::tuple(displacement, force, gain, relaxation);
+  const auto& [displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep, creep_time, drift] = r;
+  return std::tuple(displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep, creep_time, drift);
 }
 
 /// A dense record of one loading: the curve is that of any other, whatever its readings.
@@ -82,8 +84,8 @@ std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& d
       return one_way(declared[j]) && same_push(declared[j].test, declared[k].test) &&
              same_push(applied[j].test, applied[k].test) && members(reading[j]) == members(reading[k]);
     };
-    // Where the wire relaxes the speed of every record counts.
-    const bool may = reading[k].relaxation_time == 0.0 && one_way(declared[k]);
+    // Where the record hangs on times, those of every record count.
+    const bool may = !needs_times(reading[k]) && one_way(declared[k]);
     const auto at = may ? std::find_if(groups.begin(), groups.end(), alike) : groups.end();
     if (at == groups.end())
       groups.push_back({k});
@@ -122,8 +124,9 @@ Prediction part_of(const Prediction& whole, const Series& merged, const Series& 
   for (const Eigen::Index row : rows) {
     const auto i = static_cast<std::size_t>(row);
     result.force.push_back(whole.force[i]);
+    result.wire.force.push_back(whole.wire.force[i]);
     result.mount_pull.push_back(whole.mount_pull[i]);
-    if (!whole.viscous_stiffness.empty()) result.viscous_stiffness.push_back(whole.viscous_stiffness[i]);
+    if (!whole.wire.viscous.empty()) result.wire.viscous.push_back(whole.wire.viscous[i]);
   }
   result.force_by = whole.force_by(rows, Eigen::all);
   return result;

@@ -70,6 +70,11 @@ double student_tail(double z, double dof) {
   return bm::cdf(bm::complement(bm::students_t(dof), z));
 }
 
+double student_quantile(double p, double dof) {
+  if (!(dof < many)) return normal_quantile(p);
+  return bm::quantile(bm::complement(bm::students_t(dof), p));
+}
+
 double fisher_tail(double x, double above, double below) {
   if (!(x > 0.0)) return 1.0;
   if (!(below < many)) return chi_square_tail(above * x, above);

@@ -22,6 +22,9 @@ namespace snare::identification {
 /// P(Student's t with `dof` degrees of freedom > z), dof > 0; infinite: normal.
 [[nodiscard]] double student_tail(double z, double dof);
 
+/// z [-] with P(Student's t with `dof` degrees of freedom > z) = p, p in (0, 1), dof > 0; infinite: normal.
+[[nodiscard]] double student_quantile(double p, double dof);
+
 /// P(Fisher's F with `above` and `below` degrees of freedom > x), both > 0; infinite below: chi-square over `above`.
 [[nodiscard]] double fisher_tail(double x, double above, double below);
 

@@ -100,7 +100,7 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
     result.wire = scenario::read_wire_and_mounts(tables);
     if (result.wire->mount.kind == wire::MountKind::supports)
       tables.mount.fail("kind", "must be \"clamped\" or \"pinned\"");
-    for (const char* key : {"slip_tension_N", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m"}) {
+    for (const char* key : scenario::keys_of_giving_mounts()) {
       if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
     }
     for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {

@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/published_fit.hpp"
+#include "identification/tracing/start_search.hpp"
 #include "identification/tracing/trace_input.hpp"
 
 #include <fmt/format.h>
@@ -32,6 +33,42 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
   if (p.unseen == nullptr) return "";
   const bool none = std::ranges::all_of(series, [&](const Series& s) { return *p.unseen(s.test) != '\0'; });
   return none ? p.unseen(series.front().test) : "";
+}
+
+/// Where a fit may begin far from what was declared: stiffnesses that are shares of those of the declared section, after a few
+/// steps on a coarse mesh. Empty where none comes below `best`, seen on the same mesh.
+std::vector<Setting> far_start(const Model& model, const Data& data, const std::vector<Setting>& start, const Fit& best,
+                               Progress& progress) {
+  SolverSettings few = model.solver();
+  few.elements = std::min(64, few.elements);
+  few.extrapolate = false;
+  const Model coarse(model.series(), few);
+  const Evaluation here = coarse.evaluate(best.settings);
+  double least = best.report.usable() && here.complete ? data.residual(here).squaredNorm() : 1e300;
+  std::vector<Setting> section = as_the_section_has(model, start);
+  if (section.empty()) section = start;
+  std::vector<Setting> found;
+  for (const double bending : {1.0, 0.1}) {
+    for (const double axial : {1.0, 0.1, 0.01}) {
+      if (!progress.go_on("base model: far from what was declared")) return {};
+      std::vector<Setting> one = section;
+      for (Setting& s : one) {
+        const bool bends = s.parameter->key == "wire.bending_stiffness_Nm2";
+        if (!bends && s.parameter->key != "wire.axial_stiffness_N") continue;
+        s.coordinate = std::clamp(s.coordinate + std::log(bends ? bending : axial), model.lower(*s.parameter),
+                                  model.upper(*s.parameter));
+      }
+      FitOptions fitting;
+      fitting.max_iterations = 10;
+      fitting.tolerance = 1e-3;
+      fitting.rival = least < 1e300 ? least : 0.0;
+      const Fit reached = fit(coarse, data, one, {}, fitting);
+      if (!reached.report.usable() || !(reached.chi2 < 0.99 * least)) continue;
+      least = reached.chi2;
+      found = reached.fitted();
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -69,6 +106,7 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
   fitting.progress = [&progress](int iteration, double) {
     return progress.go_on(fmt::format("base model: iteration {}", iteration));
   };
+  const std::vector<Setting> declared = start;
   Fit best = fit(model, data, start, {}, fitting);
   const auto begin_at = [&](const std::vector<Setting>& other_start) {
     const Fit other = fit(model, data, other_start, {}, fitting);
@@ -102,6 +140,13 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
       s.coordinate = 1e-3;
     }
     if (zero && progress.go_on("base model: with a late touch")) begin_at(start);
+  }
+  const bool stiffness = std::ranges::any_of(keys, [](const std::string& key) {
+    return key == "wire.bending_stiffness_Nm2" || key == "wire.axial_stiffness_N";
+  });
+  if (stiffness && !data.published()) {
+    const std::vector<Setting> far = far_start(model, data, declared, best, progress);
+    if (!far.empty()) begin_at(far);
   }
   return best;
 }

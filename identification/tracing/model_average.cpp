@@ -10,7 +10,8 @@ namespace snare::identification {
 
 namespace {
 
-/// Where a fit has a number, and its standard error in the coordinate; absent where it has not, or its readings do not tell.
+/// Where a fit has a number, and its standard error in the coordinate, widened as Student's t is against the normal distribution;
+/// absent where it has not, or its readings do not tell.
 struct Place {
   double coordinate = 0.0;
   double deviation = 0.0;
@@ -20,7 +21,8 @@ std::optional<Place> place_of(const Fit& fit, const Parameter& number) {
     if (fit.settings[k].parameter != &number) continue;
     const auto i = static_cast<Eigen::Index>(k);
     if (fit.covariance.rows() <= i || !(fit.covariance(i, i) > 0.0)) return std::nullopt;
-    return Place{fit.settings[k].coordinate, std::sqrt(fit.covariance(i, i))};
+    const double widened = student_quantile(0.025, fit.noise_dof) / normal_quantile(0.025);
+    return Place{fit.settings[k].coordinate, widened * std::sqrt(fit.covariance(i, i))};
   }
   return std::nullopt;
 }

@@ -1,5 +1,6 @@
 #include "identification/tracing/model_error.hpp"
 
+#include "identification/fitting/statistics.hpp"
 #include "identification/tracing/projection.hpp"
 #include "numerics/dense_solvers.hpp"
 
@@ -28,10 +29,11 @@ FittedNumber number_of(const Model& model, const Setting& s) {
   return n;
 }
 
-/// Its standard error and 1.96 of it either way, as far as that is admissible.
-void give_interval(const Model& model, const Setting& s, double deviation, FittedNumber& n) {
+/// Its standard error and 95 % either way, by Student's t of the noise's degrees of freedom, as far as that is admissible.
+void give_interval(const Model& model, const Setting& s, double deviation, double noise_dof, FittedNumber& n) {
   const Parameter& p = *s.parameter;
-  const double lower = s.coordinate - 1.96 * deviation, upper = s.coordinate + 1.96 * deviation;
+  const double reach = student_quantile(0.025, noise_dof) * deviation;
+  const double lower = s.coordinate - reach, upper = s.coordinate + reach;
   if (n.bound != AtBound::lower && lower >= model.lower(p)) n.lower = model.shown({&p, lower});
   if (n.bound != AtBound::upper && upper <= model.upper(p)) n.upper = model.shown({&p, upper});
   if (n.bound == AtBound::none && !n.lower && !n.upper) return;
@@ -53,7 +55,7 @@ std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit) {
     FittedNumber n = number_of(model, fit.settings[k]);
     const auto i = static_cast<Eigen::Index>(k);
     n.identified = fit.rank.is_known(k) && fit.covariance.rows() > i && fit.jacobian.col(i).norm() > 0.0;
-    if (n.identified) give_interval(model, fit.settings[k], deviation_of(fit, k), n);
+    if (n.identified) give_interval(model, fit.settings[k], deviation_of(fit, k), fit.noise_dof, n);
     result.push_back(n);
   }
   for (std::size_t k = 0; k < result.size(); ++k) {
@@ -89,7 +91,7 @@ std::vector<OpenDirection> open_directions(const Model& model, const Fit& fit) {
       if (relative) largest = std::max(largest, std::abs(change));
       if (k == direction.held) continue;
       one.known.push_back(number_of(model, fit.settings[k]));
-      give_interval(model, fit.settings[k], deviation_of(fit, k), one.known.back());
+      give_interval(model, fit.settings[k], deviation_of(fit, k), fit.noise_dof, one.known.back());
     }
     const double unit = largest > 0.0 ? largest : std::abs(one.changes.front().change);
     for (NamedChange& c : one.changes) c.change /= unit;

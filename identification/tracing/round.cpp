@@ -1,6 +1,7 @@
 #include "identification/tracing/round.hpp"
 
 #include "identification/effects/catalogue.hpp"
+#include "identification/fitting/statistics.hpp"
 #include "identification/tracing/verdict.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,10 @@ constexpr double separable_chi2 = 10.0;    // z^2 (1 - cos^2) above which a riva
 constexpr double least_fall = 0.9;         // of the root mean square error, which must fall below this share
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
-constexpr std::size_t most_refits = 6;
+constexpr std::size_t most_refits = 8;
+// What a few steps on a coarse mesh have left of chi2: a refit that comes within so much of the best is followed to its end.
+constexpr double searched_share = 1.5, searched_margin = 60.0;
+constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit is multiplied
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
@@ -63,31 +67,39 @@ std::vector<Setting> with(std::vector<Setting> settings, const Effect& effect, c
   return settings;
 }
 
-/// The model with an effect added, from each of its starts and, in the end, beside the earlier effects begun anew; not
-/// usable where none of them gives a fit. What takes away nearly all that is beside the noise needs no other start, and
-/// another start is not followed where it does not come near what the first has reached.
-Fit refit(const Model& model, const Data& data, const Current& current, const Score& score, double rival,
+/// The starts of a refit, best first: what the search has found, where it is better than the score's, those of the score, and these
+/// beside the earlier effects begun anew.
+std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data, const Current& current,
+                                            const Candidate& candidate) {
+  const Score& score = candidate.score;
+  std::vector<std::vector<Setting>> result;
+  if (candidate.searched) result.push_back(candidate.searched->settings);
+  for (const RefitStart& from : score.starts) {
+    const std::vector<Setting> start = with(current.fit.fitted(), *score.effect, from);
+    result.push_back(nearer(model, data, start, moved(model, start, from.shift)));
+  }
+  if (!current.anew.empty() && !score.starts.empty())
+    result.push_back(with(current.anew, *score.effect, score.starts.front()));
+  return result;
+}
+
+/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
+/// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first
+/// has reached.
+Fit refit(const Model& model, const Data& data, const Current& current, const Candidate& candidate, double rival,
           Progress& progress) {
   Fit best;
   best.chi2 = std::numeric_limits<double>::max();
   best.free = current.fit.free;
   best.report.termination = numerics::Termination::step_too_small;
   double to_beat = rival;
-  const std::size_t starts = score.starts.size() + (current.anew.empty() || score.starts.empty() ? 0 : 1);
-  for (std::size_t k = 0; k < starts; ++k) {
-    std::vector<Setting> start;
-    if (k < score.starts.size()) {
-      start = with(current.fit.fitted(), *score.effect, score.starts[k]);
-      start = nearer(model, data, start, moved(model, start, score.starts[k].shift));
-    } else {
-      start = with(current.anew, *score.effect, score.starts.front());
-    }
+  for (const std::vector<Setting>& start : starts_of(model, data, current, candidate)) {
     FitOptions fitting;
     fitting.max_iterations = 30;
     fitting.tolerance = 1e-4;
     fitting.rival = to_beat;
     fitting.progress = [&](int iteration, double) {
-      return progress.go_on(fmt::format("refit with {}: iteration {}", score.effect->name, iteration));
+      return progress.go_on(fmt::format("refit with {}: iteration {}", candidate.score.effect->name, iteration));
     };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
@@ -151,8 +163,14 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const C
   const Fit& current = now.fit;
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
+  candidate.score.unobservable.clear();  // where it is absent the fitted numbers stand for it, here they do not
+  candidate.score.absorbed = false;
   candidate.rmse = fitted_rmse(data, refitted.evaluation);
   candidate.delta_bic = refitted.bic() - current.bic();
+  const auto added = static_cast<double>(refitted.free - current.free);
+  if (added > 0.0 && refitted.chi2 < current.chi2)
+    candidate.refit_p = fisher_tail((current.chi2 - refitted.chi2) / added, added, data.noise.dof);
+  candidate.refit_p = std::min(1.0, candidate.refit_count * candidate.refit_p);
   const std::vector<FittedNumber> all = numbers_of(model, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   judge_plausibility(model, current, refitted, candidate);
@@ -217,22 +235,55 @@ std::vector<Candidate> by_score(std::vector<Score> scores) {
   return result;
 }
 
+/// What the fitted numbers can stand for where it is absent may still show at a finite size.
+bool worth_a_refit(const Candidate& c) {
+  return c.score.unobservable.empty() || c.score.absorbed;
+}
+
+/// Lets every effect that these data may show begin from finite sizes, beside several values of the fitted numbers; the likeliest
+/// first, so that others need not be followed far. Sorts by what they reached.
+void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
+                   Progress& progress) {
+  const StartSearch search(model, data, current.fit, current.anew);
+  double least = current.fit.chi2;
+  double observable = 0.0;
+  for (Candidate& c : candidates) {
+    if (!worth_a_refit(c)) continue;
+    observable += 1.0;
+    c.searched = search.best(*c.score.effect, searched_share * least + searched_margin, progress);
+    if (c.searched) least = std::min(least, c.searched->chi2);
+  }
+  for (Candidate& c : candidates) c.refit_count = starts_tried * std::max(1.0, observable);
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.searched.has_value() != b.searched.has_value()) return a.searched.has_value();
+    return a.searched && a.searched->chi2 < b.searched->chi2;
+  });
+}
+
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                             const Demands& demands, std::vector<Candidate>& candidates, const std::string& round,
                             Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.fit.settings);
+  double least = current.fit.chi2;  // that the search has reached
+  for (const Candidate& c : candidates) {
+    if (c.searched) least = std::min(least, c.searched->chi2);
+  }
   std::size_t refits = 0;
   double best_gain = 0.0;
   for (std::size_t i = 0; i < candidates.size() && refits < most_refits; ++i) {
     Candidate& c = candidates[i];
-    if (!c.score.unobservable.empty() || c.score.adjusted_p > near_significance) continue;
-    if (refits > 0 && c.score.z * c.score.z < refit_share * best_gain - 10.0) continue;
+    if (!worth_a_refit(c)) continue;
+    const bool by_score = c.score.unobservable.empty() && c.score.adjusted_p <= near_significance &&
+                          (refits == 0 || c.score.z * c.score.z >= refit_share * best_gain - 10.0);
+    const bool by_search = c.searched && c.searched->chi2 < current.fit.chi2 - out_of_class_bic &&
+                           c.searched->chi2 < searched_share * least + searched_margin;
+    if (!by_score && !by_search) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     // What cannot come near the best so far is not followed to its own bottom.
     const double rival = best_gain > 0.0 ? current.fit.chi2 - best_gain + out_of_class_bic : 0.0;
-    fits[i] = refit(model, data, current, c.score, rival, progress);
+    fits[i] = refit(model, data, current, c, rival, progress);
     judge(model, data, heldout, current, demands, before, c, fits[i]);
     if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.fit.chi2 - fits[i].chi2);
     ++refits;
@@ -254,14 +305,19 @@ void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, 
     const double cosine = c.score.direction.dot(leader.score.direction);
     if (gain * (1.0 - cosine * cosine) > separable_chi2) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
-    fits[i] = refit(model, data, current, c.score, current.fit.chi2 - gain + out_of_class_bic, progress);
+    fits[i] = refit(model, data, current, c, current.fit.chi2 - gain + out_of_class_bic, progress);
     judge(model, data, heldout, current, demands, before, c, fits[i]);
   }
 }
 
+/// Whether what it changes is beyond chance: by its score at null, or by its refit.
+bool significant(const Candidate& c, double significance) {
+  return std::min(c.score.adjusted_p, c.refit_p) < significance;
+}
+
 /// May be added to the model.
 bool eligible(const Candidate& c, double significance) {
-  return c.refitted && c.plausible && c.why_too_small.empty() && c.score.adjusted_p < significance &&
+  return c.refitted && c.plausible && c.why_too_small.empty() && significant(c, significance) &&
          c.delta_bic < -worthwhile_bic && c.heldout_improves.value_or(true);
 }
 
@@ -291,9 +347,10 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   Round& round = result.round;
   const Candidate& first = round.candidates.front();
   round.added = first.score.effect->name;
-  round.reason = fmt::format("its score has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
-                             first.score.adjusted_p, -first.delta_bic);
-  if (first.score.effect->trials != nullptr) result.begun = with({}, *first.score.effect, first.score.starts.front());
+  round.reason = fmt::format("it has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
+                             std::min(first.score.adjusted_p, first.refit_p), -first.delta_bic);
+  if (first.score.effect->trials != nullptr && !first.score.starts.empty())
+    result.begun = with({}, *first.score.effect, first.score.starts.front());
   result.better = fits.front();
   const Fit polished = fit(model, data, result.better.fitted());
   if (polished.report.usable() && polished.chi2 <= result.better.chi2) result.better = polished;
@@ -339,6 +396,10 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   Round& round = result.round;
   round.candidates = by_score(score_effects(model, data, current.fit, significance));
   progress.clock(name + ": scores");
+  if (current.unexplained) {
+    search_starts(model, data, current, round.candidates, progress);
+    progress.clock(name + ": where effects may begin");
+  }
   std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
   rank(round.candidates, fits, significance);
   double inflation = 1.0;
@@ -354,9 +415,8 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
     add_first(model, data, fits, result);
     return result;
   }
-  const bool any = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
-    return c.score.unobservable.empty() && c.score.adjusted_p < significance;
-  });
+  const bool any = std::any_of(round.candidates.begin(), round.candidates.end(),
+                               [&](const Candidate& c) { return worth_a_refit(c) && significant(c, significance); });
   round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, size, held-out series)"
                      : "no effect of the catalogue is significant";
   return result;

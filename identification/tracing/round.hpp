@@ -4,6 +4,7 @@
 #include "identification/tracing/progress.hpp"
 #include "identification/tracing/remainder.hpp"
 #include "identification/tracing/score.hpp"
+#include "identification/tracing/start_search.hpp"
 
 #include <optional>
 #include <string>
@@ -14,7 +15,10 @@ namespace snare::identification {
 /// An effect beside the model of one round.
 struct Candidate {
   Score score;
+  std::optional<SearchedStart> searched;  ///< where a few steps from finite sizes led
   bool refitted = false;
+  double refit_count = 1.0;           ///< by which the p of a refit is multiplied
+  double refit_p = 1.0;               ///< of what chi2 fell by in the refit, all effects and starts counted
   double rmse = 0.0;                  ///< after the refit [N]
   double delta_bic = 0.0;             ///< of the refit, against the round's model: negative is better
   std::vector<FittedNumber> numbers;  ///< of the effect after the refit
@@ -57,6 +61,7 @@ struct Current {
   /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
   /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
   std::vector<Setting> anew;
+  bool unexplained = false;  ///< it leaves more than noise: every effect is looked for from finite sizes
 };
 
 /// What an effect must bring to be named.

@@ -5,6 +5,7 @@
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/base_fit.hpp"
 #include "identification/tracing/model_average.hpp"
+#include "identification/tracing/odd_series.hpp"
 #include "identification/tracing/outside_causes.hpp"
 #include "identification/tracing/progress.hpp"
 #include "identification/tracing/reading_findings.hpp"
@@ -86,6 +87,8 @@ class Tracer {
   void find_findings();
   [[nodiscard]] bool decided() const;
   [[nodiscard]] bool numbers_open() const;
+  void widen_for_serial_noise();
+  [[nodiscard]] bool serial_noise_does() const;
   void compare_models();
   void average_intervals();
   void find_intervals();
@@ -107,6 +110,7 @@ class Tracer {
   SharedPredictions base_predictions_;  // whole, until another model is chosen
   Fit current_;                         // with the effects added so far
   Fit final_;                           // what is selected
+  Data final_data_;                     // with the serial noise that it leaves
   ResidualTests tests_;                 // of current_
   std::vector<std::string> added_;      // effects, and the class of each
   std::vector<std::size_t> numbers_;    // of each
@@ -226,8 +230,9 @@ void Tracer::add_effects() {
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found = look_for_effect(model_, data_, heldout_, {current_, tests_.left, begun_anew()}, number,
-                                      {significance, tolerance}, progress_);
+    RoundFits found =
+        look_for_effect(model_, data_, heldout_, {current_, tests_.left, begun_anew(), !tests_.acceptable(tolerance)},
+                        number, {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
     if (round.added.empty()) break;
@@ -286,6 +291,10 @@ void Tracer::drop_unneeded() {
 // does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md (I.8).
 bool Tracer::accept() {
   if (added_.empty() || !options_.attribute || !progress_.go_on("causes outside the catalogue")) return true;
+  if (serial_noise_does()) {
+    result_.serial_rival = true;
+    return false;
+  }
   std::vector<ChannelFunction> outside = rivals();
   if (!outside.empty()) {
     result_.rival_explanation = simpler_outside(outside, model_, data_, current_, added_.size());
@@ -304,16 +313,26 @@ void Tracer::conclude() {
   const bool small =
       added_.empty() && !result_.few_readings && !base.of_published && tolerance > 0.0 && base.left.rmse <= tolerance;
   const bool base_does = small || base.acceptable(tolerance);
+  // One series of another wire is simpler than several causes of all.
+  const bool several = added_.size() != 1 || !tests_.acceptable(tolerance);
+  std::optional<Finding> odd;
+  if (!base_does && several && !base.of_published) odd = series_of_another_specimen(model_, data_, base_, progress_);
   result_.significant = !base_does || !added_.empty();
   Remaining& remaining = result_.remaining;
   const auto leave = [&](const Remainder& left, double share) { remaining = {left.rmse, left.upper, share, ""}; };
   const Remainder& before = base.left;
-  if ((small || tests_.acceptable(tolerance)) && accept()) {
+  if (odd) {
+    leave(before, 1.0);
+    result_.kind = VerdictKind::not_explained;
+    reject();
+    result_.channel = remaining.channel = to_string(Channel::wire);
+    result_.findings.push_back(*odd);
+  } else if ((small || tests_.acceptable(tolerance)) && accept()) {
     leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));
     result_.kind = added_.empty() ? VerdictKind::nothing_missing : VerdictKind::explained;
     select();
-  } else if (!added_.empty() && !result_.rival_explanation && is_partial(before, tests_.left, result_.peak_force) &&
-             rivals().empty()) {
+  } else if (!added_.empty() && !result_.rival_explanation && !result_.serial_rival &&
+             is_partial(before, tests_.left, result_.peak_force) && rivals().empty()) {
     leave(tests_.left, share_left(before, tests_.left));
     result_.kind = VerdictKind::partly_explained;
     if (options_.attribute && progress_.go_on("where the rest comes from")) {
@@ -323,7 +342,7 @@ void Tracer::conclude() {
     select();
   } else {
     leave(before, 1.0);
-    result_.kind = VerdictKind::not_explained;
+    result_.kind = result_.serial_rival ? VerdictKind::cannot_tell : VerdictKind::not_explained;
     reject();
     remaining.channel = result_.channel;
   }
@@ -393,7 +412,8 @@ void Tracer::reject() {
 
 // One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
 bool Tracer::decided() const {
-  if (!result_.explained) return false;
+  // Whether a model that is a little wrong or noise leaves what resembles itself, these readings cannot say.
+  if (!result_.explained || result_.serial) return false;
   Evidence evidence{.dof = final_.dof(),
                     .classes = result_.selected_classes,
                     .cause_outside = !result_.alternatives.empty(),
@@ -413,17 +433,44 @@ bool Tracer::decided() const {
   return is_decided(evidence);
 }
 
+// Noise that resembles itself from reading to reading tells less than independent noise does: the final model is fitted again beside
+// it. As few independent readings as it leaves are those of Student's t.                   theory.md (I.35)
+void Tracer::widen_for_serial_noise() {
+  final_data_ = data_;
+  result_.serial = serial_noise(model_, data_, final_);
+  if (!result_.serial || !progress_.go_on("noise that resembles itself")) return;
+  final_data_.noise = with_serial_part(model_, data_.noise, *result_.serial);
+  final_data_.noise.dof = std::max(1.0, result_.serial->effective - static_cast<double>(final_.free));
+  Fit beside = fit(model_, final_data_, final_.fitted(), final_.fixed());
+  if (!beside.report.usable()) {
+    result_.serial.reset();
+    final_data_ = data_;
+    return;
+  }
+  final_ = std::move(beside);
+  find_rank(model_, final_data_, final_);
+  result_.noise = final_data_.noise;
+  progress_.clock("noise that resembles itself");
+}
+
+// Whether the base model beside serial noise is as likely as the effects that were added. With a declared noise nothing but the model
+// can leave more.
+bool Tracer::serial_noise_does() const {
+  if (added_.empty() || data_.noise.source != "residual") return false;
+  return serial_criterion(model_, data_, base_) <= serial_criterion(model_, data_, current_);
+}
+
 // Errors of the final model, on fitted series, held-out ones, and each of them left out.
 void Tracer::compare_models() {
   result_.final_settings = final_.settings;
-  result_.places = data_.places(model_, final_.evaluation, final_.covariance);
-  if (result_.selected.empty()) {
+  result_.places = final_data_.places(model_, final_.evaluation, final_.covariance);
+  if (result_.selected.empty() && !result_.serial) {
     result_.final_tests = result_.base_tests;
     result_.final = result_.base;
     result_.final_predictions = base_predictions_;
   } else {
     base_predictions_ = {};
-    result_.final_tests = test_residuals(model_, data_, final_);
+    result_.final_tests = test_residuals(model_, final_data_, final_);
     result_.final = error_of(final_, result_.final_predictions);
   }
   for (const Prediction& p : result_.final_predictions) {
@@ -433,14 +480,14 @@ void Tracer::compare_models() {
   const std::optional<double> after = heldout_.rmse(final_.settings);
   if (before && after) result_.heldout_rmse = {*before, *after};
   if (data_.series.size() > 1 && !result_.one_condition) {
-    result_.left_out_rmse = {left_out_rmse(model_, data_, base_), left_out_rmse(model_, data_, final_)};
+    result_.left_out_rmse = {left_out_rmse(model_, data_, base_), left_out_rmse(model_, final_data_, final_)};
   }
   progress_.clock("errors of the final model");
 }
 
 // Intervals of the base model's numbers that hold whichever effect is the right one, and whether one is missing.
 void Tracer::average_intervals() {
-  if (result_.kind == VerdictKind::not_explained) return;
+  if (result_.kind == VerdictKind::not_explained || result_.serial) return;
   for (std::size_t k = 0; k < base_.free; ++k) {
     const FittedNumber& known = result_.final.numbers[k];
     if (!known.identified || known.bound != AtBound::none) continue;
@@ -461,13 +508,14 @@ void Tracer::average_intervals() {
 
 // Profile likelihood of the selected effects' numbers.
 void Tracer::find_intervals() {
-  constexpr double rise = 3.84;  // of chi2: 95 %
+  const double reach = student_quantile(0.025, final_.noise_dof);
+  const double rise = reach * reach;  // of chi2: 95 %
   for (std::size_t k = base_.free; k < final_.free; ++k) {
     const Parameter& p = *final_.settings[k].parameter;
     if (!final_.rank.is_known(k)) continue;
     if (!progress_.go_on("interval of " + p.key)) break;
     const ProfileInterval interval = profile_interval(
-        model_, data_, final_, k, rise, [&](int, double) { return progress_.go_on("interval of " + p.key); });
+        model_, final_data_, final_, k, rise, [&](int, double) { return progress_.go_on("interval of " + p.key); });
     if (progress_.interrupted()) break;
     FittedNumber& n = result_.final.numbers[k];
     n.profiled = true;
@@ -519,10 +567,13 @@ Trace Tracer::run() {
   add_effects();
   conclude();
   current_ = {};  // what is selected is in final_
+  widen_for_serial_noise();
   compare_models();
   average_intervals();
-  if (progress_.go_on("zero of the travel")) {
-    result_.zero = check_zero(model_, data_, final_);
+  const bool odd = std::ranges::any_of(
+      result_.findings, [](const Finding& f) { return f.kind == FindingKind::series_of_another_specimen; });
+  if (!odd && progress_.go_on("zero of the travel")) {
+    result_.zero = check_zero(model_, final_data_, final_);
     progress_.clock("zero of the travel");
   }
   result_.decided = decided();

@@ -131,6 +131,9 @@ TEST(BorderedFallback, SingularWholeIsReported) {
   system.rows = {{0, 0, 1.0}};
   system.matrix.lower(3, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solver.factorize(system));
+  system.matrix = chain_with_mean(n, 1.0, Eigen::VectorXd::Ones(n)).matrix;
+  system.corner(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(solver.factorize(system));
   // And the solver is none the worse for it.
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
   EXPECT_TRUE(solver.factorize(chain_with_mean(n, 1.0, ones)));

@@ -27,7 +27,9 @@ EVERY_KEY = {"scenario": (["simulate"], ["scenario"]), "arm": (["arm", "show"], 
 KINDS = [*READERS, *EVERY_KEY]
 # Keys of a wire and its mounts that motion refuses, which its readers know.
 REFUSED = {"natural_curvature_1_m", "strand_slip_breadth", "yield_stress_MPa", "hardening_ratio",
-           "slip_tension_N", "slip", "slip_at", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", "support_radius_mm"}
+           "slip_tension_N", "slip", "slip_at", "rotational_stiffness_Nm_rad", "translational_stiffness_N_m",
+           "translational_stiffness_left_N_m", "translational_stiffness_right_N_m", "rotational_stiffness_left_Nm_rad",
+           "rotational_stiffness_right_Nm_rad", "support_radius_mm"}
 
 
 def schema_of(kind):

@@ -130,6 +130,8 @@ TEST_P(EachEffect, DerivativeMatchesDifferences) {
   series.test.mount.rotational_stiffness = 2.0;
   for (std::size_t i = 0; i < series.readings->force.size(); ++i)
     series.readings->time.push_back(0.1 * static_cast<double>(i));
+  series.largest_displacement = 2.4 * mm;  // of the sensors' ranges
+  series.largest_force = 100.0;
   ASSERT_TRUE(coupling::differentiable(series.test));
   const Model model({series}, few_edges());
   const Evaluation here = model.evaluate({}, {&p});
@@ -161,6 +163,34 @@ TEST(MountAxialCompliance, DerivativeAwayFromRigidMountsMatchesDifferences) {
   const Eigen::VectorXd difference = (force(at + h) - force(at - h)) / (2.0 * h);
   // As for every effect: the derivative has the mesh's error.
   EXPECT_LT((here.by[0].col(0) - difference).norm(), 5e-3 * difference.norm());
+}
+
+// Of two mounts that give alike each gives by itself; and a push at 40 mm of which the left one gives is the mirror image of one at
+// 135 mm of which the right one does.
+TEST(MountsByThemselves, TogetherAreBothAndMirrorEachOther) {
+  struct Pair {
+    const char* both;
+    const char* left;
+    const char* right;
+    double size;
+  };
+  for (const Pair& pair :
+       {Pair{"mount_axial_compliance.compliance_m_N", "mount_axial_compliance_left.compliance_m_N",
+             "mount_axial_compliance_right.compliance_m_N", 1e-6},
+        Pair{"mount_rotational_compliance.compliance_rad_Nm", "mount_rotational_compliance_left.compliance_rad_Nm",
+             "mount_rotational_compliance_right.compliance_rad_Nm", 0.5}}) {
+    SCOPED_TRACE(pair.both);
+    const Model near({series_at(40.0 * mm, 175.0 * mm, 15)}, few_edges());
+    const Model far({series_at(135.0 * mm, 175.0 * mm, 15)}, few_edges());
+    const Setting left{&parameters().at(pair.left), pair.size}, right{&parameters().at(pair.right), pair.size};
+    const Eigen::VectorXd both = near.evaluate({{&parameters().at(pair.both), pair.size}}).force[0];
+    // The same numbers in the same places.
+    EXPECT_EQ((near.evaluate({left, right}).force[0] - both).norm(), 0.0);
+    const Eigen::VectorXd by_left = near.evaluate({left}).force[0];
+    EXPECT_GT((by_left - both).norm(), 1e-3 * both.norm());
+    // Round-off of Newton's method.
+    EXPECT_LT((by_left - far.evaluate({right}).force[0]).norm(), 1e-6 * by_left.norm());
+  }
 }
 
 std::vector<const Effect*> each() {

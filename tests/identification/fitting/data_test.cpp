@@ -49,7 +49,7 @@ struct ThreeRecords {
       data.noise.sigma.push_back(0.1);
       std::vector<double> height;
       for (int i = 0; i < kReadings; ++i) height.push_back(0.02 * i);
-      data.noise.filter.push_back(noise_filter(model.series()[k], 0.05, 0.5 * mm, height));
+      data.noise.filter.push_back(noise_filter(measured_displacement(model.series()[k]), 0.05, 0.5 * mm, height));
     }
     for (const std::vector<std::size_t>& group : tests(model.series())) {
       Placing placing{group, kPlace, {}};

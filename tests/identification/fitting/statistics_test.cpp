@@ -218,7 +218,7 @@ TEST(Noise, TheFilterWhitensItsCovariance) {
   }
   const Series s = record(d, std::vector<double>(n, 0.0));
   Noise noise;
-  noise.filter = {noise_filter(s, 0.2, 0.03, height)};
+  noise.filter = {noise_filter(measured_displacement(s), 0.2, 0.03, height)};
   const Eigen::MatrixXd inverse = noise.whiten(0, Eigen::MatrixXd::Identity(n, n));
   Eigen::MatrixXd covariance(n, n);
   std::vector<double> path(n, 0.0);

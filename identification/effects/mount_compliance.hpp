@@ -1,0 +1,41 @@
+#pragma once
+
+#include "identification/effects/effect.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace snare::identification {
+
+/// For Effect::unobservable: only clamps hold the wire's direction, and sections that slip or yield need stiff ones.
+[[nodiscard]] std::string needs_clamps(const std::vector<Series>& series);
+
+/// For Effect::sizes: clamps that give more or less than the wire bends, length / EI.
+[[nodiscard]] std::vector<double> sizes_beside_bending(const PushProblem& declared);
+/// The same of what gives way beside the stretch of the wire, length / EA.
+[[nodiscard]] std::vector<double> sizes_beside_stretching(const PushProblem& declared);
+
+/// Compliance along the chord of the left (0) or the right (1) mount by itself, beside that of each [m/N].
+template <std::size_t mount>
+[[nodiscard]] Parameter axial_compliance_of() {
+  return {.number = member([](auto& p, auto&) -> auto& { return p.mount.own_translational_compliance[mount]; }),
+          .limits = [](const PushProblem&) { return between(0.0, 1e-3); },
+          .step = 1e-12,
+          .mounts_give =
+              [](const PushProblem& p) {
+                std::array<double, 2> result{};
+                result[mount] = std::isinf(p.mount.translational_stiffness_of(mount)) ? 1.0 : 0.0;
+                return result;
+              }};
+}
+
+/// Compliance in rotation of its clamp [rad/(N m)].
+template <std::size_t mount>
+[[nodiscard]] Parameter rotational_compliance_of() {
+  return {.number = member([](auto& p, auto&) -> auto& { return p.mount.own_rotational_compliance[mount]; }),
+          .limits = [](const PushProblem&) { return between(0.0, 1000.0); },
+          .step = 1e-6};
+}
+
+}  // namespace snare::identification

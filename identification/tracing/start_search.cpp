@@ -1,0 +1,196 @@
+#include "identification/tracing/start_search.hpp"
+
+#include "identification/fitting/prediction.hpp"
+#include "identification/tracing/score.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace snare::identification {
+
+namespace {
+
+constexpr int few_steps = 6;
+constexpr double near_section = 0.2;  // of the logarithm of a stiffness: no start of its own
+
+constexpr std::size_t most_a_leg = 10;  // readings that are used
+constexpr double longest_step = 1.5;    // of the logarithm of a stiffness, to first order
+
+/// Which readings of a series are used: so many of every leg, its ends among them.
+std::vector<std::size_t> used(const Series& series) {
+  std::vector<std::size_t> result;
+  for (const Leg& leg : legs_of(measured_displacement(series))) {
+    const std::size_t n = leg.end - leg.begin;
+    const std::size_t take = std::min(n, most_a_leg);
+    for (std::size_t k = 0; k < take; ++k)
+      result.push_back(take == 1 ? leg.end - 1 : leg.begin + k * (n - 1) / (take - 1));
+  }
+  return result;
+}
+
+/// Series with these of their readings alone.
+std::vector<Series> thinned(std::vector<Series> series, const std::vector<std::vector<std::size_t>>& kept) {
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    Readings few;
+    const Readings& all = *series[k].readings;
+    for (const std::size_t i : kept[k]) {
+      few.displacement.push_back(all.displacement[i]);
+      few.force.push_back(all.force[i]);
+      if (!all.time.empty()) few.time.push_back(all.time[i]);
+    }
+    series[k].readings = std::move(few);
+  }
+  return series;
+}
+
+/// Of every series all readings, or few where each counts by itself.
+std::vector<std::vector<std::size_t>> kept_readings(const Model& model, const Data& data) {
+  const bool alone = data.noise.filter.empty() && data.placings.empty() && data.noise.published.empty();
+  std::vector<std::vector<std::size_t>> kept;
+  for (const Series& s : model.series()) {
+    const std::size_t n = measured_displacement(s).size();
+    kept.push_back(alone && s.readings && n > 1 ? used(s) : std::vector<std::size_t>());
+    if (!kept.back().empty()) continue;
+    kept.back().resize(n);
+    std::iota(kept.back().begin(), kept.back().end(), std::size_t{0});
+  }
+  return kept;
+}
+
+/// One mesh of few edges.
+SolverSettings coarse(const SolverSettings& asked) {
+  SolverSettings few = asked;
+  few.elements = std::min(64, asked.elements);
+  few.extrapolate = false;
+  return few;
+}
+
+}  // namespace
+
+std::vector<Setting> as_declared(std::vector<Setting> settings) {
+  for (Setting& s : settings) {
+    if (s.parameter->parametrisation != Parametrisation::magnitude) s.coordinate = 0.0;
+  }
+  return settings;
+}
+
+std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting> settings) {
+  const Series& first = model.series().front();
+  const wire::WireSpecification& wire = first.test.wire;
+  if (!first.modulus_declared || !(wire.diameter > 0.0) || !(wire.youngs_modulus > 0.0)) return {};
+  const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+  bool other = false;
+  for (Setting& s : settings) {
+    const bool bends = s.parameter->key == "wire.bending_stiffness_Nm2";
+    if (!bends && s.parameter->key != "wire.axial_stiffness_N") continue;
+    const double stiffness = wire.youngs_modulus * area * (bends ? wire.diameter * wire.diameter / 16.0 : 1.0);
+    const double coordinate = s.parameter->coordinate(model.declared(*s.parameter), stiffness);
+    other = other || std::abs(coordinate) > near_section;
+    s.coordinate = std::clamp(coordinate, model.lower(*s.parameter), model.upper(*s.parameter));
+  }
+  return other ? settings : std::vector<Setting>();
+}
+
+StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current, const std::vector<Setting>& anew)
+    : coarse_(model.series(), coarse(model.solver())), data_(data), context_(trial_context(model, current)) {
+  const std::vector<std::vector<std::size_t>> kept = kept_readings(model, data);
+  const bool readings = std::ranges::all_of(model.series(), [](const Series& s) { return s.readings.has_value(); });
+  if (readings) coarse_ = Model(thinned(model.series(), kept), coarse(model.solver()));
+  const Evaluation at = coarse_.evaluate(current.settings);
+  for (std::size_t k = 0; k < kept.size() && at.complete; ++k) {
+    const Eigen::VectorXd left = data.measured[k] - current.evaluation.force[k];
+    data_.measured[k] = at.force[k] + left(kept[k]);
+  }
+  readings_ = static_cast<double>(data.rows()) / static_cast<double>(std::max<Eigen::Index>(1, data_.rows()));
+  std::vector<std::vector<Setting>> bases{current.fitted(), as_declared(current.fitted()),
+                                          as_the_section_has(coarse_, current.fitted()), anew};
+  for (std::vector<Setting>& base : bases) {
+    if (base.empty() && !beside_.empty()) continue;
+    Beside one{std::move(base), {}, {}};
+    std::vector<const Parameter*> by;
+    for (const Setting& s : one.settings) by.push_back(s.parameter);
+    const Evaluation here = coarse_.evaluate(one.settings, by);
+    if (!here.complete) continue;
+    one.jacobian = data_.jacobian(here);
+    one.covariance = (one.jacobian.transpose() * one.jacobian).completeOrthogonalDecomposition().pseudoInverse();
+    beside_.push_back(std::move(one));
+  }
+}
+
+std::vector<std::vector<double>> StartSearch::sizes(const Effect& effect) const {
+  if (effect.trials != nullptr) {
+    // The middle one and those towards the ends.
+    std::vector<std::vector<double>> all = effect.trials(context_);
+    constexpr std::size_t most = 3;
+    if (all.size() <= most) return all;
+    return {all[all.size() / 6], all[all.size() / 2], all[(5 * all.size()) / 6]};
+  }
+  if (effect.sizes == nullptr) return {{0.0}};
+  std::vector<std::vector<double>> result;
+  for (const double size : effect.sizes(coarse_.series().front().test)) result.push_back({size});
+  return result;
+}
+
+// One step of the fitted numbers, with their derivatives where the effect is absent.
+std::optional<SearchedStart> StartSearch::stepped(const Beside& beside, const Effect& effect,
+                                                  const std::vector<double>& size) const {
+  SearchedStart start{beside.settings, 0.0};
+  for (std::size_t k = 0; k < size.size(); ++k) {
+    const Parameter& p = effect.numbers[k].parameter;
+    if (effect.numbers[k].optional && size[k] == 0.0) continue;
+    start.settings.push_back({&p, std::clamp(size[k], coarse_.lower(p), coarse_.upper(p))});
+  }
+  const Evaluation at = coarse_.evaluate(start.settings);
+  if (!at.complete) return std::nullopt;
+  const Eigen::VectorXd r = data_.residual(at);
+  start.chi2 = r.squaredNorm();
+  const Eigen::VectorXd step = beside.covariance * (beside.jacobian.transpose() * r);
+  SearchedStart moved = start;
+  for (Eigen::Index k = 0; k < step.size(); ++k) {
+    Setting& s = moved.settings[static_cast<std::size_t>(k)];
+    const bool shift = s.parameter->parametrisation == Parametrisation::shift;
+    const double most = shift ? 1e300 : longest_step;
+    s.coordinate = std::clamp(s.coordinate + std::clamp(step[k], -most, most), coarse_.lower(*s.parameter),
+                              coarse_.upper(*s.parameter));
+  }
+  const Evaluation there = coarse_.evaluate(moved.settings);
+  if (!there.complete) return start;
+  moved.chi2 = data_.residual(there).squaredNorm();
+  return moved.chi2 < start.chi2 ? moved : start;
+}
+
+std::optional<SearchedStart> StartSearch::best(const Effect& effect, double rival, Progress& progress) const {
+  const std::string stage = "where " + effect.name + " may begin";
+  std::optional<SearchedStart> found;
+  for (const Beside& beside : beside_) {
+    for (const std::vector<double>& size : sizes(effect)) {
+      if (!progress.go_on(stage)) return found;
+      std::optional<SearchedStart> one = stepped(beside, effect, size);
+      if (one && (!found || one->chi2 < found->chi2)) found = std::move(one);
+    }
+  }
+  if (!found) return found;
+  // Steps that need whole curves for every derivative are left to the refit.
+  const std::vector<Series> with = coarse_.apply(found->settings).series;
+  const bool cheap = std::ranges::all_of(with, [](const Series& s) { return coupling::differentiable(s.test); });
+  if (cheap) {
+    FitOptions few;
+    few.max_iterations = few_steps;
+    few.tolerance = 1e-3;
+    few.rival = rival / readings_;
+    few.progress = [&](int, double) { return progress.go_on(stage); };
+    const Fit reached = fit(coarse_, data_, found->settings, {}, few);
+    if (reached.report.usable() && reached.chi2 < found->chi2) found = SearchedStart{reached.fitted(), reached.chi2};
+  }
+  found->chi2 *= readings_;
+  return found;
+}
+
+}  // namespace snare::identification
