@@ -170,9 +170,10 @@ std::string limits_of_urdf(const nlohmann::json& joints) {
     text += fmt::format("<limit> of {}:", joint["joint"].get<std::string>());
     if (!effort.is_null())
       text += fmt::format(" effort {:.4g} N m {}", effort.get<double>(),
-                          used    ? "is the limit of its servo"
-                          : servo ? "not used (limit_Nm of the arm file)"
-                                  : "not used (no servo)");
+                          used                                ? "is the limit of its servo"
+                          : !servo                            ? "not used (no servo)"
+                          : joint["servo_limit_Nm"].is_null() ? "is no limit"
+                                                              : "not used (limit_Nm of the arm file)");
     if (!speed.is_null())
       text += fmt::format("{} velocity {:.4g} rad/s not used", effort.is_null() ? "" : ",", speed.get<double>());
     text += "\n";

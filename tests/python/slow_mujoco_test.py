@@ -27,7 +27,7 @@ POLYNOMIAL, YIELD = VERSION >= (3, 7), VERSION >= (4, 0)  # the versions with st
 try:
     import jax
     from mujoco import mjx
-except ImportError:
+except (ImportError, AttributeError):  # the latter from a NumPy that is too old for it
     mjx = None
 
 warnings.simplefilter("ignore", snare.OutsideRange)
