@@ -74,8 +74,8 @@ nlohmann::json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
-/// The mass matrix of all that moves, without the motors, at coordinates q; `names` are those of the joints by the bodies that they carry,
-/// a free body has its own name.
+/// The mass matrix of all that moves, without the motors, at coordinates q; `names` are those of the joints
+/// by the bodies that they carry, a free body has its own name.
 nlohmann::json mass_matrix_of(const multibody::Tree& tree, const Eigen::VectorXd& q,
                               const std::vector<std::string>& names) {
   constexpr const char* of_free[] = {".spin_x", ".spin_y", ".spin_z", ".velocity_x", ".velocity_y", ".velocity_z"};
@@ -159,7 +159,8 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
   return result;
 }
 
-/// What becomes of the <limit> of a URDF's joints: the effort is that of a servo without a limit of its own, no drive limits the speed.
+/// What becomes of the <limit> of a URDF's joints: the effort is that of a servo without a limit of its own,
+/// no drive limits the speed.
 std::string limits_of_urdf(const nlohmann::json& joints) {
   std::string text;
   for (const nlohmann::json& joint : joints) {

@@ -21,8 +21,8 @@ struct ExportOptions {
   int number = 1;               ///< of the case in law.json
 };
 
-/// A law of a wire on a body of a user's model: law_mujoco.xml, law_mujoco_linear.xml and, where the wire dissipates,
-/// law_mujoco_loop.xml. Throws base::InputError for wrong input, before anything is written.
+/// A law of a wire on a body of a user's model: law_mujoco.xml, law_mujoco_linear.xml and, where the wire
+/// dissipates, law_mujoco_loop.xml. Throws base::InputError for wrong input, before anything is written.
 [[nodiscard]] ExitStatus run_export(const ExportOptions& asked, const CommonOptions& options, Console& console);
 
 }  // namespace snare::app

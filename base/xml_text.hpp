@@ -9,7 +9,8 @@
 
 namespace snare::base {
 
-/// One element of an XML text with its places in the text, so that a program can insert into the text and leave the rest as it is.
+/// One element of an XML text with its places in the text, so that a program can insert into the text and
+/// leave the rest as it is.
 struct XmlElement {
   std::string name;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< in the order of the text, entities resolved
@@ -33,8 +34,9 @@ struct XmlText {
   std::vector<XmlElement> elements;
 };
 
-/// Scans a text: comments, CDATA and processing instructions are passed over. Throws InputError, naming file and line, for tags that do
-/// not match, attributes without a value in quotes, a document type, more than one root, and elements more than 200 deep.
+/// Scans a text: comments, CDATA and processing instructions are passed over. Throws InputError, naming file
+/// and line, for tags that do not match, attributes without a value in quotes, a document type, more than one
+/// root, and elements more than 200 deep.
 [[nodiscard]] XmlText scan_xml(std::string file, std::string text);
 
 /// The text with its five special characters as entities, for an attribute in double quotes.

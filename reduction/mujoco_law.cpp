@@ -14,7 +14,8 @@ constexpr double accurate_angle = 0.2;  // omega h
 constexpr int slider_count = 10;
 constexpr double most_yield = 1.0 / 40.0;  // of the travel
 
-/// Sum of truncated cubics that is the curve: at every knot its second and third derivatives change, beyond the last one it is straight.
+/// Sum of truncated cubics that is the curve: at every knot its second and third derivatives change, beyond
+/// the last one it is straight.
 std::vector<MujocoSpring> springs_of(const numerics::HermiteCurve& curve) {
   const std::vector<double>& x = curve.knots();
   const std::vector<double>& m = curve.slopes();
@@ -111,7 +112,8 @@ Cycle cycle_of(const std::vector<MujocoSlider>& sliders, double end) {
   return cycle;
 }
 
-/// Sliders whose forces are (1 - r)/2 of the loading curve on the way in, the opposite on the way back, and lose the loop's energy.
+/// Sliders whose forces are (1 - r)/2 of the loading curve on the way in, the opposite on the way back, and
+/// lose the loop's energy.
 std::optional<MujocoLoop> loop_of(const numerics::HermiteCurve& curve, const std::vector<MujocoSpring>& springs,
                                   const scenario::DistilledLoss::Loop& law) {
   const double end = curve.knots().back();

@@ -20,7 +20,8 @@ struct MujocoSpring {
 /// Radius of the pin that deflects a tendon over half the distance of its sites [-].
 inline constexpr double mujoco_pin_share = 0.1;
 
-/// One tendon that the body deflects from `start` on, between two sites on either side, with a slip at its yield tension.
+/// One tendon that the body deflects from `start` on, between two sites on either side, with a slip at its
+/// yield tension.
 struct MujocoSlider {
   double start = 0.0;       ///< travel at which the body meets it [m]
   double half_width = 0.0;  ///< half the distance of its sites [m], > 0
@@ -49,15 +50,16 @@ struct MujocoLaw {
   std::optional<MujocoLoop> loop;
 };
 
-/// curve: force over travel from 0, a knot at the end of the travel. linear: stiffness of the linear law [N/m]; empty: least squares.
-/// Throws nothing; a loop whose energy is not positive is left out.
+/// curve: force over travel from 0, a knot at the end of the travel. linear: stiffness of the linear law
+/// [N/m]; empty: least squares. Throws nothing; a loop whose energy is not positive is left out.
 [[nodiscard]] MujocoLaw mujoco_law(double position, const numerics::HermiteCurve& curve, std::optional<double> linear,
                                    const scenario::DistilledLoss& loss);
 
 /// Force of springs at a travel [N].
 [[nodiscard]] double force_of(const std::vector<MujocoSpring>& springs, double travel);
 
-/// Elongation of a slider's tendon at a travel [m], as MuJoCo wraps it around a pin of a tenth of its half width.
+/// Elongation of a slider's tendon at a travel [m], as MuJoCo wraps it around a pin of a tenth of its half
+/// width.
 [[nodiscard]] double elongation(const MujocoSlider& slider, double travel);
 
 /// Mass on which the springs are stable and accurate at MuJoCo's step of 2 ms: omega h = 0.2 [kg].

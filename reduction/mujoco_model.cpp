@@ -76,7 +76,8 @@ class Defaults {
  public:
   explicit Defaults(const XmlText& xml) : xml_(xml) {}
 
-  /// An attribute of an element: its own, else that of its class, of the classes around that one and of the main class.
+  /// An attribute of an element: its own, else that of its class, of the classes around that one and of the
+  /// main class.
   [[nodiscard]] std::optional<std::string> attribute(const XmlElement& element, const char* key) const {
     if (const auto own = element.attribute(key)) return own;
     std::string name = element.attribute("class").value_or("");
@@ -177,7 +178,8 @@ std::vector<const XmlElement*> joints_of(const XmlText& xml, const XmlElement& b
   return joints;
 }
 
-/// Where files that the model names are, seen from another folder: one more <compiler>; empty where it names none.
+/// Where files that the model names are, seen from another folder: one more <compiler>; empty where it names
+/// none.
 std::string asset_folders(const XmlText& xml, const std::filesystem::path& model, const std::filesystem::path& out) {
   const auto names_file = [&](const XmlElement& e) {
     return e.attribute("file") && (within(xml, e, "asset") || e.name == "skin");

@@ -34,10 +34,11 @@ class MujocoTarget {
   /// Names of its bodies, in the order of the file.
   [[nodiscard]] std::vector<std::string> bodies() const;
 
-  /// The model with the tendons of a law on a body, for a file in the folder `out`: meshes and textures are named from there. A body whose only
-  /// joint is a slide joint gets fixed tendons on it; another moving body gets spatial tendons from a site 10 km behind it, and no sliders
-  /// and no damper. Throws InputError for an unknown body (with those that there are), one that does not move, an axis across the only
-  /// slide joint, and a model that has this law already.
+  /// The model with the tendons of a law on a body, for a file in the folder `out`: meshes and textures are
+  /// named from there. A body whose only joint is a slide joint gets fixed tendons on it; another moving body
+  /// gets spatial tendons from a site 10 km behind it, and no sliders and no damper. Throws InputError for an
+  /// unknown body (with those that there are), one that does not move, an axis across the only slide joint,
+  /// and a model that has this law already.
   [[nodiscard]] MujocoModel with(const MujocoLaw& law, MujocoForm form, const MujocoMeeting& meeting,
                                  const std::filesystem::path& out) const;
 

@@ -23,7 +23,8 @@ inline constexpr std::array<MujocoForm, 3> mujoco_forms{MujocoForm::law, MujocoF
 /// Whether a law has this form: only a law with a friction loop has that of a loop.
 [[nodiscard]] bool has_form(const MujocoLaw& law, MujocoForm form);
 
-/// Distance of the far site of a spatial tendon [m]: a body that moves 0.1 m across the push changes its length by 0.5 um.
+/// Distance of the far site of a spatial tendon [m]: a body that moves 0.1 m across the push changes its
+/// length by 0.5 um.
 inline constexpr double mujoco_far_site = 1e4;
 
 /// How a law's tendons are tied to a body of a model.
@@ -41,13 +42,14 @@ struct MujocoTie {
 [[nodiscard]] std::string mujoco_tendons(const MujocoLaw& law, MujocoForm form, const MujocoTie& tie);
 /// Sites that stay where they are, in the frame of the body before it moves; empty where the form needs none.
 [[nodiscard]] std::string mujoco_anchors(const MujocoLaw& law, MujocoForm form, const MujocoTie& tie);
-/// What the body itself carries: a pin without mass and collisions, and its side site; empty where the form needs none.
+/// What the body itself carries: a pin without mass and collisions, and its side site; empty where the form
+/// needs none.
 [[nodiscard]] std::string mujoco_pin(const MujocoLaw& law, MujocoForm form, const MujocoTie& tie);
 /// One line on the law in this form: range, error, loss; no double hyphen in it.
 [[nodiscard]] std::string mujoco_words(const MujocoLaw& law, MujocoForm form);
 
-/// A model with a body of its own for every law, with a slide joint along y, heavy enough for MuJoCo's default step. Laws that have not
-/// this form are left out.
+/// A model with a body of its own for every law, with a slide joint along y, heavy enough for MuJoCo's
+/// default step. Laws that have not this form are left out.
 [[nodiscard]] std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form, const std::string& title);
 
 }  // namespace snare::reduction

@@ -36,8 +36,8 @@ struct SimpleLaw {
 /// Energy that a wire loses at one position, as law.json states it. SI units.
 struct DistilledLoss {
   double position = 0.0;  ///< s [m]
-  /// Load/unload law (theory.md, R.9): share of the loading force that is left on the way back [-], travel of a turn [m], energy of
-  /// one loop over the whole travel [J].
+  /// Load/unload law (theory.md, R.9): share of the loading force that is left on the way back [-], travel of
+  /// a turn [m], energy of one loop over the whole travel [J].
   struct Loop {
     double returned = 1.0, turn = 0.0, energy = 0.0;
   };

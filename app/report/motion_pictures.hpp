@@ -19,8 +19,8 @@ class MotionPictures {
   /// To be turned by the reader; `marks` are times at which something happened.
   [[nodiscard]] SceneSpecification scene(std::vector<SceneMark> marks) const;
 
-  /// The wires, the shapes on carriers, the arms. Velocities of rods and bodies are those of the motion; velocities of arms and of law
-  /// wires are differences of the samples.
+  /// The wires, the shapes on carriers, the arms. Velocities of rods and bodies are those of the motion;
+  /// velocities of arms and of law wires are differences of the samples.
   [[nodiscard]] std::vector<ParaviewFrame> paraview() const;
 
  private:

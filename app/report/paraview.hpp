@@ -27,9 +27,10 @@ struct ParaviewFrame {
   std::vector<ParaviewLine> lines;
 };
 
-/// Writes NAME.pvd in `folder` and one NAME_k.vtp a frame next to it (VTK XML PolyData, ASCII): coordinates in metres, as the field array
-/// `coordinates_unit` says; point arrays `tension_N`, `curvature_1_m`, `contact_force_N`, `velocity_m_s`; cell arrays `kind` (0 wire, 1
-/// body, 2 arm), `number` and `name`; field array `TimeValue` [s]. Throws std::system_error where a file cannot be written.
+/// Writes NAME.pvd in `folder` and one NAME_k.vtp a frame next to it (VTK XML PolyData, ASCII): coordinates
+/// in metres, as the field array `coordinates_unit` says; point arrays `tension_N`, `curvature_1_m`,
+/// `contact_force_N`, `velocity_m_s`; cell arrays `kind` (0 wire, 1 body, 2 arm), `number` and `name`; field
+/// array `TimeValue` [s]. Throws std::system_error where a file cannot be written.
 void write_paraview(const std::filesystem::path& folder, const std::string& name,
                     const std::vector<ParaviewFrame>& frames);
 

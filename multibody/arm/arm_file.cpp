@@ -220,7 +220,8 @@ std::vector<Flexure> bend_links(const TomlTable& links, RobotDescription& robot)
   return flexures;
 }
 
-/// The drive of a joint; a servo without a limit of its own has the effort of the URDF's <limit>, where that is > 0.
+/// The drive of a joint; a servo without a limit of its own has the effort of the URDF's <limit>, where that
+/// is > 0.
 Drive drive_of(const TomlTable& table, const RobotJoint& joint) {
   Drive drive;
   if (positive.contains(joint.effort)) drive.limit = joint.effort;

@@ -189,7 +189,8 @@ TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
   }
 }
 
-// A dashpot of impacts on the wire in motion is in law.json; a quarter of it acts along a tendon of the MuJoCo model.
+// A dashpot of impacts on the wire in motion is in law.json; a quarter of it acts along a tendon of the
+// MuJoCo model.
 TEST_F(DistilCommand, DampingIsDistilledFromImpacts) {
   std::ofstream(folder_ / "w.toml", std::ios::app)
       << "[damping]\nimpact_mass_kg = 8.9\nimpact_speeds_m_s = [0.02]\nelements = 16\n";

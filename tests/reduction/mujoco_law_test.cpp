@@ -1,4 +1,5 @@
-// The numbers of the MuJoCo forms: their sums are the curve, its tangent beyond the end, and the loop of the load/unload law.
+// The numbers of the MuJoCo forms: their sums are the curve, its tangent beyond the end, and the loop of the
+// load/unload law.
 
 #include "reduction/mujoco_law.hpp"
 
@@ -57,7 +58,8 @@ TEST(MujocoLaw, TheLoopLosesTheEnergyOfTheLaw) {
     const MujocoLaw law = mujoco_law(0.09, c, std::nullopt, loss);
     ASSERT_TRUE(law.loop.has_value());
     EXPECT_NEAR(law.loop->energy / loss.loop->energy, 1.0, 1e-12);
-    // Half the difference of the branches is 0.5 (1 - r) of the force; a tenth of it is left to the ramps of the sliders.
+    // Half the difference of the branches is 0.5 (1 - r) of the force; a tenth of it is left to the ramps of
+    // the sliders.
     EXPECT_LT(law.loop->largest_error, 1.1 * (1.0 - returned) * c.value(end));
     for (const MujocoSlider& s : law.loop->sliders) EXPECT_GT(s.tension, 0.0);
   }
