@@ -6,6 +6,7 @@
 #include "base/toml_reader.hpp"
 #include "base/units.hpp"
 #include "multibody/arm/arm_file.hpp"
+#include "multibody/dynamics.hpp"
 #include "results/in_mm.hpp"
 #include "scenario/hold.hpp"
 
@@ -69,6 +70,39 @@ double outer_stiffness(const multibody::ElasticJoint& joint) {
   return joint.spring.pieces().back().stiffness;
 }
 
+nlohmann::json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+/// The mass matrix of all that moves, without the motors, at coordinates q; `names` are those of the joints
+/// by the bodies that they carry, a free body has its own name.
+nlohmann::json mass_matrix_of(const multibody::Tree& tree, const Eigen::VectorXd& q,
+                              const std::vector<std::string>& names) {
+  constexpr const char* of_free[] = {".spin_x", ".spin_y", ".spin_z", ".velocity_x", ".velocity_y", ".velocity_z"};
+  nlohmann::json joints = nlohmann::json::array(), rows = nlohmann::json::array();
+  for (int i = 0; i < tree.size(); ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    if (tree.body(i).joint != multibody::JointKind::free) {
+      joints.push_back(name);
+    } else {
+      for (const char* part : of_free) joints.push_back(name + part);
+    }
+  }
+  multibody::DynamicsWorkspace workspace(tree);
+  const Eigen::MatrixXd& matrix = multibody::mass_matrix(tree, q, workspace);
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    rows.push_back(nlohmann::json::array());
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) rows.back().push_back(matrix(i, k));
+  }
+  return {{"joints", joints}, {"rows", rows}};
+}
+
+std::vector<std::string> body_names(const multibody::Tree& tree) {
+  std::vector<std::string> names;
+  for (const multibody::TreeBody& body : tree.bodies()) names.push_back(body.name);
+  return names;
+}
+
 nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::VectorXd& angles) {
   const multibody::Tree& tree = arm.arm.tree;
   const Eigen::VectorXd q = arm.coordinates(angles);
@@ -83,6 +117,7 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
                         {"reach_m", multibody::reach(arm)},
                         {"tip_m", {tip.x(), tip.y(), tip.z()}},
                         {"joints", nlohmann::json::array()}};
+  std::vector<std::string> names = body_names(tree);
   for (int k = 0; k < arm.arm.motors(); ++k) {
     const multibody::ElasticJoint& joint = arm.arm.joints[static_cast<std::size_t>(k)];
     const multibody::TreeBody& body = tree.body(joint.body);
@@ -96,8 +131,17 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
          {"stiffness_outer_Nm_rad", outer_stiffness(joint)},
          {"coulomb_Nm", joint.friction.coulomb},
          {"viscous_Nms_rad", joint.friction.viscous},
-         {"drive", drive_modes[static_cast<std::size_t>(arm.drives[static_cast<std::size_t>(k)].mode)]}});
+         {"drive", drive_modes[static_cast<std::size_t>(arm.drives[static_cast<std::size_t>(k)].mode)]},
+         {"servo_limit_Nm", finite_or_null(arm.drives[static_cast<std::size_t>(k)].limit)}});
+    // Flexures come behind the joints of the URDF.
+    const bool has = static_cast<std::size_t>(k) < arm.joints.size();
+    result["joints"].back()["urdf_effort_Nm"] =
+        has ? finite_or_null(arm.joints[static_cast<std::size_t>(k)].effort) : nlohmann::json();
+    result["joints"].back()["urdf_velocity_rad_s"] =
+        has ? finite_or_null(arm.joints[static_cast<std::size_t>(k)].speed) : nlohmann::json();
+    names[static_cast<std::size_t>(joint.body)] = joint.name;
   }
+  result["mass_matrix"] = mass_matrix_of(tree, q, names);
   const std::vector<multibody::Drive> locked(arm.drives.size(), multibody::Drive::locked());
   std::vector<multibody::Drive> limp = arm.drives;
   scenario::hold(scenario::Hold::limp, angles, arm.arm, limp);
@@ -115,11 +159,53 @@ nlohmann::json describe(const multibody::ArmDescription& arm, const Eigen::Vecto
   return result;
 }
 
+/// What becomes of the <limit> of a URDF's joints: the effort is that of a servo without a limit of its own,
+/// no drive limits the speed.
+std::string limits_of_urdf(const nlohmann::json& joints) {
+  std::string text;
+  for (const nlohmann::json& joint : joints) {
+    const nlohmann::json &effort = joint["urdf_effort_Nm"], &speed = joint["urdf_velocity_rad_s"];
+    if (effort.is_null() && speed.is_null()) continue;
+    const bool servo = joint["drive"] == "servo";
+    const bool used = servo && joint["servo_limit_Nm"] == effort;
+    text += fmt::format("<limit> of {}:", joint["joint"].get<std::string>());
+    if (!effort.is_null())
+      text += fmt::format(" effort {:.4g} N m {}", effort.get<double>(),
+                          used                                ? "is the limit of its servo"
+                          : !servo                            ? "not used (no servo)"
+                          : joint["servo_limit_Nm"].is_null() ? "is no limit"
+                                                              : "not used (limit_Nm of the arm file)");
+    if (!speed.is_null())
+      text += fmt::format("{} velocity {:.4g} rad/s not used", effort.is_null() ? "" : ",", speed.get<double>());
+    text += "\n";
+  }
+  return text;
+}
+
 std::string listed(const nlohmann::json& values) {
   std::string text;
   for (const nlohmann::json& value : values)
     text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", value.get<double>());
   return text.empty() ? "none" : text;
+}
+
+/// At zero of all joints, the root held.
+nlohmann::json mass_matrix_of(multibody::RobotDescription robot) {
+  const auto other_name = [](std::string& name) {
+    if (name == "world") name = "world link";  // the tree has a world already
+  };
+  for (multibody::RobotLink& link : robot.links) other_name(link.name);
+  for (multibody::RobotJoint& joint : robot.joints) {
+    other_name(joint.parent);
+    other_name(joint.child);
+  }
+  multibody::Tree tree;
+  multibody::add_robot(tree, 0, multibody::RootJoint::fixed, robot);
+  std::vector<std::string> names = body_names(tree);
+  for (const multibody::RobotJoint& joint : robot.joints) {
+    if (joint.kind) names[static_cast<std::size_t>(tree.frame(tree.find_frame(joint.child)).body)] = joint.name;
+  }
+  return mass_matrix_of(tree, multibody::zero_state(tree).q, names);
 }
 
 /// What a robot description says by itself; stiffness and drives, and so the frequencies, are in an arm file.
@@ -137,8 +223,13 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
                                 {"from", joint.parent},
                                 {"link", joint.child},
                                 {"length_m", joint.X_PJ.p.norm()},
-                                {"link_mass_kg", robot.links[k + 1].inertia.mass}});
+                                {"link_mass_kg", robot.links[k + 1].inertia.mass},
+                                {"effort_Nm", finite_or_null(joint.effort)},
+                                {"velocity_rad_s", finite_or_null(joint.speed)},
+                                {"damping_Nms_rad", joint.damping},
+                                {"friction_Nm", joint.friction}});
   }
+  result["mass_matrix"] = mass_matrix_of(robot);
   for (const std::string& warning : robot.warnings) console.warn(warning);
   if (options.json) {
     print_result(result);
@@ -152,6 +243,12 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
                         joint["kind"].get<std::string>(), joint["from"].get<std::string>(),
                         joint["link"].get<std::string>(), joint["length_m"].get<double>(),
                         joint["link_mass_kg"].get<double>());
+  }
+  for (const nlohmann::json& joint : result["joints"]) {
+    const double damping = joint["damping_Nms_rad"], friction = joint["friction_Nm"];
+    if (damping > 0.0 || friction > 0.0)
+      text += fmt::format("<dynamics> of {}: damping {:.4g} N m s/rad, friction {:.4g} N m\n",
+                          joint["joint"].get<std::string>(), damping, friction);
   }
   text +=
       "Stiffness, drives and natural frequencies: `snare arm show` of an arm file that names this one, see "
@@ -203,6 +300,7 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
       text += fmt::format("friction of {}: dry {:.4g} N m, viscous {:.4g} N m s/rad\n",
                           joint["joint"].get<std::string>(), dry, viscous);
   }
+  text += limits_of_urdf(result["joints"]);
   text += fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {
     text +=

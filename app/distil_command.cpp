@@ -7,6 +7,7 @@
 #include "base/files.hpp"
 #include "reduction/law_export.hpp"
 #include "reduction/law_simulators.hpp"
+#include "reduction/mujoco_text.hpp"
 #include "results/in_mm.hpp"
 #include "results/law_json.hpp"
 #include "results/warnings.hpp"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <atomic>
 
 namespace snare::app {
@@ -61,7 +63,11 @@ void write_exports(const std::filesystem::path& out, const reduction::WireFile& 
   base::write_text(out / "law.h", reduction::c_header(one, title, name));
   base::write_text(out / "law.py", reduction::python_module(one, title));
   base::write_text(out / "law.mo", reduction::modelica_package(one, title, name));
-  base::write_text(out / "law_mujoco.xml", reduction::mujoco_snippet(one, title));
+  const std::vector<reduction::MujocoLaw> laws = reduction::mujoco_laws(one);
+  for (const reduction::MujocoForm form : reduction::mujoco_forms) {
+    if (std::ranges::any_of(laws, [form](const auto& law) { return reduction::has_form(law, form); }))
+      base::write_text(out / reduction::file_of(form), reduction::mujoco_file(laws, form, title));
+  }
   base::write_text(out / "law_adams.adm", reduction::adams_splines(one, title).text);
   base::write_text(out / "law_simulink.csv", reduction::lookup_table(one).csv);
 }
@@ -72,9 +78,9 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
 
-  const ResultFolder folder(
-      options, {"law.json", "table.csv", "report.html", "distil.journal", "law.hpp", "law.c", "law.h", "law.py",
-                "law.mo", "law_mujoco.xml", "law_adams.adm", "law_simulink.csv"});
+  const ResultFolder folder(options, {"law.json", "table.csv", "report.html", "distil.journal", "law.hpp", "law.c",
+                                      "law.h", "law.py", "law.mo", "law_mujoco.xml", "law_mujoco_linear.xml",
+                                      "law_mujoco_loop.xml", "law_adams.adm", "law_simulink.csv"});
   const std::filesystem::path journal = options.out / "distil.journal";
   std::atomic<bool> journalled = true;
   const KeepWhenInterrupted keeping(

@@ -1,5 +1,6 @@
 #include "app/arm_command.hpp"
 #include "app/commands.hpp"
+#include "app/export_command.hpp"
 #include "app/interruption.hpp"
 #include "app/new_command.hpp"
 #include "app/result_folder.hpp"
@@ -157,6 +158,28 @@ void check_words(const CLI::App& app, int argc, char** argv) {
   }
 }
 
+void add_export(CLI::App& app, snare::app::ExportOptions& asked, CommonOptions& options) {
+  CLI::App* verb = app.add_subcommand("export", "a law on a body of a model of MuJoCo");
+  verb->add_option("LAW.json", asked.law, "law.json of snare distil")->required();
+  verb->add_option("--mujoco", asked.mujoco, "model that takes the law (MJCF)")->required();
+  verb->add_option("--body", asked.body, "body of the model that meets the wire")->required();
+  verb->add_option("--position-mm", asked.position_mm,
+                   "position along the span; the law's nearest to mid-span when left out");
+  verb->add_option("--slack-mm", asked.slack_mm, "slack of the wire; that of the law when left out");
+  verb->add_option("--axis", asked.axis,
+                   "direction of the push in the body's frame: 0,1,0; that of its slide joint when left out");
+  verb->add_option("--point-mm", asked.point_mm,
+                   "point that meets the wire, in the body's frame: 50,100,0; its origin when left out");
+  verb->add_option("--first-touch-mm", asked.first_touch_mm, "travel of the body from the model's pose to first touch")
+      ->capture_default_str();
+  verb->add_option("--case", asked.number, "case of the law")->capture_default_str();
+  options.out = "out/export";
+  verb->add_option("--out", options.out, "folder for the results")->capture_default_str();
+  verb->add_flag("--quiet", options.quiet, "no messages but errors");
+  verb->footer(
+      "Example: snare export out/distil/law.json --mujoco examples/air_table.xml --body target --point-mm 50,100,0");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"snare: the mechanics of loose wires under a pin"};
   app.require_subcommand(1);
@@ -205,6 +228,10 @@ int run(int argc, char** argv) {
   new_files->add_flag("--quiet", new_options.quiet, "no messages but errors");
   new_files->footer("Example: snare new capture --out my/");
 
+  CommonOptions export_options;
+  snare::app::ExportOptions exported;
+  add_export(app, exported, export_options);
+
   snare::app::catch_interrupts(snare::app::release_result_folder);
   try {
     check_words(app, argc, argv);
@@ -227,6 +254,9 @@ int run(int argc, char** argv) {
   }
   if (new_files->parsed())
     status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
+  if (app.get_subcommand("export")->parsed())
+    status =
+        guarded(export_options, "", [&](Console& c) { return snare::app::run_export(exported, export_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     Parsed& p = parsed[k];
     p.options.command =

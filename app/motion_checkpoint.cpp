@@ -62,10 +62,13 @@ void fields(auto& a, MotionSample::Arm& s) {
 void fields(auto& a, MotionSample::Bushing& b) {
   a(b.shift)(b.turn)(b.on_second);
 }
+void fields(auto& a, WireLoads& l) {
+  a(l.velocities)(l.tensions)(l.curvatures);
+}
 void fields(auto& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 8 * sizeof(std::vector<double>) + 13 * sizeof(double));
-  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.law_tensions)(s.arms)(s.welds)(s.bushings)(s.energy)(
-      s.momentum)(s.angular_momentum);
+  static_assert(sizeof(MotionSample) == sizeof(double) + 9 * sizeof(std::vector<double>) + 13 * sizeof(double));
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.wire_loads)(s.law_tensions)(s.arms)(s.welds)(s.bushings)(
+      s.energy)(s.momentum)(s.angular_momentum);
 }
 void fields(auto& a, MotionEvent& e) {
   static_assert(sizeof(MotionEvent) == 5 * sizeof(double));

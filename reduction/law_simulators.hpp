@@ -1,18 +1,17 @@
 #pragma once
 
 #include "reduction/distil.hpp"
+#include "reduction/mujoco_law.hpp"
 
 #include <string>
 #include <vector>
 
 namespace snare::reduction {
 
-/// law_mujoco.xml: a slide joint for every law position with a polynomial of three numbers, F = k0 d + k1 d^2 + k2 d^3, through the full
-/// wire, its error and that of the linear law, its range, a sensor that flags travels outside, and the damping of the first impact. No force
-/// is negative at travels from 0 on, nor is the stiffness beyond the range. Newer versions of MuJoCo have such springs.
-[[nodiscard]] std::string mujoco_snippet(const DistilledCase& one, const std::string& title);
-/// Largest error of these polynomials against the full wire, one a law position [N].
-[[nodiscard]] std::vector<double> joint_errors(const DistilledCase& one);
+/// The law at every law position of a case as MuJoCo can have it: the table's curve at the wire's slack.
+[[nodiscard]] std::vector<MujocoLaw> mujoco_laws(const DistilledCase& one);
+/// Largest difference of these curves and the full wire's over the travel, one a law position [N].
+[[nodiscard]] std::vector<double> mujoco_errors(const DistilledCase& one);
 
 // Files of data alone have the continuation of the law written out around its range: no force at negative travel, linear from the end of the
 // travel to twice it, linear from the end of the positions to the mounts, constant beyond them. A reader that continues the last rows and

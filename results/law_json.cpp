@@ -157,6 +157,21 @@ json map_json(const LawMap& map) {
       {"position_mm", in_mm(map.position)}, {"to_mm", in_mm(map.travel.back())}, {"within", map_share}, {"rows", rows}};
 }
 
+/// The three forms for MuJoCo, one entry a law position.
+json mujoco_json(const DistilledCase& one) {
+  json linear = json::array(), loops = json::array();
+  for (const MujocoLaw& law : mujoco_laws(one)) {
+    linear.push_back(law.linear_error);
+    loops.push_back(law.loop ? json{{"loop_J", law.loop->energy}, {"largest_error_N", law.loop->largest_error}}
+                             : json());
+  }
+  return {{"form", "the table's curve at the position"},
+          {"against", "full wire"},
+          {"largest_error_N", mujoco_errors(one)},
+          {"linear_largest_error_N", linear},
+          {"loop", loops}};
+}
+
 /// How far each export is off, and where it is not a continuation.
 json exports_json(const DistilledCase& one) {
   const coupling::ForceTable& table = *one.table.loading;
@@ -170,8 +185,7 @@ json exports_json(const DistilledCase& one) {
                         {"against", "full wire"},
                         {"largest_error_N", std::max(one.table.loading_error.bound, one.table.unloading_error.bound)}};
   }
-  result["mujoco"] = {
-      {"form", "k0 d + k1 d^2 + k2 d^3"}, {"against", "full wire"}, {"largest_error_N", joint_errors(one)}};
+  result["mujoco"] = mujoco_json(one);
   result["simulink"] = {{"form", "linear in travel and position"},
                         {"against", "table"},
                         {"largest_error_N", lookup_table(one).largest_error},

@@ -47,6 +47,7 @@ class Field {
       all.emplace_back(*file_, (*value_)[k], fmt::format("{}[{}]", address_, k + 1));
     return all;
   }
+  [[nodiscard]] bool is_null() const { return value_->is_null(); }
   [[nodiscard]] double number() const {
     if (!value_->is_number() || !std::isfinite(value_->get<double>())) fail("must be a number");
     return value_->get<double>();
@@ -125,6 +126,23 @@ SimpleLaw read_simple_law(const Field& entry, const coupling::LawPlace& place) {
   return one;
 }
 
+DistilledLoss read_loss(const Field& at) {
+  DistilledLoss loss;
+  loss.position = at["position_mm"].number() * mm;
+  if (at.has("load_unload")) {
+    const Field loop = at["load_unload"];
+    loss.loop = {loop["returned"].number(), loop["turn_mm"].positive() * mm, loop["loop_J"].number()};
+    if (!(loss.loop->returned >= 0.0 && loss.loop->returned <= 1.0)) loop["returned"].fail("must be from 0 to 1");
+  }
+  if (!at.has("impacts")) return loss;
+  for (const Field& impact : at["impacts"].items()) {
+    if (loss.dashpot || impact["damping_Ns_m"].is_null()) continue;
+    loss.dashpot = {impact["speed_m_s"].positive(), impact["restitution"].number(), impact["damping_Ns_m"].number()};
+    if (!(loss.dashpot->damping >= 0.0)) impact["damping_Ns_m"].fail("must be >= 0");
+  }
+  return loss;
+}
+
 DistilledLaw law_of(const Field& entry, const std::string& title) {
   DistilledLaw law;
   law.title = title;
@@ -148,6 +166,7 @@ DistilledLaw law_of(const Field& entry, const std::string& title) {
               wire["radius_mm"].number() * mm};
   for (const Field& at : entry["positions"].items()) {
     place.position = at["position_mm"].number() * mm;
+    law.losses.push_back(read_loss(at));
     for (const Field& one : at["laws"].items()) law.simple.push_back(read_simple_law(one, place));
   }
   return law;

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,22 @@ struct SimpleLaw {
                                         std::vector<double> values, std::array<double, 2> travel);
 /// The parameters of the law of this name; none where no law has it.
 [[nodiscard]] std::vector<coupling::LawParameter> parameters_of_law(const std::string& name);
+
+/// Energy that a wire loses at one position, as law.json states it. SI units.
+struct DistilledLoss {
+  double position = 0.0;  ///< s [m]
+  /// Load/unload law (theory.md, R.9): share of the loading force that is left on the way back [-], travel of
+  /// a turn [m], energy of one loop over the whole travel [J].
+  struct Loop {
+    double returned = 1.0, turn = 0.0, energy = 0.0;
+  };
+  std::optional<Loop> loop;  ///< where friction or strands dissipate
+  /// Dashpot of the first impact in the file that has one (theory.md, R.11).
+  struct Dashpot {
+    double speed = 0.0, restitution = 1.0, damping = 0.0;  ///< of approach [m/s], [-], c [N s/m]
+  };
+  std::optional<Dashpot> dashpot;
+};
 
 /// The wire of which a law was distilled, and what pushed it. SI units.
 struct DistilledWire {
@@ -56,6 +73,7 @@ struct DistilledLaw {
   std::array<double, 2> travel{}, position{}, slack{};    ///< from, to [m]
   double nominal_slack = 0.0;                             ///< length less span [m]
   std::vector<SimpleLaw> simple;
+  std::vector<DistilledLoss> losses;  ///< one a law position, in the order of the file
   DistilledWire wire;
 
   /// Whether the force at travel d, position s and slack e [m] needs no continuation: within the range of the table, to 1e-9 of the span, or

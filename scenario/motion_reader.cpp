@@ -80,7 +80,7 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
 
 MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions& o) {
   MotionOutput output;
-  output.paraview = table.boolean_or("paraview", output.paraview);
+  o.wire_loads = output.paraview = table.boolean_or("paraview", output.paraview);
   o.checkpoint_interval = table.number_or("checkpoint_interval_s", o.duration / 10.0, durations);
   if (base::exceeds(o.duration / o.checkpoint_interval, most_outputs))
     table.fail("checkpoint_interval_s", fmt::format("gives more than {:g} checkpoints", most_outputs));

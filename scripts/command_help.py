@@ -15,6 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs/command"
 # Words that an argument may be, where it is no file; the help has them in words.
 WHATS = re.compile(r"([\w]+(?:, [\w]+)* or [\w]+)$")
+# Endings of the files that a verb's arguments are, where they are not toml alone.
+ENDINGS = {"arm": ["toml", "urdf"], "export": ["json", "xml"]}
 OPTION = re.compile(r"^  (-[^ ]+(?: [^ ].*?)?)(?:  +(.*))?$")
 STATUSES = [("0", "done"), ("1", "anything else"), ("2", "the input is wrong: the message has file, line, key, value and what is allowed; nothing is written"),
             ("3", "the solver could not finish, or was interrupted; what it reached is kept"), ("4", "validate found a row out of its limit")]
@@ -116,7 +118,7 @@ def values(said):
 
 
 def endings(words, said):
-    return [] if not said["arguments"] or values(said) else ["toml", "urdf"] if words[0] == "arm" else ["toml"]
+    return [] if not said["arguments"] or values(said) else ENDINGS.get(words[0], ["toml"])
 
 
 def flags(said):
@@ -130,7 +132,7 @@ def bash(found):
            "  COMPREPLY=()", "  if ((COMP_CWORD == 1)); then",
            f'    mapfile -t COMPREPLY < <(compgen -W "{" ".join(verbs + flags(found[0][1]))}" -- "$current")', "    return", "  fi",
            '  case $before in', '    --out) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;',
-           '    --set | --threads | --pose | --case) return ;;', "  esac", "  case $verb in"]
+           '    --set | --threads | --pose | --case | --body | --axis | --*-mm) return ;;', "  esac", "  case $verb in"]
     for verb in verbs:
         those = [(words, said) for words, said in found[1:] if words[0] == verb]
         words, said = those[0]

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -79,6 +80,51 @@ std::vector<scenario::DrawnLines> shapes_of(const coupling::Motion& motion) {
                      c.shape->drawing()});
   }
   return drawn;
+}
+
+/// Shares a force out to the two points of the edge that is nearest to where it acts.
+void share_out(ParaviewLine& line, const Vector3d& where, const Vector3d& force) {
+  double least = std::numeric_limits<double>::infinity(), share = 0.0;
+  Eigen::Index edge = 0;
+  for (Eigen::Index i = 0; i + 1 < line.points.cols(); ++i) {
+    const Vector3d along = line.points.col(i + 1) - line.points.col(i);
+    const double length = std::max(along.squaredNorm(), std::numeric_limits<double>::min());
+    const double t = std::clamp(along.dot(where - line.points.col(i)) / length, 0.0, 1.0);
+    const double distance = (line.points.col(i) + t * along - where).norm();
+    if (distance >= least) continue;
+    least = distance;
+    edge = i;
+    share = t;
+  }
+  if (line.points.cols() < 2) return;
+  line.contact_forces.col(edge) += (1.0 - share) * force;
+  line.contact_forces.col(edge + 1) += share * force;
+}
+
+/// Of points that are fixed to a body.
+Eigen::Matrix3Xd velocities_of(const multibody::RigidBodyState& body, const Eigen::Matrix3Xd& points) {
+  const Vector3d spin = body.orientation * body.spin;
+  Eigen::Matrix3Xd v(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    v.col(i) = body.velocity + spin.cross(Vector3d(points.col(i)) - body.position);
+  return v;
+}
+
+/// Velocities of lines that have none, from the frames before and after.
+void difference(std::vector<ParaviewFrame>& frames) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const ParaviewFrame& before = frames[k > 0 ? k - 1 : k];
+    const ParaviewFrame& after = frames[std::min(k + 1, frames.size() - 1)];
+    const double time = after.time - before.time;
+    for (std::size_t i = 0; i < frames[k].lines.size(); ++i) {
+      ParaviewLine& line = frames[k].lines[i];
+      if (line.velocities.cols() == line.points.cols()) continue;
+      line.velocities = Eigen::Matrix3Xd::Zero(3, line.points.cols());
+      if (i >= before.lines.size() || i >= after.lines.size() || !(time > 0.0)) continue;
+      const Eigen::Matrix3Xd &first = before.lines[i].points, &last = after.lines[i].points;
+      if (first.cols() == last.cols() && last.cols() == line.points.cols()) line.velocities = (last - first) / time;
+    }
+  }
 }
 
 }  // namespace
@@ -173,18 +219,71 @@ SceneSpecification MotionPictures::scene(std::vector<SceneMark> marks) const {
   return scene;
 }
 
+std::vector<ParaviewLine> MotionPictures::wire_lines(const MotionSample& s) const {
+  const std::vector<coupling::WireFacts> facts = motion_.wire_facts();
+  const std::size_t rods = s.wires.size() - s.law_tensions.size();
+  std::vector<ParaviewLine> lines;
+  for (std::size_t w = 0; w < s.wires.size(); ++w) {
+    ParaviewLine line{ParaviewLine::Kind::wire, static_cast<int>(w), facts[w].name, s.wires[w], {}, {}, {}, {}};
+    line.contact_forces = Eigen::Matrix3Xd::Zero(3, line.points.cols());
+    if (w < s.wire_loads.size()) {
+      line.velocities = s.wire_loads[w].velocities;
+      line.tensions = s.wire_loads[w].tensions;
+      line.curvatures = s.wire_loads[w].curvatures;
+    } else if (w >= rods) {
+      line.tensions = Eigen::VectorXd::Constant(line.points.cols(), s.law_tensions[w - rods]);
+    }
+    lines.push_back(std::move(line));
+  }
+  add_contact_forces(s, lines);
+  return lines;
+}
+
+void MotionPictures::add_contact_forces(const MotionSample& s, std::vector<ParaviewLine>& lines) const {
+  const std::size_t contacts = motion_.contacts.size(), springs = motion_.springs.size();
+  const std::size_t pairs = motion_.wire_pairs.size(), rods = s.wires.size() - s.law_tensions.size();
+  const auto add = [&lines](std::size_t wire, const coupling::ContactSample& c, double sign) {
+    if (wire >= lines.size()) return;
+    if (c.points.empty() && c.closed) share_out(lines[wire], c.point, sign * c.force);
+    for (const coupling::ContactSample& p : c.points) share_out(lines[wire], p.point, sign * p.force);
+  };
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    if (k < contacts) {
+      add(at(motion_.contacts[k].wire), s.contacts[k], 1.0);
+    } else if (k >= contacts + springs && k < contacts + springs + pairs) {
+      const coupling::WirePair& pair = motion_.wire_pairs[k - contacts - springs];
+      add(at(pair.wires[0]), s.contacts[k], 1.0);
+      add(at(pair.wires[1]), s.contacts[k], -1.0);
+    } else if (k >= contacts + springs + pairs && k < contacts + springs + pairs + s.law_tensions.size()) {
+      add(rods + k - contacts - springs - pairs, s.contacts[k], 1.0);
+    }
+  }
+}
+
 std::vector<ParaviewFrame> MotionPictures::paraview() const {
   std::vector<ParaviewFrame> frames;
   for (const MotionSample& s : samples_) {
     const Moment moment = Moment::of(motion_, s);
-    frames.push_back({s.time, s.wires});
-    for (const Carried& c : carried_) {
+    frames.push_back({s.time, wire_lines(s)});
+    std::vector<ParaviewLine>& lines = frames.back().lines;
+    for (std::size_t k = 0; k < carried_.size(); ++k) {
+      const Carried& c = carried_[k];
       const Pose X = moment.pose(c.carrier);
-      for (const Eigen::Matrix3Xd& line : c.lines) frames.back().polylines.push_back(placed(X, line));
+      for (const Eigen::Matrix3Xd& line : c.lines) {
+        lines.push_back({ParaviewLine::Kind::body, static_cast<int>(k), c.name, placed(X, line), {}, {}, {}, {}});
+        if (c.carrier.kind == MotionCarrier::Kind::body)
+          lines.back().velocities = velocities_of(s.bodies[at(c.carrier.index)], lines.back().points);
+        if (c.carrier.kind == MotionCarrier::Kind::world)
+          lines.back().velocities = Eigen::Matrix3Xd::Zero(3, line.cols());
+      }
     }
-    for (std::size_t a = 0; a < s.arms.size(); ++a)
-      for (Eigen::Matrix3Xd& line : moment.arm(a)) frames.back().polylines.push_back(std::move(line));
+    for (std::size_t a = 0; a < s.arms.size(); ++a) {
+      for (Eigen::Matrix3Xd& line : moment.arm(a))
+        lines.push_back(
+            {ParaviewLine::Kind::arm, static_cast<int>(a), motion_.arms[a].name, std::move(line), {}, {}, {}, {}});
+    }
   }
+  difference(frames);
   return frames;
 }
 

@@ -19,10 +19,14 @@ class MotionPictures {
   /// To be turned by the reader; `marks` are times at which something happened.
   [[nodiscard]] SceneSpecification scene(std::vector<SceneMark> marks) const;
 
-  /// The wires, then what carriers take along.
+  /// The wires, the shapes on carriers, the arms. Velocities of rods and bodies are those of the motion;
+  /// velocities of arms and of law wires are differences of the samples.
   [[nodiscard]] std::vector<ParaviewFrame> paraview() const;
 
  private:
+  [[nodiscard]] std::vector<ParaviewLine> wire_lines(const coupling::MotionSample& s) const;
+  /// Forces of all contacts on the wires, shared out to their points.
+  void add_contact_forces(const coupling::MotionSample& s, std::vector<ParaviewLine>& lines) const;
   struct Carried {
     std::string name;
     coupling::MotionCarrier carrier;

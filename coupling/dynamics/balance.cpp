@@ -276,6 +276,22 @@ ContactSample MotionRun::recorded(ContactSample sample, double time, std::size_t
                     force(3 * touching() + contact));
 }
 
+namespace {
+
+WireLoads loads_of(wire::RodPart& rod, const DaePoint& at) {
+  const auto [tensions, moments] = rod.section_loads(at);
+  WireLoads loads{Eigen::Matrix3Xd(3, rod.vertices()), VectorXd(rod.vertices()),
+                  moments / rod.model().properties().bending_stiffness};
+  const Eigen::Index last = tensions.size() - 1;
+  for (int i = 0; i < rod.vertices(); ++i) {
+    loads.velocities.col(i) = at.y.segment<3>(rod.velocity_of(i));
+    loads.tensions[i] = 0.5 * (tensions[std::max<Eigen::Index>(i - 1, 0)] + tensions[std::min<Eigen::Index>(i, last)]);
+  }
+  return loads;
+}
+
+}  // namespace
+
 MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   MotionSample s;
   s.time = at.time;
@@ -306,6 +322,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
     }
   }
   for (const PressPart* p : presses_) s.contacts.push_back(p->sample(at.y));
+  if (options_.wire_loads) {
+    for (wire::RodPart& r : rods_) s.wire_loads.push_back(loads_of(r, at));
+  }
   for (const wire::RodPart& r : rods_) {
     Eigen::Matrix3Xd x(3, r.vertices());
     for (int i = 0; i < r.vertices(); ++i) x.col(i) = at.y.segment<3>(r.position_of(i));

@@ -34,6 +34,7 @@ struct MotionOptions {
   /// Simulated time that a window of evaluations must bring [s], >= 0: a run of which it brings less has stalled and is given up, after
   /// half a minute or so of a core; see numerics::Progress.                                         theory.md (M.30)
   double least_advance = 0.0;
+  bool wire_loads = false;     ///< samples have the velocities and section loads of the wires, see WireLoads
   std::function<bool()> stop;  ///< asked after every step; true: stop. The observer is asked at output times only
 };
 

@@ -46,6 +46,13 @@ struct EnergyBalance {
   double corrected = 0.0;
 };
 
+/// Velocities and loads of a wire's vertices at one time.
+struct WireLoads {
+  Eigen::Matrix3Xd velocities;  ///< [m/s]
+  Eigen::VectorXd tensions;     ///< with damping; the mean of the two edges at a vertex [N]
+  Eigen::VectorXd curvatures;   ///< bending moment over EI: that beyond the natural one [1/m], >= 0
+};
+
 /// One line of the history.
 struct MotionSample {
   double time = 0.0;  ///< [s]
@@ -54,6 +61,7 @@ struct MotionSample {
   std::vector<ContactSample> contacts;
   std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices, then of the wires that laws stand for [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
+  std::vector<WireLoads> wire_loads;          ///< of the wires that are rods; empty without MotionOptions::wire_loads
   std::vector<double> law_tensions;           ///< of the wires that laws stand for [N]
   struct Arm {
     multibody::ArmState state;

@@ -200,12 +200,16 @@ bool all_finite(const MotionSample& s) {
   const auto of_bushing = [&](const MotionSample::Bushing& b) {
     return b.shift.allFinite() && b.turn.allFinite() && of_wrench(b.on_second);
   };
+  const auto of_loads = [](const WireLoads& l) {
+    return l.velocities.allFinite() && l.tensions.allFinite() && l.curvatures.allFinite();
+  };
   const EnergyBalance& e = s.energy;
   return std::isfinite(e.kinetic + e.strain + e.potential + e.dissipated + e.work + e.integrator) &&
          s.momentum.allFinite() && s.angular_momentum.allFinite() && std::ranges::all_of(s.bodies, of_body) &&
          std::ranges::all_of(s.contacts, of_contact) &&
          std::ranges::all_of(s.wires, [](const Eigen::Matrix3Xd& x) { return x.allFinite(); }) &&
-         all_finite(s.mount_forces) && std::ranges::all_of(s.law_tensions, [](double t) { return std::isfinite(t); }) &&
+         std::ranges::all_of(s.wire_loads, of_loads) && all_finite(s.mount_forces) &&
+         std::ranges::all_of(s.law_tensions, [](double t) { return std::isfinite(t); }) &&
          std::ranges::all_of(s.arms, of_arm) && std::ranges::all_of(s.welds, of_wrench) &&
          std::ranges::all_of(s.bushings, of_bushing);
 }

@@ -3,12 +3,12 @@ _snare() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} verb=${COMP_WORDS[1]} ending words files=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "reproduce push fit trace distil compare simulate ringdown sweep benchmark validate arm new -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "reproduce push fit trace distil compare simulate ringdown sweep benchmark validate arm new export -h --help --version" -- "$current")
     return
   fi
   case $before in
     --out) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
-    --set | --threads | --pose | --case) return ;;
+    --set | --threads | --pose | --case | --body | --axis | --*-mm) return ;;
   esac
   case $verb in
     reproduce)
@@ -52,6 +52,9 @@ _snare() {
     new)
       words="capture experiment wire -h --help --out --quiet"
       files="" ;;
+    export)
+      words="-h --help --mujoco --body --position-mm --slack-mm --axis --point-mm --first-touch-mm --case --out --quiet"
+      files="json xml" ;;
     *) return ;;
   esac
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")

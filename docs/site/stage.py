@@ -65,6 +65,7 @@ docs/law_json
 docs/table_csv
 docs/summary_json
 docs/result_fields
+docs/other_programs
 docs/effects
 ```
 

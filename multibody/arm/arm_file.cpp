@@ -220,12 +220,18 @@ std::vector<Flexure> bend_links(const TomlTable& links, RobotDescription& robot)
   return flexures;
 }
 
-Drive drive_of(const TomlTable& table) {
+/// The drive of a joint; a servo without a limit of its own has the effort of the URDF's <limit>, where that
+/// is > 0.
+Drive drive_of(const TomlTable& table, const RobotJoint& joint) {
   Drive drive;
+  if (positive.contains(joint.effort)) drive.limit = joint.effort;
   const auto mode = table.choice("drive", drive_modes);
   drive.mode = mode.value_or(DriveMode::limp);
   if (!mode) know(table, {"proportional_Nm_rad", "derivative_Nms_rad", "limit_Nm"});
-  if (drive.mode != DriveMode::servo) return drive;
+  if (drive.mode != DriveMode::servo) {
+    drive.limit = Drive().limit;
+    return drive;
+  }
   drive.proportional = table.number("proportional_Nm_rad", positive);
   drive.derivative = table.number("derivative_Nms_rad", not_negative);
   drive.limit = table.number_or("limit_Nm", drive.limit, positive);
@@ -303,7 +309,7 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
       if (const auto law = law_of(own)) elastic.spring = *law;
       elastic.friction = friction_of(own, joint);
       elastic.back_drive = own.number_or("back_drive_Nm", 0.0, not_negative);
-      description.drives.push_back(drive_of(own));
+      description.drives.push_back(drive_of(own, joint));
       description.arm.joints.push_back(elastic);
       description.joints.push_back(joint);
     }

@@ -271,7 +271,7 @@ TEST_F(Interruption, EveryVerbIsAsked) {
     std::string verb;
     if (!(words >> verb)) continue;
     ++verbs;
-    EXPECT_TRUE(verb == "new" ||
+    EXPECT_TRUE(verb == "new" || verb == "export" ||  // they compute nothing that takes time
                 std::ranges::any_of(long_work, [&](const LongWork& w) { return w.arguments.front() == verb; }))
         << verb;
   }

@@ -41,6 +41,8 @@ def main() -> int:
     split = sys.argv.index("--", 2)
     run = subprocess.run(sys.argv[1:split], stdout=subprocess.PIPE, text=True, check=False)
     print(run.stdout, end="")
+    if run.returncode == 77:  # a package is missing
+        return 77
     if run.returncode != 0:
         print(f"{sys.argv[1]} ended with status {run.returncode}")
         return 1

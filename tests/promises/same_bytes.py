@@ -42,6 +42,7 @@ VERBS = [
     ["benchmark", None, "--case", "push_middle"],
     ["benchmark", None, "--case", "impact_middle"],
     ["new", "capture"],
+    ["export", ROOT / "tests/ranges/wire.toml"],  # of the law that is distilled of it
     ["validate", None],
 ]
 CLOCK = {"wall_s", "real_time_factor", "seconds", "seconds_per_evaluation"}
@@ -78,7 +79,11 @@ def run(snare, verb, threads):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         line = [snare, *verb[0].split(), *([str(verb[1])] if verb[1] else [])]
-        if verb[0] not in ("arm show", "new"):
+        if verb[0] == "export":
+            law = pathlib.Path(folder) / "law"
+            subprocess.run([snare, "distil", str(verb[1]), "--out", str(law), "--quiet"], check=True)
+            line[-1:] = [str(law / "law.json"), "--mujoco", str(ROOT / "examples/air_table.xml"), "--body", "target", "--quiet"]
+        elif verb[0] not in ("arm show", "new"):
             line += ["--quiet", "--threads", str(threads)]
         line += ["--json"] if verb[0] == "arm show" else ["--out", str(out)]
         for setting in verb[2:]:

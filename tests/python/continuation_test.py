@@ -230,16 +230,23 @@ class Continuation(unittest.TestCase):
     def test_springs_of_mujoco_push_and_carry_their_range(self):
         for name in self.names:
             root = xml.etree.ElementTree.parse(self.out / name / "law_mujoco.xml").getroot()
-            joint = root.find(".//joint")
-            k = [float(x) for x in joint.get("stiffness").split()]
-            end = self.laws[name].travel[1]
-            q = np.linspace(0.0, 0.1, 10001)
-            force = q * (k[0] + q * (k[1] + q * k[2]))
-            self.assertGreaterEqual(force.min(), 0.0)
-            self.assertGreaterEqual(np.diff(force[q > end]).min(), 0.0)
+            joint = root.find(".//worldbody//joint[@name='wire_travel_s52_5']").get("name")
+            law, end = self.laws[name], self.laws[name].travel[1]
+            q = np.concatenate([np.linspace(-0.01, 0.0, 11), np.linspace(0.0, 0.1, 1001)])
+            force = np.zeros(q.size)
+            for tendon in root.findall(".//tendon/fixed"):
+                if tendon.find("joint").get("joint") != joint:
+                    continue
+                k = [float(x) for x in tendon.get("stiffness").split()]
+                low, high = (float(x) for x in tendon.get("springlength").split())
+                self.assertLess(low, -100.0)
+                u = np.maximum(0.0, q - high)
+                force += u * (k[0] + u * (k[1] + u * k[2]))
+            wanted = np.array([law.force(d, 0.0525) if d >= 0.0 else 0.0 for d in q])
+            self.assertLess(np.abs(force - wanted).max(), 1e-9 * wanted.max())
             numeric = root.find(".//custom/numeric[@name='wire_travel_s52_5_range']")
             self.assertEqual([float(x) for x in numeric.get("data").split()], [0.0, end])
-            self.assertEqual(root.find(".//sensor/jointlimitpos").get("joint"), joint.get("name"))
+            self.assertEqual(root.find(".//sensor/jointpos[@name='wire_travel_s52_5_now']").get("joint"), joint)
 
 
 class Positions(unittest.TestCase):

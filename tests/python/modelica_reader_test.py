@@ -10,6 +10,7 @@ import warnings
 import setting
 import snare
 
+setting.add_peer_packages()
 try:
     from modelica.lang import parse
     from modelica.sim import causalize, flatten, simulate

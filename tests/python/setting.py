@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import site
 import subprocess
 import sys
 import unittest
@@ -16,6 +17,12 @@ try:
 except ImportError as reason:
     print(f"skipped: the Python module was not built ({reason}); ./test builds it")
     sys.exit(SKIPPED)
+
+
+def add_peer_packages() -> None:
+    """Makes packages of other programs known that are in folders of SNARE_PEER_PACKAGES (separated by colons), behind those of this Python."""
+    for folder in filter(None, os.environ.get("SNARE_PEER_PACKAGES", "").split(":")):
+        site.addsitedir(folder)
 
 
 def small_wire(folder, table="\n[table]\npoints = [8, 3, 3]\nmost_points = [8, 3, 3]\n") -> pathlib.Path:

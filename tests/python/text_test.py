@@ -49,11 +49,11 @@ class Text(unittest.TestCase):
         done("./main")
         done(sys.executable, "-B", "-W", "error", "-c", "import law; assert law.force(1e-3, 0.05, 0.49e-3) > 0.0")
         root = xml.etree.ElementTree.fromstring((out / "law_mujoco.xml").read_bytes())
-        self.assertEqual((root.tag, len(root.findall(".//joint"))), ("mujoco", 1), title)
+        self.assertEqual((root.tag, len(root.findall(".//worldbody//joint"))), ("mujoco", 1), title)
         package = mo_reader.load((out / "law.mo").read_text())
         self.assertGreater(package["force"](1e-3, 0.05, 0.49e-3), 0.0)
         self.assertEqual(sorted(tables.adams_splines((out / "law_adams.adm").read_text())), [1, 2], title)
-        for name in ("law.c", "law.h", "law.hpp", "law.py", "law.mo", "law_mujoco.xml", "law_adams.adm", "law_simulink.csv", "report.html"):
+        for name in ("law.c", "law.h", "law.hpp", "law.py", "law.mo", "law_mujoco.xml", "law_mujoco_linear.xml", "law_adams.adm", "law_simulink.csv", "report.html"):
             written = (out / name).read_bytes().decode()  # UTF-8
             self.assertFalse([c for c in written if ord(c) < 0x20 and c not in "\t\n" or 0x7F <= ord(c) < 0xA0 or ord(c) in (0x2028, 0x202E, 0xFFFE)],
                              (title, name))
