@@ -151,6 +151,14 @@ std::string cannot_tell(const Trace& t) {
         "does as well. Repeat a series: what comes back is no noise.",
         fmt::join(t.partial, " and "), t.base.rmse);
   }
+  const double hidden = t.remaining.upper / (identification::most_hidden * t.peak_force);
+  if (hidden > 1.0) {
+    return fmt::format(
+        "Cannot tell: the base model leaves {:.3g} N rms, which noise explains, but up to {:.2g} N ({}) could hide in "
+        "it, and no effect of that size can be excluded. It takes {:.2g} times less noise, or {:.2g} times as many "
+        "readings.",
+        t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), hidden, hidden * hidden);
+  }
   return fmt::format(
       "Cannot tell: the base model describes the readings (rmse {:.3g} N), but they do not determine its numbers, so "
       "that an "

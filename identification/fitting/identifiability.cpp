@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double error_margin = 3.0;   // differences by two steps tell the size of an error, not its bound
 constexpr double least_margin = 1e-9;  // rounding of the columns, and of the decomposition
-constexpr double in_doubt = 1e-2;      // error of a direction, in columns of norm 1, from which a null one is checked
+constexpr double in_doubt = 1e-3;      // error of a direction, in columns of norm 1, from which a null one is checked
 constexpr double near_margin = 300.0;  // the same: below so many errors a direction that is seen is checked, too
 constexpr double weakly_seen = 0.1;    // if its numbers nearly go together
 

@@ -240,11 +240,11 @@ bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// Lets every effect that these data may show begin from finite sizes, beside several values of the fitted numbers; the likeliest
-/// first, so that others need not be followed far. Sorts by what they reached.
-void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
-                   Progress& progress) {
-  const StartSearch search(model, data, current.fit, current.anew);
+/// Lets every effect that these data may show begin from finite sizes; the likeliest first, so that others need not be followed
+/// far. far: beside several values of the fitted numbers, not those of the fit alone. Sorts by what they reached.
+void search_starts(const Model& model, const Data& data, const Current& current, bool far,
+                   std::vector<Candidate>& candidates, Progress& progress) {
+  const StartSearch search(model, data, current.fit, far, current.anew);
   double least = current.fit.chi2;
   double observable = 0.0;
   for (Candidate& c : candidates) {
@@ -397,7 +397,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   round.candidates = by_score(score_effects(model, data, current.fit, significance));
   progress.clock(name + ": scores");
   if (current.unexplained) {
-    search_starts(model, data, current, round.candidates, progress);
+    search_starts(model, data, current, number == 1, round.candidates, progress);
     progress.clock(name + ": where effects may begin");
   }
   std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);

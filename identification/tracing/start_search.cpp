@@ -98,7 +98,8 @@ std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting>
   return other ? settings : std::vector<Setting>();
 }
 
-StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current, const std::vector<Setting>& anew)
+StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current, bool far,
+                         const std::vector<Setting>& anew)
     : coarse_(model.series(), coarse(model.solver())), data_(data), context_(trial_context(model, current)) {
   const std::vector<std::vector<std::size_t>> kept = kept_readings(model, data);
   const bool readings = std::ranges::all_of(model.series(), [](const Series& s) { return s.readings.has_value(); });
@@ -109,8 +110,11 @@ StartSearch::StartSearch(const Model& model, const Data& data, const Fit& curren
     data_.measured[k] = at.force[k] + left(kept[k]);
   }
   readings_ = static_cast<double>(data.rows()) / static_cast<double>(std::max<Eigen::Index>(1, data_.rows()));
-  std::vector<std::vector<Setting>> bases{current.fitted(), as_declared(current.fitted()),
-                                          as_the_section_has(coarse_, current.fitted()), anew};
+  std::vector<std::vector<Setting>> bases{current.fitted(), anew};
+  if (far) {
+    bases.push_back(as_declared(current.fitted()));
+    bases.push_back(as_the_section_has(coarse_, current.fitted()));
+  }
   for (std::vector<Setting>& base : bases) {
     if (base.empty() && !beside_.empty()) continue;
     Beside one{std::move(base), {}, {}};
@@ -169,10 +173,11 @@ std::optional<SearchedStart> StartSearch::stepped(const Beside& beside, const Ef
 std::optional<SearchedStart> StartSearch::best(const Effect& effect, double rival, Progress& progress) const {
   const std::string stage = "where " + effect.name + " may begin";
   std::optional<SearchedStart> found;
-  for (const Beside& beside : beside_) {
+  // Thresholds have been tried beside the fit itself for their scores, at every size.
+  for (std::size_t b = effect.trials != nullptr ? 1 : 0; b < beside_.size(); ++b) {
     for (const std::vector<double>& size : sizes(effect)) {
       if (!progress.go_on(stage)) return found;
-      std::optional<SearchedStart> one = stepped(beside, effect, size);
+      std::optional<SearchedStart> one = stepped(beside_[b], effect, size);
       if (one && (!found || one->chi2 < found->chi2)) found = std::move(one);
     }
   }

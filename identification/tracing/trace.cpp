@@ -361,7 +361,9 @@ void Tracer::conclude() {
   }
   result_.findings.insert(result_.findings.end(), beyond.begin(), beyond.end());
   find_findings();
-  if (result_.kind == VerdictKind::nothing_missing && numbers_open()) result_.kind = VerdictKind::cannot_tell;
+  const bool hides = !base.of_published && remaining.upper > std::max(tolerance, most_hidden * result_.peak_force);
+  if (result_.kind == VerdictKind::nothing_missing && (numbers_open() || hides))
+    result_.kind = VerdictKind::cannot_tell;
   result_.explained = result_.kind == VerdictKind::nothing_missing || result_.kind == VerdictKind::explained;
 }
 

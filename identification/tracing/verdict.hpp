@@ -29,6 +29,8 @@ struct Remaining {
 /// Limits of a partial answer: 2 % of the excess, and 3 % of the largest force with 95 % confidence.
 inline constexpr double most_share_left = 0.02;
 inline constexpr double most_force_left = 0.03;
+/// Share of the largest force that may hide in the noise, with 95 % confidence, where nothing is said to be missing.
+inline constexpr double most_hidden = 0.05;
 /// Share of the largest force below which nothing is called missing, unless the file says otherwise.
 inline constexpr double usual_tolerance = 0.01;
 
