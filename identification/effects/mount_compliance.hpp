@@ -11,9 +11,9 @@ namespace snare::identification {
 /// For Effect::unobservable: only clamps hold the wire's direction, and sections that slip or yield need stiff ones.
 [[nodiscard]] std::string needs_clamps(const std::vector<Series>& series);
 
-/// For Effect::sizes: clamps that give more or less than the wire bends, length / EI.
+/// For Effect::sizes: clamps that give more or less than the wire bends, length / EI [rad/(N m)].
 [[nodiscard]] std::vector<double> sizes_beside_bending(const PushProblem& declared);
-/// The same of what gives way beside the stretch of the wire, length / EA.
+/// The same of what gives way beside the stretch of the wire, length / EA [m/N].
 [[nodiscard]] std::vector<double> sizes_beside_stretching(const PushProblem& declared);
 
 /// Compliance along the chord of the left (0) or the right (1) mount by itself, beside that of each [m/N].

@@ -16,8 +16,8 @@ struct FittedNumber {
   double declared = 0.0;
   double value = 0.0;
   std::optional<double> standard_error;  ///< none where the readings do not determine the number
-  /// Of the 95 % interval: 1.96 standard errors, unless by one of the two below. An end that is not admissible is absent, and so
-  /// is that at the bound on which the number stands.
+  /// Of the 95 % interval: by Student's t of the noise's degrees of freedom, unless by one of the two below. An end
+  /// that is not admissible is absent, and so is that at the bound on which the number stands.
   std::optional<double> lower;
   std::optional<double> upper;
   bool profiled = false;  ///< profile likelihood
@@ -45,7 +45,7 @@ struct ModelError {
   std::vector<OpenDirection> open;  ///< null directions of the readings
 };
 
-/// The fitted numbers of a model with their standard errors and 1.96 of them either way.
+/// The fitted numbers of a model with their standard errors and 95 % intervals.
 [[nodiscard]] std::vector<FittedNumber> numbers_of(const Model& model, const Fit& fit);
 
 /// The null directions of a fit whose rank was asked.
