@@ -83,7 +83,8 @@ Eigen::MatrixXd record_derivatives(const Series& declared, const Prediction& pre
     }
     const bool moves = p.derivative == Derivative::travel;
     if (!concerns(p, declared) || (moves && pushed.cols() == 0)) continue;
-    const Eigen::VectorXd slope = moves ? prediction.force_by.rightCols(1) : Eigen::MatrixXd();
+    Eigen::VectorXd slope;
+    if (moves) slope = prediction.force_by.rightCols(1);
     const double at = find(settings, &p)->coordinate;
     const double own = p.number.get(declared.test, {});
     const auto side = [&](double step) {

@@ -190,7 +190,7 @@ TEST(PushSensitivity, OfRigidMountsByTheirCompliance) {
   PushOptions options;
   options.elements = 64;
   options.grading = 1.0;
-  options.variations = {{nullptr, 1e-12, 0.0, 1.0}};
+  options.variations = {{nullptr, 1e-12, 0.0, {1.0, 1.0}}};
   const PushCurve rigid = solve_push(test, options);
   options.variations.clear();
   test.mount.translational_stiffness = 1e9;

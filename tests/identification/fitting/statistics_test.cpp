@@ -1,5 +1,6 @@
 #include "identification/fitting/statistics.hpp"
 #include "identification/fitting/noise.hpp"
+#include "identification/fitting/prediction.hpp"
 #include "tests/support/declared_wire.hpp"
 
 #include <gtest/gtest.h>
