@@ -22,7 +22,7 @@ constexpr double separable_chi2 = 10.0;    // z^2 (1 - cos^2) above which a riva
 constexpr double least_fall = 0.9;         // of the root mean square error, which must fall below this share
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
-constexpr std::size_t most_refits = 8;
+constexpr std::size_t most_refits = 6;
 // What a few steps on a coarse mesh have left of chi2: a refit that comes within so much of the best is followed to its end.
 constexpr double searched_share = 1.5, searched_margin = 60.0;
 constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit is multiplied
@@ -240,11 +240,11 @@ bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// Lets every effect that these data may show begin from finite sizes; the likeliest first, so that others need not be followed
-/// far. far: beside several values of the fitted numbers, not those of the fit alone. Sorts by what they reached.
-void search_starts(const Model& model, const Data& data, const Current& current, bool far,
-                   std::vector<Candidate>& candidates, Progress& progress) {
-  const StartSearch search(model, data, current.fit, far, current.anew);
+/// Lets every effect that these data may show begin from finite sizes, beside several values of the fitted numbers; the likeliest
+/// first, so that others need not be followed far. Sorts by what they reached.
+void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
+                   Progress& progress) {
+  const StartSearch search(model, data, current.fit);
   double least = current.fit.chi2;
   double observable = 0.0;
   for (Candidate& c : candidates) {
@@ -396,8 +396,8 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   Round& round = result.round;
   round.candidates = by_score(score_effects(model, data, current.fit, significance));
   progress.clock(name + ": scores");
-  if (current.unexplained) {
-    search_starts(model, data, current, number == 1, round.candidates, progress);
+  if (current.search) {
+    search_starts(model, data, current, round.candidates, progress);
     progress.clock(name + ": where effects may begin");
   }
   std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);

@@ -61,7 +61,7 @@ struct Current {
   /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
   /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
   std::vector<Setting> anew;
-  bool unexplained = false;  ///< it leaves more than noise: every effect is looked for from finite sizes
+  bool search = false;  ///< every effect is looked for from finite sizes: a base model that leaves more than noise
 };
 
 /// What an effect must bring to be named.

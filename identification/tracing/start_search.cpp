@@ -98,8 +98,7 @@ std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting>
   return other ? settings : std::vector<Setting>();
 }
 
-StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current, bool far,
-                         const std::vector<Setting>& anew)
+StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current)
     : coarse_(model.series(), coarse(model.solver())), data_(data), context_(trial_context(model, current)) {
   const std::vector<std::vector<std::size_t>> kept = kept_readings(model, data);
   const bool readings = std::ranges::all_of(model.series(), [](const Series& s) { return s.readings.has_value(); });
@@ -110,11 +109,8 @@ StartSearch::StartSearch(const Model& model, const Data& data, const Fit& curren
     data_.measured[k] = at.force[k] + left(kept[k]);
   }
   readings_ = static_cast<double>(data.rows()) / static_cast<double>(std::max<Eigen::Index>(1, data_.rows()));
-  std::vector<std::vector<Setting>> bases{current.fitted(), anew};
-  if (far) {
-    bases.push_back(as_declared(current.fitted()));
-    bases.push_back(as_the_section_has(coarse_, current.fitted()));
-  }
+  std::vector<std::vector<Setting>> bases{current.fitted(), as_declared(current.fitted()),
+                                          as_the_section_has(coarse_, current.fitted())};
   for (std::vector<Setting>& base : bases) {
     if (base.empty() && !beside_.empty()) continue;
     Beside one{std::move(base), {}, {}};

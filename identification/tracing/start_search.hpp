@@ -19,8 +19,7 @@ struct SearchedStart {
 /// taken off.                                                                                 theory.md (I.34)
 class StartSearch {
  public:
-  /// far: beside the fitted numbers as declared and as the section has them, too. anew: further ones (see Current), or none.
-  StartSearch(const Model& model, const Data& data, const Fit& current, bool far, const std::vector<Setting>& anew);
+  StartSearch(const Model& model, const Data& data, const Fit& current);
 
   /// The best start of an effect; none where it could not be computed from any. rival: chi2 [-] to come near to, 0: none.
   [[nodiscard]] std::optional<SearchedStart> best(const Effect& effect, double rival, Progress& progress) const;

@@ -111,6 +111,7 @@ class Tracer {
   Fit current_;                         // with the effects added so far
   Fit final_;                           // what is selected
   Data final_data_;                     // with the serial noise that it leaves
+  Fit independent_;                     // what is selected, beside independent noise
   ResidualTests tests_;                 // of current_
   std::vector<std::string> added_;      // effects, and the class of each
   std::vector<std::size_t> numbers_;    // of each
@@ -230,9 +231,9 @@ void Tracer::add_effects() {
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found =
-        look_for_effect(model_, data_, heldout_, {current_, tests_.left, begun_anew(), !tests_.acceptable(tolerance)},
-                        number, {significance, tolerance}, progress_);
+    RoundFits found = look_for_effect(
+        model_, data_, heldout_, {current_, tests_.left, begun_anew(), number == 1 && !tests_.acceptable(tolerance)},
+        number, {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
     if (round.added.empty()) break;
@@ -439,6 +440,7 @@ bool Tracer::decided() const {
 // it. As few independent readings as it leaves are those of Student's t.                   theory.md (I.35)
 void Tracer::widen_for_serial_noise() {
   final_data_ = data_;
+  independent_ = final_;
   result_.serial = serial_noise(model_, data_, final_);
   if (!result_.serial || !progress_.go_on("noise that resembles itself")) return;
   final_data_.noise = with_serial_part(model_, data_.noise, *result_.serial);
@@ -575,7 +577,8 @@ Trace Tracer::run() {
   const bool odd = std::ranges::any_of(
       result_.findings, [](const Finding& f) { return f.kind == FindingKind::series_of_another_specimen; });
   if (!odd && progress_.go_on("zero of the travel")) {
-    result_.zero = check_zero(model_, final_data_, final_);
+    // What a wrong zero leaves resembles itself, too.
+    result_.zero = check_zero(model_, data_, independent_);
     progress_.clock("zero of the travel");
   }
   result_.decided = decided();

@@ -75,7 +75,7 @@ TEST(TraceInput, AnUnknownNumberIsNamedBesideThoseThatThereAre) {
       "wire.length_mm, wire.diameter_mm, wire.youngs_modulus_GPa, wire.density_kg_m3, "
       "wire.natural_curvature_1_m, mount.span_mm, ";
   EXPECT_NE(text.find(begin), std::string::npos) << text;
-  EXPECT_TRUE(text.ends_with("reading.force_gain, rate_viscosity.relaxation_time_s")) << text;
+  EXPECT_TRUE(text.ends_with("pusher_play.width_mm, rate_viscosity.relaxation_time_s")) << text;
 }
 
 TEST(TraceInput, AThresholdThatIsNotDeclaredCannotBeFitted) {
