@@ -106,20 +106,6 @@ std::vector<Leg> legs_of(const std::vector<double>& displacement) {
   return result;
 }
 
-std::vector<double> speeds(const Series& series) {
-  const std::vector<double>& d = measured_displacement(series);
-  std::vector<double> result(d.size(), 0.0);
-  if (!series.readings || series.readings->time.size() != d.size()) return result;
-  const std::vector<double>& t = series.readings->time;
-  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    const std::size_t a = i == 0 ? 0 : i - 1;
-    const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;
-    if (t[b] > t[a]) result[i] = (d[b] - d[a]) / (t[b] - t[a]);
-  }
-  return result;
-}
-
 Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading,
                    const PredictionOptions& options) {
   coupling::PushProblem test = series.test;
@@ -196,10 +182,6 @@ std::vector<double> measured_force(const Series& series) {
     for (const double d : series.test.travel) force.push_back(series.law->force(d));
   }
   return force;
-}
-
-const std::vector<double>& measured_displacement(const Series& series) {
-  return series.readings ? series.readings->displacement : series.test.travel;
 }
 
 Misfit misfit(const std::vector<double>& measured, const std::vector<double>& predicted) {

@@ -2,7 +2,7 @@
 
 #include "coupling/statics/push_solver.hpp"
 #include "identification/fitting/experiment.hpp"
-#include "identification/fitting/reading_model.hpp"
+#include "identification/fitting/record_map.hpp"
 
 #include <Eigen/Core>
 
@@ -63,9 +63,6 @@ struct PredictionOptions {
   bool thin = false;
 };
 
-/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without times.
-[[nodiscard]] std::vector<double> speeds(const Series& series);
-
 /// A stretch of a record in which the pusher goes one way.
 struct Leg {
   std::size_t begin = 0, end = 0;  ///< readings [begin, end)
@@ -89,9 +86,6 @@ struct Leg {
 /// What stands for the readings of a series: the readings themselves, or the published law [N].
 /// Empty for a series that only asks for a prediction.
 [[nodiscard]] std::vector<double> measured_force(const Series& series);
-
-/// Recorded displacements of a series [m].
-[[nodiscard]] const std::vector<double>& measured_displacement(const Series& series);
 
 /// Misfit of predicted and measured force [N] over the points that were reached.
 struct Misfit {

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-
-#include <vector>
-
 namespace snare::identification {
-
-struct Series;
 
 /// How the machine's record differs from what the wire feels. d, F: recorded travel and force at the time t;
 ///   true travel  play[d(t - lag)] - d0 - 4 b_d d (1 - d / d_largest)
@@ -29,24 +23,9 @@ struct ReadingModel {
   double drift = 0.0;        ///< of the recorded force [N/s], from the beginning of a series
 };
 
-/// What the wire and the pusher do at the readings of a series, one entry a reading.
-struct TrueForce {
-  std::vector<double> force;    ///< of the wire on the pusher [N]
-  std::vector<double> viscous;  ///< viscous stiffness G [N/m]; empty: no rates
-};
-
-/// Travel of the pusher from first touch at the readings [m]; negative before it.
-[[nodiscard]] std::vector<double> true_travel(const Series& series, const ReadingModel& reading);
-
-/// What the machine records at the readings [N].
-[[nodiscard]] std::vector<double> recorded_force(const Series& series, const ReadingModel& reading,
-                                                 const TrueForce& wire);
-
-/// Change of the recorded forces by changes of the true ones, to first order: columns [N] of one row a reading.
-[[nodiscard]] Eigen::MatrixXd recorded_change(const Series& series, const ReadingModel& reading, const TrueForce& wire,
-                                              Eigen::MatrixXd change);
-
 /// Whether the record depends on the times of the readings beyond their order.
-[[nodiscard]] bool needs_times(const ReadingModel& reading);
+[[nodiscard]] inline bool needs_times(const ReadingModel& reading) {
+  return reading.relaxation_time != 0.0 || reading.lag != 0.0 || reading.creep != 0.0 || reading.drift != 0.0;
+}
 
 }  // namespace snare::identification

@@ -1,6 +1,4 @@
-#include "identification/fitting/reading_model.hpp"
-
-#include "identification/fitting/prediction.hpp"
+#include "identification/fitting/record_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -84,8 +82,22 @@ Eigen::MatrixXd sensed_force(const Series& series, const ReadingModel& reading, 
 
 }  // namespace
 
-bool needs_times(const ReadingModel& reading) {
-  return reading.relaxation_time != 0.0 || reading.lag != 0.0 || reading.creep != 0.0 || reading.drift != 0.0;
+const std::vector<double>& measured_displacement(const Series& series) {
+  return series.readings ? series.readings->displacement : series.test.travel;
+}
+
+std::vector<double> speeds(const Series& series) {
+  const std::vector<double>& d = measured_displacement(series);
+  std::vector<double> result(d.size(), 0.0);
+  if (!series.readings || series.readings->time.size() != d.size()) return result;
+  const std::vector<double>& t = series.readings->time;
+  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const std::size_t a = i == 0 ? 0 : i - 1;
+    const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;
+    if (t[b] > t[a]) result[i] = (d[b] - d[a]) / (t[b] - t[a]);
+  }
+  return result;
 }
 
 std::vector<double> true_travel(const Series& series, const ReadingModel& reading) {
