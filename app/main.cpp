@@ -158,6 +158,26 @@ void check_words(const CLI::App& app, int argc, char** argv) {
   }
 }
 
+CLI::App* add_arm(CLI::App& app, std::filesystem::path& file, std::string& pose, CommonOptions& options) {
+  CLI::App* arm = app.add_subcommand("arm", "robot arms");
+  arm->require_subcommand(1);
+  CLI::App* show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
+  show->add_option("FILE", file, "arm file")->required();
+  show->add_option("--pose", pose, "a pose of the file, or angles in degrees: 0,30,-40");
+  add_overrides(*show, options);
+  show->add_flag("--json", options.json, "as JSON");
+  show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
+  return show;
+}
+
+void add_new(CLI::App& app, std::string& what, CommonOptions& options) {
+  CLI::App* verb = app.add_subcommand("new", "a commented starter set of files that run");
+  verb->add_option("WHAT", what, "capture, experiment or wire")->required();
+  verb->add_option("--out", options.out, "folder for the files")->required();
+  verb->add_flag("--quiet", options.quiet, "no messages but errors");
+  verb->footer("Example: snare new capture --out my/");
+}
+
 void add_export(CLI::App& app, snare::app::ExportOptions& asked, CommonOptions& options) {
   CLI::App* verb = app.add_subcommand("export", "a law on a body of a model of MuJoCo");
   verb->add_option("LAW.json", asked.law, "law.json of snare distil")->required();
@@ -211,22 +231,11 @@ int run(int argc, char** argv) {
   CommonOptions arm_options;
   std::filesystem::path arm_file;
   std::string arm_pose;
-  CLI::App* arm = app.add_subcommand("arm", "robot arms");
-  arm->require_subcommand(1);
-  CLI::App* arm_show = arm->add_subcommand("show", "chain, masses, reach and natural frequencies of an arm");
-  arm_show->add_option("FILE", arm_file, "arm file")->required();
-  arm_show->add_option("--pose", arm_pose, "a pose of the file, or angles in degrees: 0,30,-40");
-  add_overrides(*arm_show, arm_options);
-  arm_show->add_flag("--json", arm_options.json, "as JSON");
-  arm_show->footer("Example: snare arm show data/arms/jemrms_like.toml --pose bent");
+  CLI::App* arm_show = add_arm(app, arm_file, arm_pose, arm_options);
 
   CommonOptions new_options;
   std::string new_what;
-  CLI::App* new_files = app.add_subcommand("new", "a commented starter set of files that run");
-  new_files->add_option("WHAT", new_what, "capture, experiment or wire")->required();
-  new_files->add_option("--out", new_options.out, "folder for the files")->required();
-  new_files->add_flag("--quiet", new_options.quiet, "no messages but errors");
-  new_files->footer("Example: snare new capture --out my/");
+  add_new(app, new_what, new_options);
 
   CommonOptions export_options;
   snare::app::ExportOptions exported;
@@ -252,7 +261,7 @@ int run(int argc, char** argv) {
     status = guarded(arm_options, "snare-arm-show/1",
                      [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
-  if (new_files->parsed())
+  if (app.get_subcommand("new")->parsed())
     status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
   if (app.get_subcommand("export")->parsed())
     status =

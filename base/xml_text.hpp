@@ -10,7 +10,7 @@
 namespace snare::base {
 
 /// One element of an XML text with its places in the text, so that a program can insert into the text and
-/// leave the rest as it is.
+/// keep the rest.
 struct XmlElement {
   std::string name;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< in the order of the text, entities resolved

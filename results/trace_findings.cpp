@@ -147,8 +147,8 @@ bool impossible(const identification::Finding& f) {
 std::string cannot_tell(const Trace& t) {
   if (t.serial_rival) {
     return fmt::format(
-        "Cannot tell: {} would explain the error of {:.3g} N, but noise that resembles itself from reading to reading "
-        "does as well. Repeat a series: what comes back is no noise.",
+        "Cannot tell: {} would explain the error of {:.3g} N, but autocorrelated noise "
+        "explains it as well. Repeat a series: a residual that comes back is no noise.",
         fmt::join(t.partial, " and "), t.base.rmse);
   }
   const double hidden = t.remaining.upper / (identification::most_hidden * t.peak_force);
@@ -168,12 +168,12 @@ std::string cannot_tell(const Trace& t) {
       t.base.rmse);
 }
 
-/// What noise that resembles itself means for the intervals.
+/// How much autocorrelated noise widens the intervals.
 std::string serial_words(const identification::SerialNoise& s, std::size_t readings) {
   return fmt::format(
-      " What is left resembles itself over {:.2g} readings ({:.2g} % of its variance): these {} readings say as much "
-      "as "
-      "{:.2g} independent ones, which the intervals count.",
+      " The residual is autocorrelated over {:.2g} readings ({:.2g} % of its variance): these {} readings are worth "
+      "{:.2g} "
+      "independent ones, and the intervals take that into account.",
       s.length, 100.0 * s.smooth, readings, s.effective);
 }
 

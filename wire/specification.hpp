@@ -77,7 +77,7 @@ struct MountSpecification {
   double support_radius = 0.0;                    ///< supports only [m], >= 0
   std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
   std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
-  /// Of the left and the right mount by itself, beside that of each: it gives by so much more [m/N], [rad/(N m)].
+  /// Of the left and the right mount by itself, in series with the stiffness of both [m/N], [rad/(N m)].
   std::array<double, 2> own_translational_compliance{}, own_rotational_compliance{};
   std::optional<double> slip_tension;  ///< force on a mount beyond which it slips [N], > 0: theory.md (C.8)
   MountSlip slip = MountSlip::feeds;

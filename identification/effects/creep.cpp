@@ -44,11 +44,11 @@ std::vector<std::vector<double>> creep_trials(const TrialContext& context) {
 
 }  // namespace
 
-/// The force creeps under load: after a change of the load the reading goes on by a share of it.
+/// The reading creeps under load: after a change of the load it continues to change, by a share of that change.
 Effect creep_effect() {
   return {.name = "creep",
           .channel = Channel::sensor,
-          .meaning = "the reading goes on after the load has changed: a load cell, or a wire, that creeps",
+          .meaning = "the reading creeps after the load has changed, in the load cell or in the wire",
           .numbers = {{creep_share(), -0.3, 0.3}, {creep_time(), 1e-4, 1e6}},
           .trials = creep_trials,
           .unobservable = needs_times,

@@ -11,12 +11,12 @@ namespace snare::identification {
 /// For Effect::unobservable: only clamps hold the wire's direction, and sections that slip or yield need stiff ones.
 [[nodiscard]] std::string needs_clamps(const std::vector<Series>& series);
 
-/// For Effect::sizes: clamps that give more or less than the wire bends, length / EI [rad/(N m)].
+/// For Effect::sizes: compliances of clamps as shares of that of the wire in bending, length / EI [rad/(N m)].
 [[nodiscard]] std::vector<double> sizes_beside_bending(const PushProblem& declared);
-/// The same of what gives way beside the stretch of the wire, length / EA [m/N].
+/// For Effect::sizes: compliances along the chord as multiples of that of the wire, length / EA [m/N].
 [[nodiscard]] std::vector<double> sizes_beside_stretching(const PushProblem& declared);
 
-/// Compliance along the chord of the left (0) or the right (1) mount by itself, beside that of each [m/N].
+/// Compliance along the chord of the left (0) or the right (1) mount by itself, in series with that of both mounts [m/N].
 template <std::size_t mount>
 [[nodiscard]] Parameter axial_compliance_of() {
   return {.number = member([](auto& p, auto&) -> auto& { return p.mount.own_translational_compliance[mount]; }),

@@ -30,7 +30,7 @@ Effect pusher_play_effect() {
                 return std::vector<double>{2e-5, 2e-4};
               },
           .unobservable = needs_unloading,
-          .independent_check = "read the travel beside the contact with a second gauge"};
+          .independent_check = "read the travel near the contact with a second gauge"};
 }
 
 }  // namespace snare::identification

@@ -6,14 +6,9 @@ namespace snare::identification {
 
 namespace {
 
-bool stiffnesses_declared(const PushProblem& p) {
-  return p.wire.bending_stiffness_override && p.wire.axial_stiffness_override && !p.wire.yielding;
-}
-
 const char* diameter_unseen(const PushProblem& p) {
-  const bool weightless = p.gravity == std::array<double, 3>{};
   const bool touches = p.pusher.radius > 0.0 || p.mount.kind == wire::MountKind::supports;
-  return stiffnesses_declared(p) && weightless && !touches
+  return stiffnesses_declared(p) && weightless(p) && !touches
              ? "both stiffnesses are declared, the wire has no weight, and its centreline meets a knife edge"
              : "";
 }

@@ -5,8 +5,6 @@
 
 namespace snare::identification {
 
-namespace {
-
 bool stiffnesses_declared(const PushProblem& p) {
   return p.wire.bending_stiffness_override && p.wire.axial_stiffness_override && !p.wire.yielding;
 }
@@ -14,6 +12,8 @@ bool stiffnesses_declared(const PushProblem& p) {
 bool weightless(const PushProblem& p) {
   return p.gravity == std::array<double, 3>{};
 }
+
+namespace {
 
 const char* modulus_unseen(const PushProblem& p) {
   return stiffnesses_declared(p) ? "both stiffnesses are declared: they do not follow from the modulus" : "";

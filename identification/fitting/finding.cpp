@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,6 +12,10 @@ std::string to_string(FindingKind kind) {
   static constexpr const char* names[] = {"impossible_stiffness",       "unit_slip",       "sign_turned", "on_bound",
                                           "series_of_another_specimen", "not_identifiable"};
   return names[static_cast<std::size_t>(kind)];
+}
+
+bool has_finding(const std::vector<Finding>& findings, FindingKind kind) {
+  return std::ranges::any_of(findings, [kind](const Finding& f) { return f.kind == kind; });
 }
 
 AtBound at_bound(double value, double lower, double upper) {

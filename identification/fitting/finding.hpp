@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace snare::identification {
 
@@ -27,6 +28,9 @@ struct Finding {
   bool sure = false;                                        ///< no admissible value within the interval
   std::string what{};                                       ///< in words, a sentence without its full stop
 };
+
+/// Whether one of the findings is of this kind.
+[[nodiscard]] bool has_finding(const std::vector<Finding>& findings, FindingKind kind);
 
 /// At which end of its admissible values a fitted number stands.
 enum class AtBound { none, lower, upper };

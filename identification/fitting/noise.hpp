@@ -21,7 +21,7 @@ struct Noise {
   std::vector<double> sigma;  ///< of one reading, its root mean square over the series, one a series [N], > 0
   double smooth = 0.0;        ///< share of the variance that is correlated along the path, in [0, 1)
   double length = 0.0;        ///< of the correlation along the path [m], > 0 where replicates have a smooth part
-  double readings = 0.0;      ///< of that of single records, in readings; 0: none
+  double readings = 0.0;      ///< correlation length of single records, in readings; 0: independent
   double dof = std::numeric_limits<double>::infinity();  ///< degrees of freedom of the estimate; infinite: declared
   std::string source;                                    ///< "declared", "replicates" or "residual"
 
@@ -54,8 +54,8 @@ struct Noise {
   [[nodiscard]] double mean_sigma(const std::vector<Series>& series) const;
 };
 
-/// The filter of readings at the places `at` whose smooth part has the heights `height` [N] and forgets within `length`, in
-/// the unit of the places, beside independent noise of `white` [N], > 0.                  theory.md (I.3)
+/// The filter of readings at the coordinates `at`: independent noise of `white` [N], > 0, plus a smooth part of the heights
+/// `height` [N] whose correlation decays over `length`, in the unit of the coordinates.   theory.md (I.3)
 [[nodiscard]] std::vector<Noise::Step> noise_filter(const std::vector<double>& at, double white, double length,
                                                     const std::vector<double>& height);
 

@@ -18,7 +18,7 @@ enum class Parametrisation {
   magnitude  ///< exp(c) in SI units: a threshold that is absent (infinite) in the declared model
 };
 
-/// What a number is one of, and so how the derivative of the recorded force by it is found.      theory.md (I.2)
+/// Where a number acts, which decides how the recorded force is differentiated by it.            theory.md (I.2)
 enum class Derivative {
   push,    ///< of the push: implicit differentiation of the equilibrium
   travel,  ///< of the record, moves the travels at which it was taken: by the slope of the curve
@@ -61,8 +61,8 @@ struct Parameter {
   double step = 0.0;                               ///< of the coordinate, for differences of the residual, > 0
   Derivative derivative = Derivative::push;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
-  /// Of a compliance along the chord: which of the left and the right mount, that are rigid, give by it (1, else 0). They are
-  /// differentiated as such. Null: it is none.
+  /// Of a compliance along the chord: 1 for the left and the right mount that is rigid and gives by this number, else 0; rigid
+  /// mounts are differentiated as such. Null: the number is no such compliance.
   std::array<double, 2> (*mounts_give)(const PushProblem&) = nullptr;
   /// Why the forces of a test cannot depend on it; empty: they may. Null: they always may, or its effect says why.
   const char* (*unseen)(const PushProblem&) = nullptr;
@@ -75,6 +75,11 @@ struct Parameter {
   /// Coordinate of a value of that series.
   [[nodiscard]] double coordinate(double declared, double value) const;
 };
+
+/// Whether both stiffnesses are declared, so that they do not follow from diameter and modulus.
+[[nodiscard]] bool stiffnesses_declared(const PushProblem& test);
+/// Whether no gravity acts.
+[[nodiscard]] bool weightless(const PushProblem& test);
 
 /// Numbers of the declared construction, which belong to no effect: sizes and material.
 [[nodiscard]] const std::vector<Parameter>& construction_numbers();

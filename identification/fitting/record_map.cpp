@@ -13,7 +13,7 @@ const std::vector<double>* times_of(const Series& series) {
   return timed ? &series.readings->time : nullptr;
 }
 
-/// The record of a travel as it was `lag` before each reading, linear between readings.
+/// Recorded travel at the time `lag` before each reading, linear between readings.
 std::vector<double> delayed(const std::vector<double>& d, const std::vector<double>& t, double lag) {
   std::vector<double> result(d.size());
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -30,7 +30,7 @@ std::vector<double> delayed(const std::vector<double>& d, const std::vector<doub
 }
 
 /// What follows a record with so much play: it stands still where the record turns back, until the play is taken up.
-/// Odd in the play, so that it has a derivative where there is none.
+/// An odd function of the play, so that it has a derivative at zero.
 std::vector<double> with_play(std::vector<double> d, double play) {
   const double width = std::abs(play);
   double follows = d.empty() ? 0.0 : d.front();

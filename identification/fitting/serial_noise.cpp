@@ -12,7 +12,7 @@ namespace {
 
 constexpr double worthwhile = 6.0;  // of -2 log likelihood: two more numbers
 
-/// Where the readings of a series stand on the axis along which the noise forgets, in mean intervals.
+/// Coordinates of the readings of a series along which correlations decay, in mean intervals.
 std::vector<double> stations(const Series& series) {
   const std::size_t n = measured_displacement(series).size();
   std::vector<double> result(n);
@@ -60,7 +60,7 @@ SerialRows serial_rows(const Model& model, const Data& data, const Fit& fit) {
   return rows;
 }
 
-/// What is known of sigma, and whether the likelihood is the restricted one, of what no fitted number can move.
+/// Whether sigma is known, and whether the likelihood is the restricted one, of the residual that no fitted number changes.
 enum class SerialLikelihood { restricted, restricted_declared, whole };
 
 /// One point of the search.
@@ -118,7 +118,7 @@ BestOfGrid best_of_grid(const SerialRows& rows, SerialLikelihood likelihood) {
   return best;
 }
 
-/// Readings that say as much as `n` with this correlation, of a mean: the sum of all correlations over n.
+/// Number of independent readings that determine a mean as well as `n` of this correlation: n over the sum of correlations.
 double effective_readings(double n, double smooth, double length) {
   const double decay = std::exp(-1.0 / length);
   const double sum = 1.0 + 2.0 * smooth * decay / (1.0 - decay);
@@ -131,7 +131,7 @@ std::optional<SerialNoise> serial_noise(const Model& model, const Data& data, co
   if (data.published() || !data.noise.published.empty() || !data.noise.filter.empty() || !data.placings.empty())
     return std::nullopt;
   const SerialRows rows = serial_rows(model, data, fit);
-  constexpr Eigen::Index fewest = 8;  // beside the fitted numbers
+  constexpr Eigen::Index fewest = 8;  // more than fitted numbers
   if (rows.readings < rows.numbers + fewest) return std::nullopt;
   const bool declared = data.noise.source == "declared";
   const BestOfGrid best =

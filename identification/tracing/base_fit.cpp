@@ -3,6 +3,7 @@
 #include "base/errors.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/published_fit.hpp"
+#include "identification/tracing/score.hpp"
 #include "identification/tracing/start_search.hpp"
 #include "identification/tracing/trace_input.hpp"
 
@@ -35,14 +36,11 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
   return none ? p.unseen(series.front().test) : "";
 }
 
-/// Where a fit may begin far from what was declared: stiffnesses that are shares of those of the declared section, after a few
-/// steps on a coarse mesh. Empty where none comes below `best`, seen on the same mesh.
+/// A start of the base fit from fractions of the declared section's stiffnesses, after a few steps on a coarse mesh. Empty where none
+/// comes below `best`, computed on the same mesh.
 std::vector<Setting> far_start(const Model& model, const Data& data, const std::vector<Setting>& start, const Fit& best,
                                Progress& progress) {
-  SolverSettings few = model.solver();
-  few.elements = std::min(64, few.elements);
-  few.extrapolate = false;
-  const Model coarse(model.series(), few);
+  const Model coarse(model.series(), few_edges(model.solver()));
   const Evaluation here = coarse.evaluate(best.settings);
   double least = best.report.usable() && here.complete ? data.residual(here).squaredNorm() : 1e300;
   std::vector<Setting> section = as_the_section_has(model, start);
@@ -50,7 +48,7 @@ std::vector<Setting> far_start(const Model& model, const Data& data, const std::
   std::vector<Setting> found;
   for (const double bending : {1.0, 0.1}) {
     for (const double axial : {1.0, 0.1, 0.01}) {
-      if (!progress.go_on("base model: far from what was declared")) return {};
+      if (!progress.go_on("base model: starts far from the declared values")) return {};
       std::vector<Setting> one = section;
       for (Setting& s : one) {
         const bool bends = s.parameter->key == "wire.bending_stiffness_Nm2";

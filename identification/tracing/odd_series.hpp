@@ -8,9 +8,9 @@
 
 namespace snare::identification {
 
-/// The one series without which the base model explains the others to the noise, where what sets it apart is the wire: with
-/// stiffnesses of its own it is explained, too, and better than with a zero, a place, a length or a gain of its own. None where
-/// no series or more than one is such, and with fewer than three. base: fit of all.               theory.md (I.36)
+/// Finds the one series whose removal lets the base model explain the others to their noise, if it is of another wire: with its
+/// own stiffnesses it is explained, too, and better than with its own zero, place, length, gain or offset. None if no series
+/// or several qualify, and with fewer than three. base: fit of all series.                 theory.md (I.36)
 [[nodiscard]] std::optional<Finding> series_of_another_specimen(const Model& model, const Data& data, const Fit& base,
                                                                 Progress& progress);
 

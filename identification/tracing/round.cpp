@@ -23,7 +23,7 @@ constexpr double least_fall = 0.9;         // of the root mean square error, whi
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
 constexpr std::size_t most_refits = 6;
-// What a few steps on a coarse mesh have left of chi2: a refit that comes within so much of the best is followed to its end.
+// An effect is refitted if its searched start is within this share and margin of the least chi2 of the search.
 constexpr double searched_share = 1.5, searched_margin = 60.0;
 constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit is multiplied
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this
@@ -67,8 +67,8 @@ std::vector<Setting> with(std::vector<Setting> settings, const Effect& effect, c
   return settings;
 }
 
-/// The starts of a refit, best first: what the search has found, where it is better than the score's, those of the score, and these
-/// beside the earlier effects begun anew.
+/// The starts of a refit, best first: that of the search, those of the score, and those of the score with the earlier effects at their
+/// first trials.
 std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data, const Current& current,
                                             const Candidate& candidate) {
   const Score& score = candidate.score;
@@ -83,9 +83,8 @@ std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data
   return result;
 }
 
-/// The model with an effect added, from each of its starts; not usable where none of them gives a fit. What takes away nearly all
-/// that is beside the noise needs no other start, and another start is not followed where it does not come near what the first
-/// has reached.
+/// The model with an effect added, fitted from each start; not usable where none of them gives a fit. A start that removes nearly all
+/// of the excess of chi2 ends the search, and a start that does not approach the best chi2 so far is abandoned.
 Fit refit(const Model& model, const Data& data, const Current& current, const Candidate& candidate, double rival,
           Progress& progress) {
   Fit best;
@@ -163,14 +162,14 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const C
   const Fit& current = now.fit;
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
-  candidate.score.unobservable.clear();  // where it is absent the fitted numbers stand for it, here they do not
+  candidate.score.unobservable.clear();  // absorbed at null, but not at this size
   candidate.score.absorbed = false;
   candidate.rmse = fitted_rmse(data, refitted.evaluation);
   candidate.delta_bic = refitted.bic() - current.bic();
   const auto added = static_cast<double>(refitted.free - current.free);
   if (added > 0.0 && refitted.chi2 < current.chi2)
-    candidate.refit_p = fisher_tail((current.chi2 - refitted.chi2) / added, added, data.noise.dof);
-  candidate.refit_p = std::min(1.0, candidate.refit_count * candidate.refit_p);
+    candidate.refit_p =
+        std::min(1.0, demands.refits * fisher_tail((current.chi2 - refitted.chi2) / added, added, data.noise.dof));
   const std::vector<FittedNumber> all = numbers_of(model, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   judge_plausibility(model, current, refitted, candidate);
@@ -235,25 +234,22 @@ std::vector<Candidate> by_score(std::vector<Score> scores) {
   return result;
 }
 
-/// What the fitted numbers can stand for where it is absent may still show at a finite size.
+/// An effect that the fitted numbers absorb at null may show at a finite size.
 bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// Lets every effect that these data may show begin from finite sizes, beside several values of the fitted numbers; the likeliest
-/// first, so that others need not be followed far. Sorts by what they reached.
+/// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that it reached; the likeliest come
+/// first, so that the others are abandoned early.
 void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
                    Progress& progress) {
   const StartSearch search(model, data, current.fit);
   double least = current.fit.chi2;
-  double observable = 0.0;
   for (Candidate& c : candidates) {
     if (!worth_a_refit(c)) continue;
-    observable += 1.0;
     c.searched = search.best(*c.score.effect, searched_share * least + searched_margin, progress);
     if (c.searched) least = std::min(least, c.searched->chi2);
   }
-  for (Candidate& c : candidates) c.refit_count = starts_tried * std::max(1.0, observable);
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     if (a.searched.has_value() != b.searched.has_value()) return a.searched.has_value();
     return a.searched && a.searched->chi2 < b.searched->chi2;
@@ -310,14 +306,14 @@ void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, 
   }
 }
 
-/// Whether what it changes is beyond chance: by its score at null, or by its refit.
-bool significant(const Candidate& c, double significance) {
-  return std::min(c.score.adjusted_p, c.refit_p) < significance;
+/// P of the effect: of its score at null, and of its refit where the starts were searched, whichever is less.
+double p_of(const Candidate& c) {
+  return c.searched ? std::min(c.score.adjusted_p, c.refit_p) : c.score.adjusted_p;
 }
 
 /// May be added to the model.
 bool eligible(const Candidate& c, double significance) {
-  return c.refitted && c.plausible && c.why_too_small.empty() && significant(c, significance) &&
+  return c.refitted && c.plausible && c.why_too_small.empty() && p_of(c) < significance &&
          c.delta_bic < -worthwhile_bic && c.heldout_improves.value_or(true);
 }
 
@@ -347,8 +343,8 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   Round& round = result.round;
   const Candidate& first = round.candidates.front();
   round.added = first.score.effect->name;
-  round.reason = fmt::format("it has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
-                             std::min(first.score.adjusted_p, first.refit_p), -first.delta_bic);
+  round.reason = fmt::format("it has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}", p_of(first),
+                             -first.delta_bic);
   if (first.score.effect->trials != nullptr && !first.score.starts.empty())
     result.begun = with({}, *first.score.effect, first.score.starts.front());
   result.better = fits.front();
@@ -389,7 +385,8 @@ double fewest_dof(std::size_t numbers) {
 }
 
 RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                          std::size_t number, const Demands& demands, Progress& progress) {
+                          std::size_t number, const Demands& asked, Progress& progress) {
+  Demands demands = asked;
   const double significance = demands.significance;
   const std::string name = fmt::format("round {}", number);
   RoundFits result;
@@ -398,6 +395,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   progress.clock(name + ": scores");
   if (current.search) {
     search_starts(model, data, current, round.candidates, progress);
+    demands.refits = starts_tried * static_cast<double>(std::ranges::count_if(round.candidates, worth_a_refit));
     progress.clock(name + ": where effects may begin");
   }
   std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
@@ -416,7 +414,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
     return result;
   }
   const bool any = std::any_of(round.candidates.begin(), round.candidates.end(),
-                               [&](const Candidate& c) { return worth_a_refit(c) && significant(c, significance); });
+                               [&](const Candidate& c) { return worth_a_refit(c) && p_of(c) < significance; });
   round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, size, held-out series)"
                      : "no effect of the catalogue is significant";
   return result;

@@ -17,8 +17,7 @@ struct Candidate {
   Score score;
   std::optional<SearchedStart> searched;  ///< where a few steps from finite sizes led
   bool refitted = false;
-  double refit_count = 1.0;           ///< by which the p of a refit is multiplied
-  double refit_p = 1.0;               ///< of what chi2 fell by in the refit, all effects and starts counted
+  double refit_p = 1.0;               ///< of the fall of chi2 in the refit [-], all effects and starts counted
   double rmse = 0.0;                  ///< after the refit [N]
   double delta_bic = 0.0;             ///< of the refit, against the round's model: negative is better
   std::vector<FittedNumber> numbers;  ///< of the effect after the refit
@@ -68,6 +67,7 @@ struct Current {
 struct Demands {
   double significance = 0.0;  ///< of its score after Holm
   double tolerance = 0.0;     ///< by which the root mean square error must fall [N]; 0: by what is significant
+  double refits = 1.0;        ///< effects and starts among which refits are chosen
 };
 
 /// Degrees of freedom that must be left beside `numbers` fitted numbers.

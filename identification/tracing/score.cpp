@@ -38,6 +38,13 @@ struct Trial {
 
 }  // namespace
 
+SolverSettings few_edges(const SolverSettings& asked) {
+  SolverSettings few = asked;
+  few.elements = std::min(64, asked.elements);
+  few.extrapolate = false;
+  return few;
+}
+
 TrialContext trial_context(const Model& model, const Fit& current) {
   TrialContext context;
   context.model = &model;
@@ -101,14 +108,6 @@ class Scoring {
   Evaluation unchanged_;
   double needed_ = 0.0;  // |g| of a size that shows: quantile of the level plus that of 90 %
 };
-
-/// One mesh: its error is in the changed curves as in the unchanged ones.
-SolverSettings few_edges(const SolverSettings& asked) {
-  SolverSettings few = asked;
-  few.elements = std::min(64, asked.elements);
-  few.extrapolate = false;
-  return few;
-}
 
 Scoring::Scoring(const Model& model, const Data& data, const Fit& current)
     : model_(model),

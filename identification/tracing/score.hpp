@@ -40,6 +40,9 @@ struct Score {
 [[nodiscard]] std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current,
                                                double significance);
 
+/// One mesh of few edges: its error is in changed curves as in unchanged ones, and drops out of changes.
+[[nodiscard]] SolverSettings few_edges(const SolverSettings& asked);
+
 /// What the trials of effects depend on.
 [[nodiscard]] TrialContext trial_context(const Model& model, const Fit& current);
 

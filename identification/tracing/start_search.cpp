@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -23,7 +22,7 @@ constexpr double near_section = 0.2;  // of the logarithm of a stiffness: no sta
 constexpr std::size_t most_a_leg = 10;  // readings that are used
 constexpr double longest_step = 1.5;    // of the logarithm of a stiffness, to first order
 
-/// Which readings of a series are used: so many of every leg, its ends among them.
+/// Readings of a series that are used: at most `most_a_leg` of every leg, with its ends.
 std::vector<std::size_t> used(const Series& series) {
   std::vector<std::size_t> result;
   for (const Leg& leg : legs_of(measured_displacement(series))) {
@@ -50,26 +49,17 @@ std::vector<Series> thinned(std::vector<Series> series, const std::vector<std::v
   return series;
 }
 
-/// Of every series all readings, or few where each counts by itself.
+/// Readings of every series that are used: a few where the noise is independent, else all.
 std::vector<std::vector<std::size_t>> kept_readings(const Model& model, const Data& data) {
   const bool alone = data.noise.filter.empty() && data.placings.empty() && data.noise.published.empty();
   std::vector<std::vector<std::size_t>> kept;
   for (const Series& s : model.series()) {
     const std::size_t n = measured_displacement(s).size();
-    kept.push_back(alone && s.readings && n > 1 ? used(s) : std::vector<std::size_t>());
-    if (!kept.back().empty()) continue;
-    kept.back().resize(n);
+    kept.emplace_back(n);
     std::iota(kept.back().begin(), kept.back().end(), std::size_t{0});
+    if (alone && n > 1) kept.back() = used(s);
   }
   return kept;
-}
-
-/// One mesh of few edges.
-SolverSettings coarse(const SolverSettings& asked) {
-  SolverSettings few = asked;
-  few.elements = std::min(64, asked.elements);
-  few.extrapolate = false;
-  return few;
 }
 
 }  // namespace
@@ -83,14 +73,15 @@ std::vector<Setting> as_declared(std::vector<Setting> settings) {
 
 std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting> settings) {
   const Series& first = model.series().front();
-  const wire::WireSpecification& wire = first.test.wire;
-  if (!first.modulus_declared || !(wire.diameter > 0.0) || !(wire.youngs_modulus > 0.0)) return {};
-  const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
+  wire::WireSpecification section = first.test.wire;
+  if (!first.modulus_declared || !(section.diameter > 0.0) || !(section.youngs_modulus > 0.0)) return {};
+  section.bending_stiffness_override.reset();
+  section.axial_stiffness_override.reset();
   bool other = false;
   for (Setting& s : settings) {
     const bool bends = s.parameter->key == "wire.bending_stiffness_Nm2";
     if (!bends && s.parameter->key != "wire.axial_stiffness_N") continue;
-    const double stiffness = wire.youngs_modulus * area * (bends ? wire.diameter * wire.diameter / 16.0 : 1.0);
+    const double stiffness = bends ? section.bending_stiffness() : section.axial_stiffness();
     const double coordinate = s.parameter->coordinate(model.declared(*s.parameter), stiffness);
     other = other || std::abs(coordinate) > near_section;
     s.coordinate = std::clamp(coordinate, model.lower(*s.parameter), model.upper(*s.parameter));
@@ -99,10 +90,13 @@ std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting>
 }
 
 StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current)
-    : coarse_(model.series(), coarse(model.solver())), data_(data), context_(trial_context(model, current)) {
-  const std::vector<std::vector<std::size_t>> kept = kept_readings(model, data);
-  const bool readings = std::ranges::all_of(model.series(), [](const Series& s) { return s.readings.has_value(); });
-  if (readings) coarse_ = Model(thinned(model.series(), kept), coarse(model.solver()));
+    : StartSearch(model, data, current, kept_readings(model, data)) {}
+
+StartSearch::StartSearch(const Model& model, const Data& data, const Fit& current,
+                         const std::vector<std::vector<std::size_t>>& kept)
+    : coarse_(thinned(model.series(), kept), few_edges(model.solver())),
+      data_(data),
+      context_(trial_context(model, current)) {
   const Evaluation at = coarse_.evaluate(current.settings);
   for (std::size_t k = 0; k < kept.size() && at.complete; ++k) {
     const Eigen::VectorXd left = data.measured[k] - current.evaluation.force[k];
@@ -126,7 +120,7 @@ StartSearch::StartSearch(const Model& model, const Data& data, const Fit& curren
 
 std::vector<std::vector<double>> StartSearch::sizes(const Effect& effect) const {
   if (effect.trials != nullptr) {
-    // The middle one and those towards the ends.
+    // A small, a middle and a large one.
     std::vector<std::vector<double>> all = effect.trials(context_);
     constexpr std::size_t most = 3;
     if (all.size() <= most) return all;
@@ -169,7 +163,7 @@ std::optional<SearchedStart> StartSearch::stepped(const Beside& beside, const Ef
 std::optional<SearchedStart> StartSearch::best(const Effect& effect, double rival, Progress& progress) const {
   const std::string stage = "where " + effect.name + " may begin";
   std::optional<SearchedStart> found;
-  // Thresholds have been tried beside the fit itself for their scores, at every size.
+  // For their scores, thresholds were tried at every size with the numbers of the fit.
   for (std::size_t b = effect.trials != nullptr ? 1 : 0; b < beside_.size(); ++b) {
     for (const std::vector<double>& size : sizes(effect)) {
       if (!progress.go_on(stage)) return found;
@@ -178,7 +172,7 @@ std::optional<SearchedStart> StartSearch::best(const Effect& effect, double riva
     }
   }
   if (!found) return found;
-  // Steps that need whole curves for every derivative are left to the refit.
+  // Where derivatives need whole curves, only the refit takes steps.
   const std::vector<Series> with = coarse_.apply(found->settings).series;
   const bool cheap = std::ranges::all_of(with, [](const Series& s) { return coupling::differentiable(s.test); });
   if (cheap) {

@@ -7,16 +7,16 @@
 
 namespace snare::identification {
 
-/// Where a refit with an effect begins, and how near it comes in a few steps.
+/// A start of a refit with an effect, and the chi2 that a few steps from it reached.
 struct SearchedStart {
   std::vector<Setting> settings;  ///< the fitted numbers, then those of the effect
-  double chi2 = 0.0;              ///< reached in a few steps, about as the model itself has it
+  double chi2 = 0.0;              ///< [-], on a coarse mesh, close to that of the model itself
 };
 
-/// Starts for refits that do not hang on the fit from which they begin. A score asks how the curves change at null, beside numbers
-/// that a missing effect may have led far astray; here every effect begins at finite sizes, beside the fitted numbers as they are, as
-/// they were declared and as the section has them, and takes a few steps on a coarse mesh, whose own error at the fit is
-/// taken off.                                                                                 theory.md (I.34)
+/// Starts of refits that do not depend on the fit that precedes them. A score measures the change of the curves at null, at
+/// numbers that a missing effect may have distorted. Here every effect starts from finite sizes, with the fitted numbers of
+/// the fit, as declared and of the section, and takes a few steps on a coarse mesh whose error at the fit is subtracted.
+///                                                                                          theory.md (I.34)
 class StartSearch {
  public:
   StartSearch(const Model& model, const Data& data, const Fit& current);
@@ -25,11 +25,15 @@ class StartSearch {
   [[nodiscard]] std::optional<SearchedStart> best(const Effect& effect, double rival, Progress& progress) const;
 
  private:
-  /// Values of the fitted numbers, and how the curves change by them there.
+  /// Values of the fitted numbers, with the derivatives of the residual there.
   struct Beside {
     std::vector<Setting> settings;
     Eigen::MatrixXd jacobian, covariance;
   };
+
+  /// kept: which readings of every series are used.
+  StartSearch(const Model& model, const Data& data, const Fit& current,
+              const std::vector<std::vector<std::size_t>>& kept);
 
   [[nodiscard]] std::vector<std::vector<double>> sizes(const Effect& effect) const;
   [[nodiscard]] std::optional<SearchedStart> stepped(const Beside& beside, const Effect& effect,
@@ -42,11 +46,11 @@ class StartSearch {
   double readings_ = 1.0;  // for one of those that are used
 };
 
-/// Numbers of a fit as they were declared, in place of where they are.
+/// The settings of a fit at their declared values.
 [[nodiscard]] std::vector<Setting> as_declared(std::vector<Setting> settings);
 
-/// The stiffnesses among the settings those of the declared section, E I and E A; empty where they are so already, are not
-/// among them, or no modulus is declared.
+/// The settings with EI and EA of the declared section; empty where they have these values already, where neither is among
+/// them, or where no modulus is declared.
 [[nodiscard]] std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting> settings);
 
 }  // namespace snare::identification

@@ -110,8 +110,8 @@ class Tracer {
   SharedPredictions base_predictions_;  // whole, until another model is chosen
   Fit current_;                         // with the effects added so far
   Fit final_;                           // what is selected
-  Data final_data_;                     // with the serial noise that it leaves
-  Fit independent_;                     // what is selected, beside independent noise
+  Data final_data_;                     // with the autocorrelated noise of its residual
+  Fit independent_;                     // what is selected, fitted with independent noise
   ResidualTests tests_;                 // of current_
   std::vector<std::string> added_;      // effects, and the class of each
   std::vector<std::size_t> numbers_;    // of each
@@ -371,8 +371,7 @@ void Tracer::conclude() {
 // What is remarkable about the fitted numbers of the final model, and the units that they speak of.
 void Tracer::find_findings() {
   std::vector<Finding> found = number_findings(model_, final_);
-  const bool turned =
-      std::ranges::any_of(result_.findings, [](const Finding& f) { return f.kind == FindingKind::sign_turned; });
+  const bool turned = has_finding(result_.findings, FindingKind::sign_turned);
   if (!turned && !result_.from_laws && progress_.go_on("units of the readings")) {
     for (Finding& f : unit_findings(model_, data_, final_)) found.push_back(std::move(f));
   }
@@ -382,8 +381,7 @@ void Tracer::find_findings() {
 
 // Whether the readings leave a number of the final model open.
 bool Tracer::numbers_open() const {
-  return std::ranges::any_of(result_.findings,
-                             [](const Finding& f) { return f.kind == FindingKind::not_identifiable; });
+  return has_finding(result_.findings, FindingKind::not_identifiable);
 }
 
 void Tracer::select() {
@@ -415,7 +413,7 @@ void Tracer::reject() {
 
 // One member in every class, and every effect lowers the error of conditions left out: theory.md (I.9).
 bool Tracer::decided() const {
-  // Whether a model that is a little wrong or noise leaves what resembles itself, these readings cannot say.
+  // These readings cannot say whether autocorrelated noise or a small error of the model is the reason.
   if (!result_.explained || result_.serial) return false;
   Evidence evidence{.dof = final_.dof(),
                     .classes = result_.selected_classes,
@@ -424,8 +422,8 @@ bool Tracer::decided() const {
                     .zero_in_doubt = result_.zero && result_.zero->doubtful,
                     .something_left = !tests_.agrees(result_.tolerance),
                     .numbers_open = numbers_open()};
-  for (const Finding& f : result_.findings)
-    if (f.kind == FindingKind::sign_turned || f.kind == FindingKind::unit_slip) evidence.readings_in_doubt = true;
+  evidence.readings_in_doubt =
+      has_finding(result_.findings, FindingKind::sign_turned) || has_finding(result_.findings, FindingKind::unit_slip);
   if (result_.selected.empty()) {
     return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
@@ -436,13 +434,13 @@ bool Tracer::decided() const {
   return is_decided(evidence);
 }
 
-// Noise that resembles itself from reading to reading tells less than independent noise does: the final model is fitted again beside
-// it. As few independent readings as it leaves are those of Student's t.                   theory.md (I.35)
+// Autocorrelated readings carry less information than independent ones: the final model is fitted again by generalised least squares,
+// with Student's t of the effective number of readings.                                     theory.md (I.35)
 void Tracer::widen_for_serial_noise() {
   final_data_ = data_;
   independent_ = final_;
   result_.serial = serial_noise(model_, data_, final_);
-  if (!result_.serial || !progress_.go_on("noise that resembles itself")) return;
+  if (!result_.serial || !progress_.go_on("autocorrelated noise")) return;
   final_data_.noise = with_serial_part(model_, data_.noise, *result_.serial);
   final_data_.noise.dof = std::max(1.0, result_.serial->effective - static_cast<double>(final_.free));
   Fit beside = fit(model_, final_data_, final_.fitted(), final_.fixed());
@@ -454,11 +452,11 @@ void Tracer::widen_for_serial_noise() {
   final_ = std::move(beside);
   find_rank(model_, final_data_, final_);
   result_.noise = final_data_.noise;
-  progress_.clock("noise that resembles itself");
+  progress_.clock("autocorrelated noise");
 }
 
-// Whether the base model beside serial noise is as likely as the effects that were added. With a declared noise nothing but the model
-// can leave more.
+// Whether the base model with autocorrelated noise is as likely as the model with the effects that were added. A declared noise leaves
+// no such choice.
 bool Tracer::serial_noise_does() const {
   if (added_.empty() || data_.noise.source != "residual") return false;
   return serial_criterion(model_, data_, base_) <= serial_criterion(model_, data_, current_);
@@ -574,10 +572,9 @@ Trace Tracer::run() {
   widen_for_serial_noise();
   compare_models();
   average_intervals();
-  const bool odd = std::ranges::any_of(
-      result_.findings, [](const Finding& f) { return f.kind == FindingKind::series_of_another_specimen; });
-  if (!odd && progress_.go_on("zero of the travel")) {
-    // What a wrong zero leaves resembles itself, too.
+  if (!has_finding(result_.findings, FindingKind::series_of_another_specimen) &&
+      progress_.go_on("zero of the travel")) {
+    // The residual of a wrong zero is autocorrelated, too.
     result_.zero = check_zero(model_, data_, independent_);
     progress_.clock("zero of the travel");
   }

@@ -21,12 +21,11 @@ struct Trace {
   std::vector<Series> series;  ///< as used: a published law at its travels in the place of readings
   std::vector<bool> heldout;   ///< one a series
   Noise noise;
-  std::optional<SerialNoise>
-      serial;                 ///< of the final model, where what it leaves resembles itself from reading to reading
-  bool serial_rival = false;  ///< beside such noise the base model does as well as the effects that were found
-  bool from_laws = false;     ///< published fits replace lost readings: only their four numbers count
-  std::size_t rows = 0;       ///< readings, and numbers of published fits, that are fitted
-  double mesh_error = 0.0;    ///< largest discretisation error of the final model [N]
+  std::optional<SerialNoise> serial;  ///< of the final model, where its residual is autocorrelated
+  bool serial_rival = false;          ///< with such noise the base model is as likely as the effects that were found
+  bool from_laws = false;             ///< published fits replace lost readings: only their four numbers count
+  std::size_t rows = 0;               ///< readings, and numbers of published fits, that are fitted
+  double mesh_error = 0.0;            ///< largest discretisation error of the final model [N]
   ModelError declared, base, final;
   std::vector<Setting> final_settings;                             ///< of the final model: see Model::apply
   std::vector<Prediction> declared_predictions, base_predictions;  ///< one a series: the forces, without their curves

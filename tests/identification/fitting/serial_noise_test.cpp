@@ -1,4 +1,4 @@
-// Noise of single records that resembles itself, in linear models where generalised least squares is exact.
+// Autocorrelated noise of single records, in linear models where generalised least squares is exact.
 
 #include "identification/fitting/serial_noise.hpp"
 
