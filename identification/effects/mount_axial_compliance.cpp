@@ -20,7 +20,7 @@ Parameter axial_compliance() {
       .unit = "m/N",
       .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.translational_stiffness); },
                  [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); }},
-      .limits = [](const PushProblem&) { return between(0.0, 1e-3); },
+      .limits = limits_along_chord,
       .step = 1e-12,
       .mounts_give = rigid_mounts};
 }

@@ -23,4 +23,12 @@ std::vector<double> sizes_beside_stretching(const PushProblem& declared) {
   return {stretch, 10.0 * stretch, 100.0 * stretch};
 }
 
+Limits limits_in_rotation(const PushProblem& declared) {
+  return between(0.0, 100.0 * declared.wire.length / declared.wire.bending_stiffness());
+}
+
+Limits limits_along_chord(const PushProblem& declared) {
+  return between(0.0, 1000.0 * declared.wire.length / declared.wire.axial_stiffness());
+}
+
 }  // namespace snare::identification

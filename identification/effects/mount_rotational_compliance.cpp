@@ -10,7 +10,7 @@ Parameter rotational_compliance() {
           .unit = "rad/(N m)",
           .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
                      [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); }},
-          .limits = [](const PushProblem&) { return between(0.0, 1000.0); },
+          .limits = limits_in_rotation,
           .step = 1e-6};
 }
 

@@ -224,6 +224,7 @@ void Tracer::add_effects() {
   current_ = base_;
   tests_ = result_.base_tests;
   result_.few_readings = base_.dof() - 1.0 < fewest_dof(base_.free + 1);
+  if (has_finding(result_.findings, FindingKind::sign_turned)) return;  // effects of such readings mean nothing
   const double tolerance = result_.tolerance;
   while (static_cast<int>(added_.size()) < options_.most_effects) {
     // Where a size is asked for, what is smaller is not looked for.
