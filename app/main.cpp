@@ -25,6 +25,10 @@
 #include <string>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
 
 using snare::app::CommonOptions;
@@ -279,6 +283,11 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  // Blocks of a megabyte go back to the system when they are freed. glibc raises that limit with every block by itself, and curves of
+  // many readings would leave holes.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
   snare::app::open_standard_streams();
   const snare::base::InputScope inputs(std::make_shared<snare::base::Inputs>());
   try {

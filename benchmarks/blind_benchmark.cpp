@@ -123,7 +123,9 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   if (set.effect == "none") o.right = t.selected.empty() && t.explained;
   const bool outside = set.effect == "damage" || set.effect == "drift";
   if (outside) {
-    o.right = t.selected.empty() && !t.explained;
+    // A drift of another shape in time is a drift.
+    const bool drift = set.effect == "drift" && t.selected == std::vector<std::string>{"force_drift"};
+    o.right = drift || (t.selected.empty() && !t.explained);
     const std::string where = set.effect == "damage" ? "wire" : "sensor";
     o.channel = o.right && t.channel == where;
     const std::string member = "outside:" + where;

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace snare::validation {
 
@@ -15,7 +17,10 @@ namespace {
 /// Whether a trace names what is inside, as 1 or 0.
 double right(const BlindSet& set, const identification::Trace& t) {
   if (set.effect == "none") return t.selected.empty() && t.explained ? 1.0 : 0.0;
-  if (set.effect == "drift" || set.effect == "damage") return t.selected.empty() && !t.explained ? 1.0 : 0.0;
+  const bool silent = t.selected.empty() && !t.explained;
+  if (set.effect == "damage") return silent ? 1.0 : 0.0;
+  // A drift of another shape in time is a drift.
+  if (set.effect == "drift") return silent || t.selected == std::vector<std::string>{"force_drift"} ? 1.0 : 0.0;
   if (t.selected.size() != 1) return 0.0;
   const std::vector<std::string>& members = t.selected_classes.front();
   return std::find(members.begin(), members.end(), set.effect) != members.end() ? 1.0 : 0.0;

@@ -1,5 +1,7 @@
 #include "identification/effects/effect.hpp"
 
+#include "identification/fitting/legs.hpp"
+
 #include <cmath>
 #include <cstddef>
 

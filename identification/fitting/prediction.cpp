@@ -22,31 +22,6 @@ struct Sampling {
 
 constexpr int points_a_leg = 60;
 
-/// Turning points of a record: indices at which it turns back by more than 2 % of its range.
-std::vector<std::size_t> turning_points(const std::vector<double>& d) {
-  const auto [low, high] = std::minmax_element(d.begin(), d.end());
-  const double threshold = 0.02 * (*high - *low);
-  std::vector<std::size_t> turns{0};
-  std::size_t extreme = 0;
-  double sense = 0.0;
-  for (std::size_t i = 1; i < d.size(); ++i) {
-    if (sense == 0.0) {
-      if (std::abs(d[i] - d[0]) > threshold) sense = d[i] > d[0] ? 1.0 : -1.0;
-      if (sense != 0.0) extreme = i;
-      continue;
-    }
-    if ((d[i] - d[extreme]) * sense >= 0.0)
-      extreme = i;
-    else if ((d[extreme] - d[i]) * sense > threshold) {
-      turns.push_back(extreme);
-      extreme = i;
-      sense = -sense;
-    }
-  }
-  turns.push_back(d.size() - 1);
-  return turns;
-}
-
 Sampling sample(const std::vector<double>& d, bool thin) {
   Sampling result;
   result.travel = d;
@@ -88,23 +63,6 @@ Sampling sample(const std::vector<double>& d, bool thin) {
 }
 
 }  // namespace
-
-std::vector<Leg> legs_of(const std::vector<double>& displacement) {
-  const std::vector<std::size_t> turns = turning_points(displacement);
-  std::vector<Leg> result;
-  for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
-    Leg leg;
-    leg.begin = k == 0 ? 0 : turns[k] + 1;
-    leg.end = turns[k + 1] + 1;
-    const auto [low, high] = std::minmax_element(displacement.begin() + static_cast<std::ptrdiff_t>(turns[k]),
-                                                 displacement.begin() + static_cast<std::ptrdiff_t>(leg.end));
-    leg.low = *low;
-    leg.high = *high;
-    leg.up = displacement[leg.end - 1] >= displacement[turns[k]];
-    if (leg.end > leg.begin) result.push_back(leg);
-  }
-  return result;
-}
 
 Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading,
                    const PredictionOptions& options) {

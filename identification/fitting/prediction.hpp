@@ -2,6 +2,7 @@
 
 #include "coupling/statics/push_solver.hpp"
 #include "identification/fitting/experiment.hpp"
+#include "identification/fitting/legs.hpp"
 #include "identification/fitting/record_map.hpp"
 
 #include <Eigen/Core>
@@ -62,16 +63,6 @@ struct PredictionOptions {
   /// by cubics; the readings of a leg then count by their displacement, whatever their order.
   bool thin = false;
 };
-
-/// A stretch of a record in which the pusher goes one way.
-struct Leg {
-  std::size_t begin = 0, end = 0;  ///< readings [begin, end)
-  double low = 0.0, high = 0.0;    ///< displacements [m]
-  bool up = true;                  ///< the displacement grows
-};
-
-/// The legs of a record of displacements [m], one after the other. It turns where it goes back by more than 2 % of its range.
-[[nodiscard]] std::vector<Leg> legs_of(const std::vector<double>& displacement);
 
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
 /// where the displacement first exceeds the offset.

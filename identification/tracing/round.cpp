@@ -239,8 +239,16 @@ bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that it reached; the likeliest come
-/// first, so that the others are abandoned early.
+/// The least chi2 that an effect promises: what the search has reached, or what its score takes away.
+double promised_chi2(const Candidate& c, const Fit& current) {
+  const bool scored = c.score.unobservable.empty();
+  const double by_score = current.chi2 - (scored ? c.score.z * c.score.z : 0.0);
+  if (!c.searched) return scored ? by_score : std::numeric_limits<double>::max();
+  return std::min(by_score, c.searched->chi2);
+}
+
+/// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that they promise; the likeliest
+/// come first, so that the others are abandoned early.
 void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
                    Progress& progress) {
   const StartSearch search(model, data, current.fit);
@@ -250,9 +258,8 @@ void search_starts(const Model& model, const Data& data, const Current& current,
     c.searched = search.best(*c.score.effect, searched_share * least + searched_margin, progress);
     if (c.searched) least = std::min(least, c.searched->chi2);
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    if (a.searched.has_value() != b.searched.has_value()) return a.searched.has_value();
-    return a.searched && a.searched->chi2 < b.searched->chi2;
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    return promised_chi2(a, current.fit) < promised_chi2(b, current.fit);
   });
 }
 
@@ -262,9 +269,9 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
                             Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.fit.settings);
-  double least = current.fit.chi2;  // that the search has reached
+  double least = current.fit.chi2;
   for (const Candidate& c : candidates) {
-    if (c.searched) least = std::min(least, c.searched->chi2);
+    if (current.search && worth_a_refit(c)) least = std::min(least, promised_chi2(c, current.fit));
   }
   std::size_t refits = 0;
   double best_gain = 0.0;

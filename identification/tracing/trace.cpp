@@ -74,9 +74,12 @@ class Tracer {
   Trace run();
 
  private:
+  [[nodiscard]] bool only_fitted() const { return options_.most_effects == 0; }
   void look_at_base();
   void tell_part() const;
+  void look_for_effects();
   void add_effects();
+  [[nodiscard]] bool beyond_section(const Fit& fit) const;
   [[nodiscard]] std::vector<Setting> begun_anew() const;
   [[nodiscard]] bool accept();
   void drop_unneeded();
@@ -111,7 +114,6 @@ class Tracer {
   Fit current_;                         // with the effects added so far
   Fit final_;                           // what is selected
   Data final_data_;                     // with the autocorrelated noise of its residual
-  Fit independent_;                     // what is selected, fitted with independent noise
   ResidualTests tests_;                 // of current_
   std::vector<std::string> added_;      // effects, and the class of each
   std::vector<std::size_t> numbers_;    // of each
@@ -185,6 +187,8 @@ void Tracer::look_at_base() {
   for (const Prediction& p : result_.declared_predictions) forces.push_back(p.force);
   result_.findings = sign_findings(result_.series, forces, model_.solver());
   result_.base_tests = test_residuals(model_, data_, base_);
+  if (only_fitted())
+    return;  // then the final model is the base model, and its curves of a million readings are computed once
   result_.base = error_of(base_, base_predictions_);
   result_.base_predictions = forces_only(base_predictions_);
 }
@@ -304,6 +308,34 @@ bool Tracer::accept() {
   }
   progress_.clock("causes outside the catalogue");
   return !result_.rival_explanation;
+}
+
+// Whether a stiffness of the fit is one that no wire of the declared section has, with all of its interval.
+bool Tracer::beyond_section(const Fit& fit) const {
+  return !beyond_construction(model_, numbers_of(model_, fit)).empty();
+}
+
+// What leaves less than the usual tolerance is looked for only where a stiffness beyond the section stands in for it, and counts only
+// where it brings that back and leaves noise.                                             theory.md (I.9)
+void Tracer::look_for_effects() {
+  const double usual = result_.tolerance;
+  const bool stands_in = usual > 0.0 && !experiment_.model_tolerance && !result_.base_tests.within_noise() &&
+                         result_.base_tests.within(usual) && beyond_section(base_);
+  if (!stands_in) {
+    add_effects();
+    return;
+  }
+  result_.tolerance = 0.0;
+  add_effects();
+  if (!added_.empty() && tests_.within_noise() && !beyond_section(current_)) return;
+  result_.tolerance = usual;
+  result_.rounds.clear();
+  rounds_.clear();
+  added_.clear();
+  numbers_.clear();
+  classes_.clear();
+  current_ = base_;
+  tests_ = result_.base_tests;
 }
 
 // The degree of the answer.                                                               theory.md (I.9)
@@ -439,7 +471,6 @@ bool Tracer::decided() const {
 // with Student's t of the effective number of readings.                                     theory.md (I.35)
 void Tracer::widen_for_serial_noise() {
   final_data_ = data_;
-  independent_ = final_;
   result_.serial = serial_noise(model_, data_, final_);
   if (!result_.serial || !progress_.go_on("autocorrelated noise")) return;
   final_data_.noise = with_serial_part(model_, data_.noise, *result_.serial);
@@ -453,6 +484,7 @@ void Tracer::widen_for_serial_noise() {
   final_ = std::move(beside);
   find_rank(model_, final_data_, final_);
   result_.noise = final_data_.noise;
+  result_.noise.filter = {};  // of every reading
   progress_.clock("autocorrelated noise");
 }
 
@@ -467,14 +499,20 @@ bool Tracer::serial_noise_does() const {
 void Tracer::compare_models() {
   result_.final_settings = final_.settings;
   result_.places = final_data_.places(model_, final_.evaluation, final_.covariance);
-  if (result_.selected.empty() && !result_.serial) {
+  if (result_.selected.empty() && !result_.serial && !only_fitted()) {
     result_.final_tests = result_.base_tests;
     result_.final = result_.base;
     result_.final_predictions = base_predictions_;
   } else {
     base_predictions_ = {};
+    if (only_fitted() && data_.series.size() == 1)
+      base_.evaluation = {};  // of many readings: there is nothing to leave out
     result_.final_tests = test_residuals(model_, final_data_, final_);
     result_.final = error_of(final_, result_.final_predictions);
+  }
+  if (only_fitted()) {
+    result_.base = result_.final;
+    result_.base_predictions = forces_only(result_.final_predictions);
   }
   for (const Prediction& p : result_.final_predictions) {
     for (const double e : p.curve.discretisation_error) result_.mesh_error = std::max(result_.mesh_error, e);
@@ -566,19 +604,18 @@ Trace Tracer::run() {
   progress_.clock("base fit");
   look_at_base();
   progress_.clock("errors of declared and base model");
-  tell_part();
-  add_effects();
+  if (!only_fitted()) tell_part();
+  look_for_effects();
   conclude();
   current_ = {};  // what is selected is in final_
+  if (!has_finding(result_.findings, FindingKind::series_of_another_specimen) &&
+      progress_.go_on("zero of the travel")) {
+    result_.zero = check_zero(model_, data_, final_);  // before its residual counts as autocorrelated noise
+    progress_.clock("zero of the travel");
+  }
   widen_for_serial_noise();
   compare_models();
   average_intervals();
-  if (!has_finding(result_.findings, FindingKind::series_of_another_specimen) &&
-      progress_.go_on("zero of the travel")) {
-    // The residual of a wrong zero is autocorrelated, too.
-    result_.zero = check_zero(model_, data_, independent_);
-    progress_.clock("zero of the travel");
-  }
   result_.decided = decided();
   tell_part();
   if (options_.intervals && !result_.selected.empty()) find_intervals();

@@ -176,7 +176,11 @@ TEST_F(Faults, ArmShowsWhatStandardOutputTakes) {
   expect_full("arm show '" SNARE_SOURCE_DIR "/data/arms/jemrms_like.toml'");
 }
 
-class SlowFaults : public Faults {};
+class SlowFaults : public Faults {
+ protected:
+  // The same files, without a search for effects.
+  static constexpr const char* quick = " --set solver.extrapolate=false --set fit.model_tolerance=0.5";
+};
 
 TEST_F(SlowFaults, RingDown) {
   expect_promises("ringdown " + shipped("experiments/ringdown.toml"));
@@ -190,7 +194,7 @@ TEST_F(SlowFaults, Fit) {
 }
 
 TEST_F(SlowFaults, Trace) {
-  expect_promises("trace " + small("readings.toml") + " --set solver.extrapolate=false");
+  expect_promises("trace " + small("readings.toml") + quick);
 }
 
 TEST_F(SlowFaults, TraceOfRecords) {
@@ -198,7 +202,7 @@ TEST_F(SlowFaults, TraceOfRecords) {
 }
 
 TEST_F(SlowFaults, Reproduce) {
-  expect_promises("reproduce " + small("readings.toml") + " --set solver.extrapolate=false");
+  expect_promises("reproduce " + small("readings.toml") + quick);
 }
 
 TEST_F(SlowFaults, Compare) {

@@ -26,7 +26,8 @@ SOURCES = ["tests/fuzz/readers_libfuzzer.cpp", *(str(p.relative_to(ROOT)) for p 
            "scenario/push_reader.cpp", "coupling/contact/mesh_file.cpp", "multibody/urdf.cpp", "multibody/urdf_checks.cpp",
            "multibody/tree.cpp", "multibody/spatial.cpp", "identification/fitting/experiment.cpp",
            "identification/fitting/parameter.cpp", "identification/fitting/parameter_set.cpp",
-           "identification/fitting/construction_numbers.cpp", "identification/fitting/unfitted_keys.cpp"]
+           "identification/fitting/construction_numbers.cpp", "identification/fitting/legs.cpp",
+           "identification/fitting/unfitted_keys.cpp"]
 FLAGS = ["-std=c++20", "-gline-tables-only", "-O1", "-fsanitize=fuzzer-no-link,address,undefined", "-fno-sanitize-recover=all", "-I.",
          "-isystem", "/usr/include/eigen3"]
 MORE_FLAGS = ["-isystem", "/usr/include/suitesparse", "-DEIGEN_DONT_PARALLELIZE", "-DFMT_SHARED", "-DTOML_HEADER_ONLY=0",

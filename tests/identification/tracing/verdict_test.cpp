@@ -145,9 +145,10 @@ TEST(Verdict, StiffnessesBeyondTheSolidSectionAreFindings) {
   ASSERT_EQ(beyond_construction(model, {n}).size(), 1u);
   EXPECT_TRUE(beyond_construction(model, {n})[0].sure);
   EXPECT_DOUBLE_EQ(beyond_construction(model, {n})[0].limit, solid);
-  n.lower = 0.5 * solid;
+  n.lower = 1.1 * solid;
+  ASSERT_EQ(beyond_construction(model, {n}).size(), 1u);
   EXPECT_FALSE(beyond_construction(model, {n})[0].sure);
-  n.value = 0.9 * solid;
+  n.lower = 0.5 * solid;
   EXPECT_TRUE(beyond_construction(model, {n}).empty());
 }
 
