@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 namespace snare::results {
 
@@ -57,6 +59,26 @@ std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
       1e3 * begin, 1e3 * last->travel)};
 }
 
+/// Warns of a stress that no wire bears, of the series where it is largest; the others are named.
+std::vector<std::string> overload_of(const std::vector<identification::Series>& series,
+                                     const std::vector<identification::Prediction>& predictions) {
+  std::vector<std::pair<double, std::size_t>> over;  // stress and series
+  for (std::size_t k = 0; k < std::min(series.size(), predictions.size()); ++k) {
+    const wire::WireSpecification& wire = series[k].test.wire;
+    const double stress = coupling::largest_stress(wire, predictions[k].curve.curve.points);
+    if (!wire::overload(wire, stress).empty()) over.emplace_back(stress, k);
+  }
+  if (over.empty()) return {};
+  std::ranges::sort(over, std::greater{});
+  const identification::Series& worst = series[over.front().second];
+  std::string text =
+      fmt::format("series {}: {}", worst.name, wire::overload(worst.test.wire, over.front().first).front());
+  std::vector<std::string> others;
+  for (std::size_t i = 1; i < over.size(); ++i) others.push_back(series[over[i].second].name);
+  if (!others.empty()) text += fmt::format(". It is too large in {}, too", fmt::join(others, ", "));
+  return {text};
+}
+
 }  // namespace
 
 std::vector<std::string> push_warnings(const std::vector<identification::Series>& series,
@@ -64,11 +86,10 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
                                        const std::string& of) {
   Sentences sentences;
   for (const identification::Series& s : series) sentences.add(of, wire::doubts(s.test.wire));
+  sentences.add(of, overload_of(series, predictions));
   for (std::size_t k = 0; k < std::min(series.size(), predictions.size()); ++k) {
-    const wire::WireSpecification& wire = series[k].test.wire;
     const std::vector<PushPoint>& points = predictions[k].curve.curve.points;
     const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
-    sentences.add(whose, wire::overload(wire, coupling::largest_stress(wire, points)));
     sentences.add(whose, lost_contact(points));
     sentences.add(whose, unstable_branch(predictions[k].curve.curve));
   }

@@ -44,6 +44,18 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
       "series s: the curve runs along an unstable branch from a travel of ");
 }
 
+// One sentence for all series, of the one with the largest stress.
+TEST_F(Warnings, AStressInSeveralSeries) {
+  write("x.toml",
+        experiment("", "[[series]]\nname = \"t\"\ncontact_position_mm = 40.0\ntravel_mm = 20.0\npoints = 5\n"));
+  ASSERT_EQ(run("push x.toml --out here --json --set series[s].travel_mm=20"), 0) << contents("err.txt");
+  const std::string said = contents("err.txt");
+  const std::size_t at = said.find("the stress in the wire reaches ");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_NE(said.find(". It is too large in ", at), std::string::npos) << said;
+  EXPECT_EQ(said.find("the stress in the wire reaches ", at + 1), std::string::npos) << said;
+}
+
 // Readings of the other sign are no misfit of the wire.
 TEST_F(Warnings, ForcesOfTheOtherSign) {
   std::string text = experiment("");
