@@ -7,7 +7,7 @@ import exudyn.itemInterface as items
 import numpy as np
 
 import peer
-from references import AREA, AXIAL, BENDING, DAMPING, DENSITY, GREENHILL, LENGTH, MASS, POISSON, PROBE, SPAN, SPEED, TWISTING, YOUNG
+from references import AREA, AXIAL, BENDING, DAMPING, DENSITY, GREENHILL, LENGTH, MASS, POISSON, PROBE, SPAN, SPEED, TRAVELS, TWISTING, YOUNG
 
 
 def buckled(elements):
@@ -69,9 +69,13 @@ class Cable:
                                                            contactStiffness=stiffness, circleRadius=PROBE, offset=0.0))
 
 
-def static_settings(steps=1, tolerance=1e-8):
+def static_settings(steps=1, tolerance=1e-8, defaults=False):
     settings = exu.SimulationSettings()
     settings.staticSolver.numberOfLoadSteps = steps
+    if defaults:
+        settings.staticSolver.verboseMode = 0
+        settings.solution.file.write = False
+        return settings
     settings.staticSolver.newton.relativeTolerance = tolerance
     settings.staticSolver.newton.absoluteTolerance = 1e-10
     settings.staticSolver.newton.maxIterations = 50
@@ -110,7 +114,7 @@ def first_touch(state, place):
     return min(highest)
 
 
-def push(elements=60, segments=4, stiffness=1e9, reach=0.010, place=0.065, travels=(), tolerance=1e-7, reduced=0):
+def push(elements=60, segments=4, stiffness=1e9, reach=0.010, place=0.065, travels=TRAVELS, tolerance=1e-7, reduced=0, defaults=False):
     state, _ = bulge(elements)
     level = first_touch(state, place)
     cable = Cable(elements, state, reduced=reduced)
@@ -130,12 +134,12 @@ def push(elements=60, segments=4, stiffness=1e9, reach=0.010, place=0.065, trave
                                              writeToFile=False))
     cable.touch(pusher, place, reach, segments, stiffness)
     mbs.Assemble()
-    mbs.SolveStatic(static_settings(len(travels), tolerance))
+    mbs.SolveStatic(static_settings(len(travels), tolerance, defaults))
     data = mbs.GetSensorStoredData(force)
-    return {"force_N": [abs(float(v)) for v in data[:, 1]][-len(travels):], "rows": len(data)}
+    return {"force_N": [abs(float(v)) for v in data[:, 1]][-len(travels):], "points": len(data)}
 
 
-def impact(elements=30, step=5e-4, segments=4, stiffness=1e8, reach=0.010, damping=DAMPING, spectral_radius=0.9, until=0.3):
+def impact(elements=30, step=5e-4, segments=4, stiffness=1e8, reach=0.010, damping=DAMPING, spectral_radius=0.9, modified=True, until=0.3):
     state, _ = bulge(elements)
     gap = 1e-4
     level = first_touch(state, 0.5 * SPAN) - gap
@@ -153,13 +157,14 @@ def impact(elements=30, step=5e-4, segments=4, stiffness=1e8, reach=0.010, dampi
     settings.timeIntegration.endTime = until
     settings.timeIntegration.verboseMode = 0
     settings.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
-    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.newton.useModifiedNewton = modified
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = step
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     mbs.SolveDynamic(settings)
-    acceleration = mbs.GetSensorStoredData(rate)[:, 2]
-    return {"peak_N": float(-MASS * acceleration.min()), "impulse_Ns": float(MASS * (SPEED - mbs.GetSensorStoredData(speed)[-1, 2]))}
+    speeds = mbs.GetSensorStoredData(speed)[:, 2]
+    force = -MASS * mbs.GetSensorStoredData(rate)[:, 2]
+    return {"peak_N": float(force.max()) if step > 5e-5 else peer.peak(speeds, step, MASS), "impulse_Ns": float(MASS * (SPEED - speeds[-1]))}
 
 
 def cantilever(elements, load=0.0, reduced=0):

@@ -3,6 +3,7 @@
 SI units. The wire is the declared one of the published static test: solid SUS-304, 1.5 mm thick.
 """
 
+import json
 import math
 
 import numpy as np
@@ -177,11 +178,29 @@ def inextensible_tip(load):
     return math.sqrt(2 * (2 * k**2 - 1) / load), float(1 - 2 / math.sqrt(load) * (ellipe(k**2) - ellipeinc(first(k), k**2)))
 
 
+ROOT = brentq(lambda b: math.cos(b) * math.cosh(b) + 1, 1.8, 2.0, xtol=1e-14)  # of the cantilever's first mode
+
+
 def cantilever_frequency():
     """First natural frequency of the cantilever of the wire's length [Hz]."""
-    root = brentq(lambda b: math.cos(b) * math.cosh(b) + 1, 1.8, 2.0, xtol=1e-14)
-    return root**2 / (2 * math.pi * LENGTH**2) * math.sqrt(BENDING / (DENSITY * AREA))
+    return ROOT**2 / (2 * math.pi * LENGTH**2) * math.sqrt(BENDING / (DENSITY * AREA))
+
+
+def first_mode(s):
+    """Its shape at a share of the length, 1 at the tip."""
+    b = ROOT * min(max(s, 0.0), 1.0)
+    ratio = (math.cosh(ROOT) + math.cos(ROOT)) / (math.sinh(ROOT) + math.sin(ROOT))
+    return 0.5 * (math.cosh(b) - math.cos(b) - ratio * (math.sinh(b) - math.sin(b)))
 
 
 # Twisting moment at which the straight wire between clamps, without tension, leaves its axis: 2 x EI/L with tan x = x (Greenhill) [N m]
 GREENHILL = 2 * brentq(lambda x: math.sin(x) - x * math.cos(x), 4.0, 4.7, xtol=1e-14) * BENDING / LENGTH
+
+
+if __name__ == "__main__":
+    print("RESULT " + json.dumps({
+        "push": {"force_N": push_curve(0.065, TRAVELS).tolist()},
+        "impact": {"damped": impact(DAMPING), "undamped": impact(0.0)},
+        "tip": {"tip": cantilever_tip(4.0)},
+        "frequency": {"frequency_Hz": cantilever_frequency()},
+        "twist": {"moment_Nm": GREENHILL}}))

@@ -1,0 +1,73 @@
+"""The cases by dismech-newton on the processor: implicit discrete elastic rods, whose places are numbers of single precision.
+
+A clamp holds an edge and stands in the middle of it, where it is of second order.
+"""
+
+import newton
+import numpy as np
+import warp as wp
+
+# The package evaluates annotations `STRUCT | None` where Python is older than 3.14, and Warp's structures have no such operator.
+type(wp.struct(type("Empty", (), {"__annotations__": {}}))).__or__ = lambda self, other: object
+
+from dismech_newton import DiSMechSolver
+
+import peer
+import references as ref
+from references import AREA, BENDING, DENSITY, DIAMETER, LENGTH, POISSON, YOUNG
+
+wp.config.quiet = True
+
+
+def cantilever(edges, middle=True, shape=None, damping=0.0, **solver):
+    """Solver, its model, two states, and the spacing; the rod along x, its tip free. damping: time of Kelvin and Voigt."""
+    beyond = 0.5 if middle else 1.0
+    spacing = LENGTH / (edges - beyond)
+    points = np.zeros((edges + 1, 3))
+    points[:, 0] = (np.arange(edges + 1) - beyond) * spacing
+    rod = newton.Rod(points, radius=DIAMETER / 2, youngs_modulus=YOUNG, poissons_ratio=POISSON)
+    rod.compute_frames()
+    builder = newton.ModelBuilder(gravity=0.0)
+    DiSMechSolver.register_custom_attributes(builder)
+    config = newton.ModelBuilder.ShapeConfig(density=DENSITY)
+    made = DiSMechSolver.add_rod(builder, rod, cfg=config, collide=False, bend_damping=damping * BENDING / spacing or None)
+    DiSMechSolver.fix_segment(builder, made[0])
+    model = builder.finalize(device="cpu")
+    mass = np.full(edges + 1, DENSITY * AREA * spacing)
+    mass[[0, -1]] *= 0.5
+    found = model.particle_mass.numpy()
+    assert np.allclose(found[1:], mass[1:], rtol=1e-3), (found, mass)
+    solver = DiSMechSolver(model, self_contact=False, **solver)
+    state, other = model.state(), model.state()
+    if shape:
+        places = state.particle_q.numpy()
+        places[:, 1] = [shape(x / LENGTH) for x in points[:, 0]]
+        state.particle_q.assign(places)
+    return solver, state, other
+
+
+def tip(edges=20, load=4.0, middle=True, steps=40, step=0.05, iterations=40, exact=True):
+    solver, state, other = cantilever(edges, middle, iterations=iterations, exact=exact)
+    force = np.zeros((edges + 1, 3), dtype=np.float32)
+    for k in range(steps):
+        force[-1, 1] = load * BENDING / LENGTH**2 * min(1.0, 4 * (k + 1) / steps)
+        state.particle_f.assign(force)
+        solver.step(state, other, None, None, step)
+        state, other = other, state
+    place = state.particle_q.numpy()[-1]
+    return {"tip": [float(place[0]) / LENGTH, float(place[1]) / LENGTH]}
+
+
+def frequency(edges=20, middle=True, step=1e-4, until=0.2, theta=0.5, iterations=3, exact=True, amplitude=1e-2):
+    """Of a small free vibration, begun in the first mode of the continuous wire."""
+    solver, state, other = cantilever(edges, middle, lambda s: amplitude * LENGTH * ref.first_mode(s), iterations=iterations, exact=exact, theta=theta)
+    tips = [float(state.particle_q.numpy()[-1, 1])]
+    for _ in range(round(until / step)):
+        solver.step(state, other, None, None, step)
+        state, other = other, state
+        tips.append(float(state.particle_q.numpy()[-1, 1]))
+    return {"frequency_Hz": peer.frequency(tips, step)}
+
+
+if __name__ == "__main__":
+    peer.main(globals())
