@@ -56,9 +56,27 @@ RUNS = {
         "frequency": {"ladder": each("elements", (10, 20, 40)), "defaults": {"elements": 40, "defaults": True}, "order": each("elements", (10, 20, 40))},
         "twist": {"ladder": each("elements", (20, 40)), "defaults": None, "order": each("elements", (10, 20, 40))},
     },
+    "dismech-newton": {
+        "tip": {"ladder": each("edges", (10, 20, 40)), "defaults": {"edges": 40, "iterations": 10, "exact": False}, "order": each("edges", (10, 20, 40))},
+        "frequency": {"ladder": [{"edges": n, "step": h} for n, h in ((10, 2e-4), (20, 2e-4), (20, 5e-4), (40, 2e-4))],
+                      "defaults": {"edges": 40, "iterations": 10, "exact": False, "theta": 1.0},
+                      "order": [{"edges": n, "step": h} for n, h in ((10, 2e-4), (20, 2e-4), (40, 2e-4))]},
+        "twist": {"ladder": each("edges", (40, 80)), "defaults": {"edges": 40, "iterations": 10, "exact": False, "theta": 1.0}, "order": each("edges", (40, 80, 160))},
+    },
+    "Newton": {
+        "tip": {"ladder": [{"segments": 10}, {"segments": 10, "iterations": 400}, {"segments": 20}, {"segments": 10, "step": 1e-2, "iterations": 1000}],
+                "defaults": {"segments": 40, "defaults": True}, "order": each("segments", (5, 10, 20))},
+        "frequency": {"ladder": [{"segments": 10}, {"segments": 10, "iterations": 10}, {"segments": 5}], "defaults": {"segments": 40, "defaults": True},
+                      "order": []},
+    },
 }
 
 # Cases of a program without an adapter, and why.
 CANNOT = {
-    ("MuJoCo", "twist"): "flexcomp clamps both ends to one body, so that they cannot turn to each other; a raw flex was not tried",
+    ("MuJoCo", "twist"): "flexcomp clamps both ends to one body, so that they cannot turn against each other; a raw flex was not tried",
+    ("dismech-newton", "push"): "no adapter: the solver reports no contact force",
+    ("dismech-newton", "impact"): "no adapter: bodies are obstacles that move as prescribed",
+    ("Newton", "push"): "no adapter: the cantilever does not converge",
+    ("Newton", "impact"): "no adapter: the cantilever does not converge",
+    ("Newton", "twist"): "no adapter: the cantilever does not converge",
 }
