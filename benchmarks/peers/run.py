@@ -146,10 +146,26 @@ def main():
                 keep(row)
                 print(f"{program:15} {case:9} {json.dumps(setting)}: "
                       + (f"{row['error']:.2e}, {row['processor_s']:.4f} s" if "error" in row else row["reason"]), flush=True)
+    for experiment in settings.COSSERAT["experiments"]:
+        for solver in settings.COSSERAT["solvers"]:
+            setting = {"solver": solver}
+            if o.only and "cosseratbench" not in o.only and f"cosseratbench/{experiment}" not in o.only:
+                continue
+            if any((r["program"], r["case"], r["settings"]) == ("cosseratbench", experiment, setting) for r in rows):
+                continue
+            python, reason = pythons.setdefault("cosserat", environments.environment(o.environments, "cosserat"))
+            result = {"reason": reason} if reason else called(python, "cosserat_snare.py", [experiment, json.dumps(setting)], settings.COSSERAT["limit_s"], o.snare)
+            keep({"program": "cosseratbench", "case": experiment, "settings": setting, **result,
+                  "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds")})
+            print("cosseratbench", experiment, solver, result.get("metrics", result.get("reason")), flush=True)
     version = subprocess.run([o.snare, "--version"], capture_output=True, text=True).stdout.strip()
     programs = {p: {"version": version if p == "snare" else v["version"], "what": v["what"]} for p, v in settings.PROGRAMS.items()}
     stored = {"date": max(r["date"] for r in rows if "date" in r), "processor": processor(), "programs": programs,
               "reference": {k: v for k, v in reference.items() if k in ("push", "impact", "tip", "frequency", "twist")},
+              "cosseratbench": {"version": settings.COSSERAT["version"], "experiments": {
+                  e: {s: {k: v for r in rows if (r["program"], r["case"], r["settings"]) == ("cosseratbench", e, {"solver": s})
+                          for k, v in r.items() if k in ("metrics", "processor_s", "reason")} for s in settings.COSSERAT["solvers"]}
+                  for e in settings.COSSERAT["experiments"]}},
               "cases": {case: {p: summary(rows, p, case) if case in settings.RUNS.get(p, {}) else {"cannot": settings.CANNOT[p, case]}
                                for p in settings.PROGRAMS} for case in settings.CASES}}
     o.out.write_text(json.dumps(stored, indent=1) + "\n")
@@ -157,6 +173,10 @@ def main():
         print(f"\n{case}: {settings.CASES[case]}")
         for program, s in programs.items():
             print(f"  {program:15} {text(s)}")
+    for experiment, solvers in stored["cosseratbench"]["experiments"].items():
+        print(f"\ncosseratbench, {experiment}")
+        for solver, s in solvers.items():
+            print(f"  {solver:15} {s.get('metrics') or s.get('reason', 'not run')}" + (f" in {s['processor_s']:.3g} s" if "processor_s" in s else ""))
 
 
 def text(s):

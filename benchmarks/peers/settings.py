@@ -80,3 +80,7 @@ CANNOT = {
     ("Newton", "impact"): "no adapter: the cantilever does not converge",
     ("Newton", "twist"): "no adapter: the cantilever does not converge",
 }
+
+# Experiments of cosseratbench, run by snare and by the solvers that it brings, at its own resolution and, by snare, at twice that.
+COSSERAT = {"version": "0.3.0", "experiments": ("cantilever", "catenary", "pendulum", "capstan", "crossing", "twist", "pile"),
+            "solvers": ("snare", "mujoco", "pyelastica"), "limit_s": 150}
