@@ -73,22 +73,13 @@ class Rod:
 
     def buckle(self):
         """Moves the right clamp to the span and the nodes to a shape of the right length."""
-        fine = np.linspace(0.0, 1.0, 20001)
-        low, high = 0.1, 2.0
-        for _ in range(60):
-            amplitude = 0.5 * (low + high)
-            angle = amplitude * np.sin(2 * np.pi * fine)
-            if np.trapezoid(np.cos(angle), fine) > SPAN / LENGTH:
-                low = amplitude
-            else:
-                high = amplitude
-        x, y = (LENGTH * np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1])) / 20000)) for f in (np.cos(angle), np.sin(angle)))
+        share, x, y, _ = ref.buckled()
         n = self.rod.n_elems
         s = self.spacing * np.arange(n + 1) - self.beyond
         inside = np.clip(s, 0.0, LENGTH)
         places = self.rod.position_collection
-        places[0] = np.interp(inside / LENGTH, fine, x) + (s - inside)
-        places[1] = np.interp(inside / LENGTH, fine, y)
+        places[0] = np.interp(inside / LENGTH, share, x) + (s - inside)
+        places[1] = np.interp(inside / LENGTH, share, y)
         edges = np.diff(places, axis=1)
         tangents = edges / np.linalg.norm(edges, axis=0)
         frames = self.rod.director_collection
@@ -102,18 +93,6 @@ class Rod:
     def run(self, duration, step):
         for _ in range(max(1, round(duration / step))):
             self.time = self.stepper.step(self.simulator, self.time, step)
-
-
-def touch(places, position):
-    """Height of the cylinder's axis at which it first touches the chain of elements."""
-    heights = []
-    for a, b in zip(places.T[:-1], places.T[1:]):
-        t = np.linspace(0.0, 1.0, 401)
-        x, y = a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
-        near = np.abs(x - position) < PROBE
-        if near.any():
-            heights.append(np.min(y[near] - np.sqrt(PROBE**2 - (x[near] - position)**2)))
-    return min(heights)
 
 
 def cylinder(wire, position, mass, stiffness, damper):
@@ -142,7 +121,7 @@ def push(elements=40, share=0.5, hold=0.012, rate=2500.0, stiffness=1e8, damper=
     wire.simulator.finalize()
     wire.buckle()
     wire.run(hold, step)
-    level = touch(wire.rod.position_collection, position)
+    level = ref.chain_touch(wire.rod.position_collection.T, position)
     at, forces = 0.0, []
     for travel in travels:
         chunks = 40
@@ -156,7 +135,7 @@ def push(elements=40, share=0.5, hold=0.012, rate=2500.0, stiffness=1e8, damper=
             wire.run(2e-6, step)
             samples.append(reaction(wire, body, stiffness))
         forces.append(float(np.mean(samples)))
-    return {"force_N": forces, "step_s": step, "first_touch_m": float(level)}
+    return {"force_N": forces, "step_s": step, "first_touch_m": level}
 
 
 def reaction(wire, body, stiffness):
@@ -183,7 +162,7 @@ def impact(elements=40, share=0.5, stiffness=1e8, damper=0.0, defaults=False, un
     Switched.on = False
     wire.rod.velocity_collection[:] = 0.0
     wire.rod.omega_collection[:] = 0.0
-    body.position_collection[1, 0] = touch(wire.rod.position_collection, 0.5 * SPAN) - 1e-4
+    body.position_collection[1, 0] = ref.chain_touch(wire.rod.position_collection.T, 0.5 * SPAN) - 1e-4
     body.velocity_collection[1, 0] = SPEED
     speeds = [SPEED]
     window = max(1, round(1e-4 / step))

@@ -7,24 +7,16 @@ import exudyn.itemInterface as items
 import numpy as np
 
 import peer
+import references as ref
 from references import AREA, AXIAL, BENDING, DAMPING, DENSITY, GREENHILL, LENGTH, MASS, POISSON, PROBE, SPAN, SPEED, TRAVELS, TWISTING, YOUNG
 
 
 def buckled(elements):
-    """Displacements of position and slope from the straight wire, in the shape of a shallow clamped wire of the right length."""
-    fine = np.linspace(0.0, 1.0, 20001)
-    low, high = 0.1, 2.0
-    for _ in range(60):
-        amplitude = 0.5 * (low + high)
-        angle = amplitude * np.sin(2 * np.pi * fine)
-        if np.trapezoid(np.cos(angle), fine) > SPAN / LENGTH:
-            low = amplitude
-        else:
-            high = amplitude
-    x, y = (LENGTH * np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1])) / 20000)) for f in (np.cos(angle), np.sin(angle)))
+    """Displacements of position and slope from the straight wire to its buckled shape."""
+    share, x, y, angle = ref.buckled()
     s = np.linspace(0.0, 1.0, elements + 1)
-    return [[np.interp(u, fine, x) - u * LENGTH, np.interp(u, fine, y), math.cos(a) - 1.0, math.sin(a)]
-            for u, a in zip(s, amplitude * np.sin(2 * np.pi * s))]
+    return [[np.interp(u, share, x) - u * LENGTH, np.interp(u, share, y), math.cos(a) - 1.0, math.sin(a)]
+            for u, a in zip(s, np.interp(s, share, angle))]
 
 
 class Cable:

@@ -69,20 +69,11 @@ def vertices(model, points):
 def buckle(model, data, points, spacing, beyond):
     """Moves the right clamp to the span and the points to a shape of the right length."""
     model.flex_vert[-2:, 0] += SPAN - LENGTH
-    fine = np.linspace(0.0, 1.0, 20001)
-    low, high = 0.1, 2.0
-    for _ in range(60):
-        amplitude = 0.5 * (low + high)
-        angle = amplitude * np.sin(2 * np.pi * fine)
-        if np.trapezoid(np.cos(angle), fine) > SPAN / LENGTH:
-            low = amplitude
-        else:
-            high = amplitude
-    x, y = (LENGTH * np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1])) / 20000)) for f in (np.cos(angle), np.sin(angle)))
+    share, x, y, _ = ref.buckled()
     for k, address in vertices(model, points).items():
         s = (k - beyond) * spacing
-        data.qpos[address] = np.interp(s / LENGTH, fine, x) - s
-        data.qpos[address + 1] = np.interp(s / LENGTH, fine, y)
+        data.qpos[address] = np.interp(s / LENGTH, share, x) - s
+        data.qpos[address + 1] = np.interp(s / LENGTH, share, y)
     mujoco.mj_forward(model, data)
 
 
@@ -99,18 +90,6 @@ def check(data):
     bad = [data.warning[w].number for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)]
     if any(bad):
         raise RuntimeError("diverges")
-
-
-def polyline_touch(places, position):
-    """Height of the cylinder's axis at which it first touches the chain of capsules."""
-    heights = []
-    for a, b in zip(places[:-1], places[1:]):
-        t = np.linspace(0.0, 1.0, 401)
-        x, y = a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
-        near = np.abs(x - position) < PROBE
-        if near.any():
-            heights.append(np.min(y[near] - np.sqrt(PROBE**2 - (x[near] - position)**2)))
-    return min(heights)
 
 
 def contact_force(model, data):
@@ -131,7 +110,7 @@ def push(edges=40, share=0.9, hold=0.012, rate=2500.0, defaults=False, position=
     buckle(model, data, points, spacing, beyond)
     damp(model, rate)
     mujoco.mj_step(model, data, nstep=round(hold / step))
-    level = polyline_touch(data.flexvert_xpos, position)
+    level = ref.chain_touch(data.flexvert_xpos, position)
     at = 0.0
     forces = []
     for travel in travels:
@@ -143,7 +122,7 @@ def push(edges=40, share=0.9, hold=0.012, rate=2500.0, defaults=False, position=
         mujoco.mj_step(model, data, nstep=round(hold / step))
         forces.append(float(contact_force(model, data)))
     check(data)
-    return {"force_N": forces, "step_s": step, "first_touch_m": float(level)}
+    return {"force_N": forces, "step_s": step, "first_touch_m": level}
 
 
 def impact(edges=40, share=0.9, damping=0.0, defaults=False, until=0.3):
@@ -160,7 +139,7 @@ def impact(edges=40, share=0.9, damping=0.0, defaults=False, until=0.3):
     mujoco.mj_step(model, data, nstep=round(0.012 / step))
     damp(model, 0.0)
     data.qvel[:] = 0.0
-    data.qpos[slide] = polyline_touch(data.flexvert_xpos, 0.5 * SPAN) - 1e-4 + 0.1
+    data.qpos[slide] = ref.chain_touch(data.flexvert_xpos, 0.5 * SPAN) - 1e-4 + 0.1
     data.qvel[slide] = SPEED
     window = max(1, round(1e-4 / step))
     speeds = [SPEED]

@@ -8,6 +8,7 @@ import sys
 import time
 
 import numpy as np
+from scipy.optimize import least_squares
 
 SHARES = (0.9, 0.95, 0.98)  # of the critical twist, at which the lowest frequency is asked
 
@@ -26,23 +27,21 @@ def peak(speeds, interval, mass):
 
 
 def frequency(values, interval):
-    """Frequency of a free vibration [Hz]: a sine with its phase, its decay and a mean by least squares, begun from the largest of the spectrum."""
+    """Frequency of a free vibration [Hz]: a sine that decays, with a mean, by least squares from the largest of the spectrum on."""
     values = np.asarray(values) - np.mean(values)
     time_s = interval * np.arange(len(values))
-    padded = np.abs(np.fft.rfft(values * np.hanning(len(values)), 16 * len(values)))
-    start = np.argmax(padded) / (16 * len(values) * interval)
+    size = 16 * len(values)
+    spectrum = np.abs(np.fft.rfft(values * np.hanning(len(values)), size))
+    start = np.argmax(spectrum) / (size * interval)
+    scale = 1.0 / time_s[-1]
 
-    def misfit(f):
-        columns = np.column_stack([np.cos(2 * np.pi * f * time_s), np.sin(2 * np.pi * f * time_s), time_s * np.cos(2 * np.pi * f * time_s),
-                                   time_s * np.sin(2 * np.pi * f * time_s), np.ones_like(time_s)])
-        return np.linalg.norm(values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0])
+    def residual(p):
+        wave = np.exp(-p[1] * scale * time_s)
+        angle = 2 * np.pi * (start + p[0] * scale) * time_s
+        columns = np.column_stack([wave * np.cos(angle), wave * np.sin(angle), np.ones_like(time_s)])
+        return (values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]) / np.max(np.abs(values))
 
-    width = 1 / (len(values) * interval)
-    for _ in range(60):
-        candidates = start + width * np.array([-0.5, 0.0, 0.5])
-        start = candidates[np.argmin([misfit(f) for f in candidates])]
-        width *= 0.7
-    return float(start)
+    return float(start + scale * least_squares(residual, [0.0, 0.0], xtol=1e-12, ftol=1e-12).x[0])
 
 
 def main(functions):

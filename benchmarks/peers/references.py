@@ -24,6 +24,28 @@ DAMPING = 1e-5                                       # Kelvin-Voigt time of the 
 TRAVELS = tuple(2e-4 * k for k in range(1, 21))      # of the pusher [m]
 
 
+def buckled(points=20001):
+    """Shares of the length, places [m] and angles of the wire between its clamps, as the first mode of a shallow one has them."""
+    share = np.linspace(0.0, 1.0, points)
+    inner = np.sin(2 * np.pi * (np.arange(2000) + 0.5) / 2000)
+    amplitude = brentq(lambda a: np.mean(np.cos(a * inner)) - SPAN / LENGTH, 0.1, 2.0)
+    angle = amplitude * np.sin(2 * np.pi * share)
+    x, y = (LENGTH * np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1])) / (points - 1))) for f in (np.cos(angle), np.sin(angle)))
+    return share, x, y, angle
+
+
+def chain_touch(places, position):
+    """Height of the pusher's axis at a position along the chord where it first touches a chain of straight elements; a place a row."""
+    t = np.linspace(0.0, 1.0, 401)
+    heights = []
+    for a, b in zip(places[:-1], places[1:]):
+        x, y = a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
+        near = np.abs(x - position) < PROBE
+        if near.any():
+            heights.append(np.min(y[near] - np.sqrt(PROBE**2 - (x[near] - position)**2)))
+    return float(min(heights))
+
+
 class Elastica:
     """The loose wire between two clamps, touched by a frictionless cylinder whose axis is at (position, height).
 
@@ -37,17 +59,14 @@ class Elastica:
         self.position, self.radius, self.tolerance = position / LENGTH, radius / LENGTH, tolerance
         self.axial = AXIAL * LENGTH**2 / BENDING
         t = np.linspace(0.0, 1.0, 81)
-        amplitude = brentq(lambda a: np.trapezoid(np.cos(a * np.sin(2 * np.pi * np.linspace(0, 1, 2001))), dx=1 / 2000) - SPAN / LENGTH, 0.1, 2.0)
+        share, x, y, angle = buckled(2001)
         arc = self.position * LENGTH / SPAN
         pieces = []
         for first, size in ((0.0, arc), (arc, 1 - arc)):
-            s = first + size * t
-            fine = np.linspace(0.0, 1.0, 2001)
-            angle = amplitude * np.sin(2 * np.pi * fine)
-            x, y = (np.concatenate(([0.0], np.cumsum(0.5 * (f[1:] + f[:-1])) / 2000)) for f in (np.cos(angle), np.sin(angle)))
-            pieces += [np.interp(s, fine, x), np.interp(s, fine, y), amplitude * np.sin(2 * np.pi * s),
-                       2 * np.pi * amplitude * np.cos(2 * np.pi * s)]
-        height = np.interp(arc, t, pieces[1]) - self.radius
+            at = first + size * t
+            pieces += [np.interp(at, share, x / LENGTH), np.interp(at, share, y / LENGTH), np.interp(at, share, angle),
+                       np.interp(at, share, np.gradient(angle, share))]
+        height = pieces[1][-1] - self.radius
         self.state = (t, np.array(pieces), np.array([arc, -4 * np.pi**2, 0.0, 0.0, height]))
         self._solve(None)
         self.first_touch = self.state[2][4]
