@@ -641,7 +641,8 @@ def trace_speed(stored):
 def peers_made(stored):
     result = stored.json("peers.json")
     programs = ", ".join(f"{name} {p['version'].removeprefix('snare ')} ({p['what']})" for name, p in result["programs"].items())
-    return f"Last measured {result['date'][:10]}, one core of {result['processor']}: {programs}.\n"
+    start = f" A command of snare takes {duration(result['snare_start_s'])} for a motion of a microsecond." if result["snare_start_s"] else ""
+    return f"Last measured {result['date'][:10]}, one core of {result['processor']}: {programs}.{start}\n"
 
 
 def peer_run(run):

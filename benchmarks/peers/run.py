@@ -132,6 +132,10 @@ def main():
         if "reason" in reference:
             sys.exit(f"reference: {reference['reason']}")
         keep(reference)
+    start = next((r for r in rows if r["case"] == "start"), None)
+    if start is None:
+        start = {"program": "snare", "case": "start", "settings": {}, **called(python_of("snare")[0], "snare_wire.py", ["start"], o.limit, o.snare)}
+        keep(start)
     for program, cases in settings.RUNS.items():
         for case, plan in cases.items():
             if o.only and program not in o.only and f"{program}/{case}" not in o.only:
@@ -160,7 +164,7 @@ def main():
             print("cosseratbench", experiment, solver, result.get("metrics", result.get("reason")), flush=True)
     version = subprocess.run([o.snare, "--version"], capture_output=True, text=True).stdout.strip()
     programs = {p: {"version": version if p == "snare" else v["version"], "what": v["what"]} for p, v in settings.PROGRAMS.items()}
-    stored = {"date": max(r["date"] for r in rows if "date" in r), "processor": processor(), "programs": programs,
+    stored = {"date": max(r["date"] for r in rows if "date" in r), "processor": processor(), "programs": programs, "snare_start_s": start.get("processor_s"),
               "reference": {k: v for k, v in reference.items() if k in ("push", "impact", "tip", "frequency", "twist")},
               "cosseratbench": {"version": settings.COSSERAT["version"], "experiments": {
                   e: {s: {k: v for r in rows if (r["program"], r["case"], r["settings"]) == ("cosseratbench", e, {"solver": s})

@@ -35,7 +35,8 @@ RUNS = {
         "push": {"ladder": [{"elements": n, "segments": s, "stiffness": k} for n, s, k in
                             ((40, 8, 1e9), (80, 4, 1e9), (80, 8, 1e10), (100, 8, 1e10), (120, 8, 1e10))],
                  "defaults": {"elements": 40, "segments": 3, "defaults": True}, "order": each("elements", (30, 60, 120), segments=8, stiffness=1e10)},
-        "impact": {"ladder": [{"elements": n, "step": h} for n, h in ((24, 5e-4), (30, 5e-4), (30, 2e-4), (40, 2e-4), (50, 2e-4), (60, 1e-4), (80, 1e-4))],
+        "impact": {"ladder": [{"elements": n, "step": h} for n, h in ((30, 5e-4), (30, 2e-4), (40, 2e-4), (60, 1e-4), (80, 1e-4))]
+                             + [{"elements": n, "step": h, "spectral_radius": 0.3} for n, h in ((20, 1e-3), (24, 5e-4), (30, 5e-4), (40, 2e-4))],
                    "defaults": {"elements": 40, "step": 3e-3, "segments": 3, "modified": False},
                    "order": [{"elements": n, "step": h} for n, h in ((20, 4e-4), (40, 2e-4), (80, 1e-4))]},
         "tip": {"ladder": each("elements", (8, 16, 32)), "defaults": {"elements": 40, "steps": 1}, "order": each("elements", (4, 8, 16))},
