@@ -28,6 +28,8 @@ def peak(speeds, interval, mass):
 
 def frequency(values, interval):
     """Frequency of a free vibration [Hz]: a sine that decays, with a mean, by least squares from the largest of the spectrum on."""
+    if not np.all(np.isfinite(values)) or np.max(np.abs(values)) > 1e3 * abs(values[0]):
+        raise RuntimeError("diverges")
     values = np.asarray(values) - np.mean(values)
     time_s = interval * np.arange(len(values))
     size = 16 * len(values)

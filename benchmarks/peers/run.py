@@ -41,8 +41,8 @@ def called(python, script, arguments, limit, snare):
     """What a script prints as its result, or the reason why it has none."""
     one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     try:
-        run = subprocess.run([python, str(HERE / script), *arguments], capture_output=True, text=True, timeout=limit,
-                             env={**os.environ, **one, "SNARE_COMMAND": str(snare)})
+        run = subprocess.run([python, str(HERE / script), *arguments], capture_output=True, text=True, timeout=limit, cwd=tempfile.gettempdir(),
+                             env={**os.environ, **one, "SNARE_COMMAND": str(snare.resolve())})
     except subprocess.TimeoutExpired:
         return {"reason": f"not done after {limit:.0f} s"}
     for line in run.stdout.splitlines():

@@ -54,20 +54,18 @@ RUNS = {
         "impact": {"ladder": each("elements", (20, 40), damper=50.0), "defaults": {"defaults": True}, "order": []},
         "tip": {"ladder": each("elements", (10, 20, 40)), "defaults": {"elements": 40, "defaults": True}, "order": each("elements", (10, 20, 40))},
         "frequency": {"ladder": each("elements", (10, 20, 40)), "defaults": {"elements": 40, "defaults": True}, "order": each("elements", (10, 20, 40))},
-        "twist": {"ladder": each("elements", (20, 40)), "defaults": None, "order": each("elements", (10, 20, 40))},
+        "twist": {"ladder": each("elements", (20, 40)), "defaults": None, "order": []},
     },
     "dismech-newton": {
         "tip": {"ladder": each("edges", (10, 20, 40)), "defaults": {"edges": 40, "iterations": 10, "exact": False}, "order": each("edges", (10, 20, 40))},
         "frequency": {"ladder": [{"edges": n, "step": h} for n, h in ((10, 2e-4), (20, 2e-4), (20, 5e-4), (40, 2e-4))],
                       "defaults": {"edges": 40, "iterations": 10, "exact": False, "theta": 1.0},
                       "order": [{"edges": n, "step": h} for n, h in ((10, 2e-4), (20, 2e-4), (40, 2e-4))]},
-        "twist": {"ladder": each("edges", (40, 80)), "defaults": {"edges": 40, "iterations": 10, "exact": False, "theta": 1.0}, "order": each("edges", (40, 80, 160))},
+        "twist": {"ladder": each("edges", (40, 80)), "defaults": {"edges": 40, "iterations": 10, "exact": False, "theta": 1.0}, "order": []},
     },
     "Newton": {
-        "tip": {"ladder": [{"segments": 10}, {"segments": 10, "iterations": 400}, {"segments": 20}, {"segments": 10, "step": 1e-2, "iterations": 1000}],
-                "defaults": {"segments": 40, "defaults": True}, "order": each("segments", (5, 10, 20))},
-        "frequency": {"ladder": [{"segments": 10}, {"segments": 10, "iterations": 10}, {"segments": 5}], "defaults": {"segments": 40, "defaults": True},
-                      "order": []},
+        "tip": {"ladder": [{"segments": 10}, {"segments": 10, "iterations": 400}], "defaults": {"segments": 40, "defaults": True}, "order": []},
+        "frequency": {"ladder": [{"segments": 10, "until": 0.1}], "defaults": {"segments": 40, "until": 0.1, "defaults": True}, "order": []},
     },
 }
 
