@@ -646,7 +646,7 @@ def peers_made(stored):
 
 
 def peer_run(run):
-    """Cells of error and time of a run, or the reason why there are none."""
+    """Cells of error and time of a run, or the reason for a missing result."""
     if run is None:
         return ["", ""]
     return [number(run["error"], 1), duration(run["processor_s"])] if "error" in run else [run["reason"], ""]

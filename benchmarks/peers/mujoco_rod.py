@@ -86,7 +86,7 @@ def damp(model, rate):
 
 
 def check(data):
-    """MuJoCo goes on from the initial state where numbers become bad, and counts that as a warning."""
+    """Raises if MuJoCo has reset a diverged state, which it only counts as a warning."""
     bad = [data.warning[w].number for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)]
     if any(bad):
         raise RuntimeError("diverges")
@@ -167,7 +167,7 @@ def frequency(edges=20, share=0.9, until=0.2, defaults=False):
     """Of a small free vibration, begun in the first mode of the continuous wire."""
     step = DEFAULT_STEP if defaults else stable_step(LENGTH / edges, share)
     model, points, spacing, beyond = rod(edges, step, False, defaults=defaults)
-    if not defaults:  # the tip's point stands for half an edge
+    if not defaults:  # the tip's point has the mass of half an edge
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, f"rod_{points - 1}")
         model.body_mass[body] *= 0.5
     data = mujoco.MjData(model)

@@ -24,7 +24,7 @@ try:
 except ImportError:
     pymoca = None
 
-# Reads a package and an array of equations f = CALL from standard input; prints for each the curve, or what was said in its place.
+# Reads a package and an array of equations f = CALL from standard input; prints for each the curve or the error message.
 READER = """
 import json, sys
 from modelica.lang import parse

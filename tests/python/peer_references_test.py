@@ -43,7 +43,7 @@ class References(unittest.TestCase):
         for load in (0.5, 4.0):
             for extensible, inextensible in zip(ref.cantilever_tip(load), ref.inextensible_tip(load)):
                 self.assertAlmostEqual(extensible, inextensible, delta=3e-5)
-        self.assertAlmostEqual(ref.cantilever_tip(1e-3)[1], 1e-3 / 3, delta=1e-9)  # F L^3 / 3 EI, cubic in what it leaves out
+        self.assertAlmostEqual(ref.cantilever_tip(1e-3)[1], 1e-3 / 3, delta=1e-9)  # F L^3 / 3 EI; the error is cubic in the load
 
     def test_known_roots(self):
         self.assertAlmostEqual(ref.ROOT, 1.875104068711961, delta=1e-12)
