@@ -1,9 +1,9 @@
-"""snare as a solver of cosseratbench 0.3.0, and its experiments by snare and by the solvers that it brings.
+"""snare as a solver of cosseratbench 0.3.0, and one experiment with snare or with a solver that cosseratbench includes.
 
 usage: cosserat_snare.py EXPERIMENT '{"solver": "snare" | "mujoco" | "pyelastica", "n_elements": N}'
 
-A wire of snare has two mounts and begins straight, or as it rests between them. So an end of a scenario that is free carries a body of next to no
-weight, and experiments that begin in a shape of their own cannot be expressed; Snare.run says which.
+A wire of snare has two mounts and starts at rest between them. A free end is therefore clamped to a light body, and experiments that start from a
+prescribed shape cannot be expressed; Snare.run gives the reason.
 """
 
 import dataclasses
@@ -40,13 +40,13 @@ class Snare:
         straight = len(rod.centerline) == 2
         sags = rod.start is EndCondition.PINNED and rod.end is EndCondition.PINNED
         if scenario.obstacles or rod.start is EndCondition.FREE:
-            raise NotImplementedError("a wire has two mounts and begins between them, neither draped nor free")
+            raise NotImplementedError("a wire has two mounts and starts at rest between them")
         if rod.motion(End.START) or rod.motion(End.END):
-            raise NotImplementedError("ends that slide under a load and turn; a wire begins without the bow from which these grow")
+            raise NotImplementedError("ends that slide under a load; a wire starts without the initial bow")
         if len(scenario.rods) > 1:
-            raise NotImplementedError("wires begin as they rest by themselves, not above each other with a gap that is given")
+            raise NotImplementedError("wires start at rest, without the prescribed gap between the ropes")
         if not (straight or sags) or not scenario.quasi_static:
-            raise NotImplementedError("a wire begins at rest, not in a shape that is given")
+            raise NotImplementedError("a wire starts at rest, without a prescribed shape")
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder)
             (path / "scenario.toml").write_text(self.scenario_file(scenario, n_elements, n_frames))

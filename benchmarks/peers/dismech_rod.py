@@ -1,13 +1,13 @@
-"""The cases by dismech-newton on the processor: implicit discrete elastic rods, whose places are numbers of single precision.
+"""The cases with dismech-newton on the CPU: implicit discrete elastic rods in single precision.
 
-A clamp holds an edge and stands in the middle of it, where it is of second order.
+Clamps are placed in the middle of the clamped edge, where they are of second order.
 """
 
 import newton
 import numpy as np
 import warp as wp
 
-# The package evaluates annotations `STRUCT | None` where Python is older than 3.14, and Warp's structures have no such operator.
+# The package annotates with `STRUCT | None`, which Python 3.12 evaluates; the structures of Warp have no such operator.
 type(wp.struct(type("Empty", (), {"__annotations__": {}}))).__or__ = lambda self, other: object
 
 from dismech_newton import DiSMechSolver
@@ -20,7 +20,7 @@ wp.config.quiet = True
 
 
 def straight(edges, both_ends=False, shape=None, twist=0.0, **solver):
-    """Solver and two states; the rod along x, twisted evenly, its tip free or clamped."""
+    """Solver and two states of a rod along x with uniform twist and a free or clamped tip."""
     beyond = 0.5
     spacing = LENGTH / (edges - beyond * (1 + both_ends))
     points = np.zeros((edges + 1, 3))

@@ -1,7 +1,7 @@
-"""The cases by PyElastica: a Cosserat rod in explicit steps (position Verlet), damped towards rest where the case is static.
+"""The cases with PyElastica: a Cosserat rod in explicit steps (position Verlet), damped to rest in the static cases.
 
-A clamp holds the first node and the frame of the first element, and stands in the middle of that element, where it is of second order.
-In statics the rotational inertia is enlarged until it does not limit the step; it has no part in the result.
+A clamp fixes the first node and the frame of the first element. It is placed in the middle of that element, where it is of second order.
+Statics use a larger rotational inertia, so that it does not limit the step; it does not affect the equilibrium.
 """
 
 import math

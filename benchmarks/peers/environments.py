@@ -1,4 +1,4 @@
-"""Virtual environments of the programs that are compared, with pinned packages, in one folder."""
+"""Virtual environments with pinned packages for the compared programs."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The cases by EXUDYN: ANCF cable elements of the plane, and geometrically exact beams where the wire twists."""
+"""The cases with EXUDYN: planar ANCF cable elements, and geometrically exact beams for the twisted wire."""
 
 import math
 

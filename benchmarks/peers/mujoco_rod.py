@@ -1,7 +1,7 @@
-"""The cases by MuJoCo: its discrete elastic rod (flexcomp of one dimension), in explicit steps.
+"""The cases with MuJoCo: its discrete elastic rod (one-dimensional flexcomp), integrated explicitly.
 
-The rod's edges get the stiffness of the material (`edge stiffness`); the integrator `discrete` refuses that, and its inextensible edges are
-soft constraints. A clamp holds both points of an edge and stands in the middle of it, where it is of second order.
+The edges have the axial stiffness of the material (`edge stiffness`), which the integrator `discrete` does not support; its inextensible edges
+are soft constraints. Clamps are placed in the middle of the clamped edge, where they are of second order.
 """
 
 import math

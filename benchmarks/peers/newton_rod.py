@@ -1,6 +1,6 @@
-"""The cases by Newton on the processor: a rod of capsules with joints, by VBD, in numbers of single precision.
+"""The cases with Newton on the CPU: a rod of capsules and joints, solved by VBD in single precision.
 
-finalize() gives every thin capsule at least 1e-6 kg m2; mass and inertia of the material are set after it.
+finalize() gives every thin capsule at least 1e-6 kg m2; mass and inertia of the material are set afterwards.
 """
 
 import newton
@@ -15,7 +15,7 @@ wp.config.quiet = True
 
 
 class Cantilever:
-    """Segments along x, the first one held with its middle at the clamp, where the chain of hinges is of second order."""
+    """Segments along x. The first one is fixed with its middle at the clamp, where the chain of hinges is of second order."""
 
     def __init__(self, segments, iterations=10, defaults=False, bend_damping=0.0):
         beyond = 1.0 if defaults else 0.5

@@ -1,4 +1,4 @@
-"""What the scripts of all programs have in common: a case in, its values and its processor time out.
+"""Common part of the adapters: runs a case and prints its values and its processor time.
 
 usage: SCRIPT CASE '{"SETTING": VALUE, ...}'
 """

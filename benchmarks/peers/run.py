@@ -38,7 +38,7 @@ def options():
 
 
 def called(python, script, arguments, limit, snare):
-    """What a script prints as its result, or the reason why it has none."""
+    """Result that an adapter prints, or the reason for a missing one."""
     one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     try:
         run = subprocess.run([python, str(HERE / script), *arguments], capture_output=True, text=True, timeout=limit, cwd=tempfile.gettempdir(),

@@ -1,4 +1,4 @@
-"""What is run: programs, cases, and by program and case the settings of which the best is sought, those by default, and a mesh or step halved twice."""
+"""Programs, cases, and for each program and case: a ladder of settings, the defaults, and a mesh or step halved twice."""
 
 CASES = {
     "push": "a cylinder of 6 mm pushes the loose wire at 65 mm, 20 forces to 4 mm; error of the curve over its largest force",
@@ -13,8 +13,8 @@ PROGRAMS = {
     "EXUDYN": {"environment": "rods", "script": "exudyn_cable.py", "version": "1.13.6", "what": "ANCF cable of the plane; for the twist geometrically exact beams"},
     "MuJoCo": {"environment": "rods", "script": "mujoco_rod.py", "version": "4.0.0", "what": "flexcomp of one dimension with edge stiffness, explicit steps"},
     "PyElastica": {"environment": "rods", "script": "elastica_rod.py", "version": "1.0.0", "what": "Cosserat rod, explicit steps"},
-    "dismech-newton": {"environment": "dismech", "script": "dismech_rod.py", "version": "0.1.0.post4", "what": "implicit discrete elastic rods, on the processor"},
-    "Newton": {"environment": "newton", "script": "newton_rod.py", "version": "1.8.0", "what": "rod of capsules by VBD, on the processor"},
+    "dismech-newton": {"environment": "dismech", "script": "dismech_rod.py", "version": "0.1.0.post4", "what": "implicit discrete elastic rods, on the CPU"},
+    "Newton": {"environment": "newton", "script": "newton_rod.py", "version": "1.8.0", "what": "rod of capsules by VBD, on the CPU"},
 }
 
 
@@ -69,7 +69,7 @@ RUNS = {
     },
 }
 
-# Cases of a program without an adapter, and why.
+# Reasons for cases without an adapter.
 CANNOT = {
     ("MuJoCo", "twist"): "flexcomp clamps both ends to one body, so that they cannot turn against each other; a raw flex was not tried",
     ("dismech-newton", "push"): "no adapter: the solver reports no contact force",
@@ -79,6 +79,6 @@ CANNOT = {
     ("Newton", "twist"): "no adapter: the cantilever does not converge",
 }
 
-# Experiments of cosseratbench, run by snare and by the solvers that it brings, at its own resolution and, by snare, at twice that.
+# Experiments of cosseratbench at its own resolution, with snare and with the solvers that it includes.
 COSSERAT = {"version": "0.3.0", "experiments": ("cantilever", "catenary", "pendulum", "capstan", "crossing", "twist", "pile"),
             "solvers": ("snare", "mujoco", "pyelastica"), "limit_s": 100}

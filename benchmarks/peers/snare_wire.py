@@ -1,4 +1,4 @@
-"""The cases by the command snare; its processor time is that of the whole command, with its start, reading and writing."""
+"""The cases with the command snare. Its processor time is that of the whole command, including start, input and output."""
 
 import csv
 import json
