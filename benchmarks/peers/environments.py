@@ -10,7 +10,7 @@ import subprocess
 ENVIRONMENTS = {
     "rods": (["numpy==2.5.5", "scipy==1.18.1", "mujoco==4.0.0", "exudyn==1.13.6", "pyelastica==1.0.0", "numba==0.68.1"], ("3.12", "3.13", "3.11")),
     "newton": (["numpy==2.5.5", "scipy==1.18.1", "newton==1.8.0", "warp-lang==1.19.0"], ("3.12", "3.13", "3.11")),
-    "dismech": (["numpy==2.5.5", "scipy==1.18.1", "dismech-newton==0.1.0.post4", "newton==1.6.1", "warp-lang==1.19.0"], ("3.12", "3.13", "3.11")),
+    "dismech": (["numpy==2.5.5", "scipy==1.18.1", "dismech-newton==0.1.0.post4", "newton==1.6.1", "warp-lang==1.18.0"], ("3.12", "3.13", "3.11")),
     "cosserat": (["numpy==2.5.5", "scipy==1.18.1", "cosseratbench==0.3.0", "mujoco==3.17.0", "pyelastica==1.0.0"], ("3.12", "3.13", "3.11")),
 }
 
