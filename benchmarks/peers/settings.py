@@ -29,7 +29,8 @@ RUNS = {
                    "order": each("elements", (60, 120, 240), formulation="vertices")},
         "tip": {"ladder": [{}] + each("elements", (8, 12, 20)), "defaults": {}, "order": each("elements", (10, 20, 40), formulation="vertices")},
         "frequency": {"ladder": [{}] + each("elements", (10, 20, 30)), "defaults": {}, "order": each("elements", (10, 20, 40))},
-        "twist": {"ladder": [{}] + each("elements", (80, 160)), "defaults": {}, "order": each("elements", (40, 80, 160))},
+        "twist": {"ladder": [{}] + each("elements", (80, 160)) + each("elements", (80, 100), formulation="vertices"), "defaults": {},
+                  "order": each("elements", (40, 80, 160))},
     },
     "EXUDYN": {
         "push": {"ladder": [{"elements": n, "segments": s, "stiffness": k} for n, s, k in

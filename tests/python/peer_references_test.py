@@ -55,6 +55,22 @@ class Evaluation(unittest.TestCase):
     def test_the_critical_twist_of_a_parabola(self):
         self.assertAlmostEqual(peer.critical([(1.01 - s) * (3.0 + s) for s in peer.SHARES]), 1.01, delta=1e-9)
 
+    def test_the_parabola_on_the_exact_squares(self):
+        # Clamped wire under a twisting moment, EI d4w - i M d3w = rho A omega^2 w with w = y + i z: roots of its determinant
+        def determinant(square, share):
+            roots = np.roots([1.0, -1j * share * ref.GREENHILL * ref.LENGTH / ref.BENDING, 0.0, 0.0, -square])
+            rows = np.array([np.ones(4), roots, np.exp(roots), roots * np.exp(roots)])
+            return np.linalg.det(rows) / np.prod([roots[i] - roots[j] for i in range(4) for j in range(i)])
+
+        squares = []
+        for share in peer.SHARES:
+            tried = np.linspace(1.0, 300.0, 3000)
+            values = np.array([determinant(k, share) for k in tried])
+            values = np.real(values / values[0])
+            k = np.argmax(values[:-1] * values[1:] < 0)
+            squares.append(tried[k] - values[k] * (tried[k + 1] - tried[k]) / (values[k + 1] - values[k]))
+        self.assertAlmostEqual(peer.critical(squares), 1.0, delta=2e-4)  # error of the parabola
+
     def test_the_frequency_of_a_sine_with_an_overtone(self):
         time = np.arange(0.0, 0.2, 1e-4)
         values = np.cos(2 * np.pi * 32.0 * time + 0.3) + 0.02 * np.cos(2 * np.pi * 200.0 * time)
