@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Compares snare with other programs for rods, each case against a reference that shares no code with snare.
+"""Compares snare with other rod programs. Each case has a reference that shares no code with snare.
 
 usage: run.py [--snare SNARE] [--only PROGRAM[/CASE] ...] [--limit SECONDS] [--environments FOLDER] [--rows FILE] [--out FILE]
 
-Installs the programs (pinned) into virtual environments in FOLDER, a temporary one by default, runs every setting of settings.py one after
-the other on one core, and keeps finished rows in FILE, from which a later call goes on. Then stores benchmarks/results/peers.json and prints the table.
+Installs pinned versions of the programs into virtual environments in FOLDER, by default below the folder for temporary files, and runs every
+setting of settings.py, one at a time on one core. Finished runs are kept in the rows FILE, so that a later call resumes; delete the file to
+measure again. Then stores the results in benchmarks/results/peers.json and prints the table.
 """
 
 import argparse
@@ -34,7 +35,10 @@ def options():
     parser.add_argument("--environments", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "snare_peers")
     parser.add_argument("--rows", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "snare_peers" / "rows.jsonl")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "benchmarks/results/peers.json")
-    return parser.parse_args()
+    found = parser.parse_args()
+    if not found.snare.is_file():
+        parser.error(f"--snare {found.snare}: no such file; build it by ./run")
+    return found
 
 
 def called(python, script, arguments, limit, snare):
