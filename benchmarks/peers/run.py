@@ -5,7 +5,7 @@ usage: run.py [--snare SNARE] [--only PROGRAM[/CASE] ...] [--limit SECONDS] [--e
 
 Installs pinned versions of the programs into virtual environments in FOLDER, by default below the folder for temporary files, and runs every
 setting of settings.py, one at a time on one core. Finished runs are kept in the rows FILE, so that a later call resumes; delete the file to
-measure again. Then stores the results in benchmarks/results/peers.json and prints the table.
+measure again. Then stores the results in benchmarks/results/peers.json (with --only nowhere but in --out) and prints the table.
 """
 
 import argparse
@@ -34,8 +34,10 @@ def options():
     parser.add_argument("--limit", type=float, default=300.0, help="seconds of the clock that a run may take")
     parser.add_argument("--environments", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "snare_peers")
     parser.add_argument("--rows", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "snare_peers" / "rows.jsonl")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "benchmarks/results/peers.json")
+    parser.add_argument("--out", type=pathlib.Path, help="default: benchmarks/results/peers.json, with --only none")
     found = parser.parse_args()
+    if found.out is None and not found.only:
+        found.out = ROOT / "benchmarks/results/peers.json"
     if not found.snare.is_file():
         parser.error(f"--snare {found.snare}: no such file; build it by ./run")
     return found
@@ -176,7 +178,8 @@ def main():
                   for e in settings.COSSERAT["experiments"]}},
               "cases": {case: {p: summary(rows, p, case) if case in settings.RUNS.get(p, {}) else {"cannot": settings.CANNOT[p, case]}
                                for p in settings.PROGRAMS} for case in settings.CASES}}
-    o.out.write_text(json.dumps(stored, indent=1) + "\n")
+    if o.out:
+        o.out.write_text(json.dumps(stored, indent=1) + "\n")
     for case, programs in stored["cases"].items():
         print(f"\n{case}: {settings.CASES[case]}")
         for program, s in programs.items():
