@@ -638,6 +638,53 @@ def trace_speed(stored):
 
 
 @region
+def peers_made(stored):
+    result = stored.json("peers.json")
+    programs = ", ".join(f"{name} {p['version'].removeprefix('snare ')} ({p['what']})" for name, p in result["programs"].items())
+    start = f" A command of snare takes {duration(result['snare_start_s'])} for a motion of a microsecond." if result["snare_start_s"] else ""
+    return f"Last measured {result['date'][:10]}, one core of {result['processor']}: {programs}.{start}\n"
+
+
+def peer_run(run):
+    """Cells of error and time of a run, or the reason for a missing result."""
+    if run is None:
+        return ["", ""]
+    return [number(run["error"], 1), duration(run["processor_s"])] if "error" in run else [run["reason"], ""]
+
+
+@region
+def peer_cases(stored):
+    text = ""
+    words = {"push": "Static push", "impact": "Impact", "tip": "Large deflection of a cantilever", "frequency": "First frequency of a cantilever",
+             "twist": "Critical twist"}
+    for case, programs in stored.json("peers.json")["cases"].items():
+        rows = []
+        for name, found in programs.items():
+            if "cannot" in found:
+                rows.append([name, found["cannot"], "", "", "", ""])
+                continue
+            best = peer_run(found["best"]) if found["best"] else ["; ".join(found["reasons"]), ""]
+            rows.append([name, *best, *peer_run(found["defaults"]), number(found["order"], 2) if found["order"] else "none"])
+        text += f"**{words[case]}**\n\n" + table(["program", "error", "time", "by default: error", "time", "order"], rows) + "\n"
+    return text.rstrip("\n") + "\n"
+
+
+@region
+def peer_experiments(stored):
+    rows = []
+    for experiment, solvers in stored.json("peers.json")["cosseratbench"]["experiments"].items():
+        for metric in next((s["metrics"] for s in solvers.values() if "metrics" in s), {"": None}):
+            if metric == "settling_residual":
+                continue
+            cells = []
+            for s in solvers.values():
+                value = s.get("metrics", {}).get(metric)
+                cells.append(s.get("reason", "") if value is None else f"{number(value, 2)} in {duration(s['processor_s'])}")
+            rows.append([experiment, f"`{metric}`" if metric else "", *cells])
+    return table(["experiment", "measure", "snare", "MuJoCo 3.17.0", "PyElastica 1.0.0"], rows)
+
+
+@region
 def python_speed(stored):
     result = stored.json("python.json")
     return table(["from Python", "time over that of C++ or of the command"],
