@@ -16,6 +16,7 @@ namespace snare::identification {
 namespace {
 
 constexpr double collinear = 0.95;         // |cos| above which effects are one class
+constexpr double same_direction = 0.9995;  // |cos| above which the refits of two effects end alike
 constexpr double indistinct_bic = 6.0;     // difference of BIC below which the likelihood does not decide (Kass and
                                            // Raftery 1995); 98.6 % of a chi-square of one degree of freedom
 constexpr double separable_chi2 = 10.0;    // z^2 (1 - cos^2) above which a rival of the leader need not be refitted
@@ -263,6 +264,19 @@ void search_starts(const Model& model, const Data& data, const Current& current,
   });
 }
 
+/// Whether an effect that changes the curves in the same way has been refitted and did not come near the best.
+bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vector<Fit>& fits, std::size_t which,
+                      double worst) {
+  const Eigen::VectorXd& direction = candidates[which].score.direction;
+  if (direction.size() == 0) return false;
+  for (std::size_t k = 0; k < which; ++k) {
+    const Candidate& other = candidates[k];
+    if (!other.refitted || other.score.direction.size() == 0 || fits[k].chi2 < worst) continue;
+    if (std::abs(other.score.direction.dot(direction)) > same_direction) return true;
+  }
+  return false;
+}
+
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                             const Demands& demands, std::vector<Candidate>& candidates, const std::string& round,
@@ -283,9 +297,10 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
     const bool by_search = c.searched && c.searched->chi2 < current.fit.chi2 - out_of_class_bic &&
                            c.searched->chi2 < searched_share * least + searched_margin;
     if (!by_score && !by_search) continue;
-    if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     // What cannot come near the best so far is not followed to its own bottom.
     const double rival = best_gain > 0.0 ? current.fit.chi2 - best_gain + out_of_class_bic : 0.0;
+    if (rival > 0.0 && as_one_that_lost(candidates, fits, i, rival)) continue;
+    if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
     fits[i] = refit(model, data, current, c, rival, progress);
     judge(model, data, heldout, current, demands, before, c, fits[i]);
     if (c.refitted && c.plausible) best_gain = std::max(best_gain, current.fit.chi2 - fits[i].chi2);

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int few_steps = 6;
 constexpr double near_section = 0.2;  // of the logarithm of a stiffness: no start of its own
+constexpr double far_beyond = 100.0;  // of chi2
 
 constexpr std::size_t most_a_leg = 10;  // readings that are used
 constexpr double longest_step = 1.5;    // of the logarithm of a stiffness, to first order
@@ -107,11 +108,12 @@ StartSearch::StartSearch(const Model& model, const Data& data, const Fit& curren
                                           as_the_section_has(coarse_, current.fitted())};
   for (std::vector<Setting>& base : bases) {
     if (base.empty() && !beside_.empty()) continue;
-    Beside one{std::move(base), {}, {}};
+    Beside one{std::move(base), 0.0, {}, {}};
     std::vector<const Parameter*> by;
     for (const Setting& s : one.settings) by.push_back(s.parameter);
     const Evaluation here = coarse_.evaluate(one.settings, by);
     if (!here.complete) continue;
+    one.chi2 = data_.residual(here).squaredNorm();
     one.jacobian = data_.jacobian(here);
     one.covariance = (one.jacobian.transpose() * one.jacobian).completeOrthogonalDecomposition().pseudoInverse();
     beside_.push_back(std::move(one));
@@ -163,8 +165,9 @@ std::optional<SearchedStart> StartSearch::stepped(const Beside& beside, const Ef
 std::optional<SearchedStart> StartSearch::best(const Effect& effect, double rival, Progress& progress) const {
   const std::string stage = "where " + effect.name + " may begin";
   std::optional<SearchedStart> found;
-  // For their scores, thresholds were tried at every size with the numbers of the fit.
-  for (std::size_t b = effect.trials != nullptr ? 1 : 0; b < beside_.size(); ++b) {
+  for (std::size_t b = 0; b < beside_.size(); ++b) {
+    // For their scores, thresholds were tried at every size with the numbers of the fit; they do not mend what is far beyond its error.
+    if (effect.trials != nullptr && (b == 0 || beside_[b].chi2 > far_beyond * beside_.front().chi2)) continue;
     for (const std::vector<double>& size : sizes(effect)) {
       if (!progress.go_on(stage)) return found;
       std::optional<SearchedStart> one = stepped(beside_[b], effect, size);

@@ -28,6 +28,7 @@ class StartSearch {
   /// Values of the fitted numbers, with the derivatives of the residual there.
   struct Beside {
     std::vector<Setting> settings;
+    double chi2 = 0.0;  // without an effect
     Eigen::MatrixXd jacobian, covariance;
   };
 
