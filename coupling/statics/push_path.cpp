@@ -38,12 +38,11 @@ bool is_finite(const PushPoint& p) {
   return std::all_of(p.force_by.begin(), p.force_by.end(), finite);
 }
 
-// Whether an equilibrium depends on earlier ones: by friction, slip of a mount, or sliders of a section.
+}  // namespace
+
 bool remembers(const PushProblem& test) {
   return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
 }
-
-}  // namespace
 
 numerics::SolveReport PushPath::ended(numerics::Termination termination, const std::string& message) const {
   numerics::SolveReport report;

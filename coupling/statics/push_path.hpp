@@ -12,6 +12,9 @@
 
 namespace snare::coupling {
 
+/// Whether an equilibrium depends on earlier ones: by friction, slip of a mount, or sliders of a section.
+[[nodiscard]] bool remembers(const PushProblem& test);
+
 /// A push, its travel the parameter of a path of equilibria: what a push in the plane and one in space share.
 ///
 /// Where an equilibrium depends on the steps that led to it (friction, slip, sliders of a section, the choice of a branch), the

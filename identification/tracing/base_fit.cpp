@@ -1,6 +1,7 @@
 #include "identification/tracing/base_fit.hpp"
 
 #include "base/errors.hpp"
+#include "coupling/statics/push_path.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/published_fit.hpp"
 #include "identification/tracing/score.hpp"
@@ -184,6 +185,32 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
   if (!exact && data.placings.empty()) {
     base.report.end(numerics::Termination::step_too_small,
                     "the base model cannot be computed beside its places: contact_position_sigma_mm cannot be weighed");
+  }
+}
+
+void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress) {
+  const std::vector<Series> now = model.apply(base.settings).series;
+  if (std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); })) return;
+  constexpr int most_rounds = 3;
+  constexpr double worthwhile = 1e-3;  // of chi2
+  for (int round = 0; round < most_rounds; ++round) {
+    const double before = base.chi2;
+    const std::vector<Setting> here = base.fitted();
+    const Eigen::MatrixXd covariance = base.covariance;
+    for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
+      for (const double side : {0.5, -0.5, 1.0, -1.0}) {
+        if (!progress.go_on("base model: starts beside it")) return;
+        std::vector<Setting> start = here;
+        for (std::size_t j = 0; j < start.size(); ++j) {
+          Setting& s = start[j];
+          s.coordinate += side * covariance(static_cast<Eigen::Index>(j), k) / std::sqrt(covariance(k, k));
+          s.coordinate = std::clamp(s.coordinate, model.lower(*s.parameter), model.upper(*s.parameter));
+        }
+        Fit other = fit(model, data, start);
+        if (other.report.usable() && other.chi2 < base.chi2) base = std::move(other);
+      }
+    }
+    if (before - base.chi2 < worthwhile) return;
   }
 }
 

@@ -310,9 +310,11 @@ bool Tracer::accept() {
   return !result_.rival_explanation;
 }
 
-// Whether a stiffness of the fit is one that no wire of the declared section has, with all of its interval.
+// Whether a stiffness of the fit is one that no wire of the declared section has, with all of its interval and by more than what is
+// not known of moduli and diameters.
 bool Tracer::beyond_section(const Fit& fit) const {
-  return !beyond_construction(model_, numbers_of(model_, fit)).empty();
+  constexpr double well_beyond = 1.05;
+  return !beyond_construction(model_, numbers_of(model_, fit), well_beyond).empty();
 }
 
 // What leaves less than the usual tolerance is looked for only where a stiffness beyond the section stands in for it, and counts only
@@ -595,6 +597,7 @@ Trace Tracer::run() {
     result_.report = base_.report;
     return finished();
   }
+  leave_kinks(model_, data_, base_, progress_);
   find_rank(model_, data_, base_);
   result_.noise = data_.noise;
   result_.rows = static_cast<std::size_t>(data_.rows());

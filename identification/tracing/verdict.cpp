@@ -26,7 +26,7 @@ double model_tolerance(const Experiment& experiment, const Data& data) {
   return data.noise.source == "declared" ? 0.0 : usual_tolerance * peak_force(data);
 }
 
-std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers) {
+std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers, double factor) {
   constexpr double sure_beyond = 1.5;
   constexpr double rounding = 1e-9;
   const wire::WireSpecification& wire = model.series().front().test.wire;
@@ -39,7 +39,7 @@ std::vector<Finding> beyond_construction(const Model& model, const std::vector<F
     double limit = 0.0;
     if (n.key.ends_with("wire.axial_stiffness_N")) limit = wire.youngs_modulus * area;
     if (n.key.ends_with("wire.bending_stiffness_Nm2")) limit = wire.youngs_modulus * area * square / 16.0;
-    if (limit == 0.0 || !(n.lower.value_or(n.value) > (1.0 + rounding) * limit)) continue;
+    if (limit == 0.0 || !(n.lower.value_or(n.value) > (1.0 + rounding) * factor * limit)) continue;
     Finding f{
         .kind = FindingKind::impossible_stiffness, .key = n.key, .unit = n.unit, .value = n.value, .limit = limit};
     f.sure = n.lower && *n.lower > sure_beyond * limit;

@@ -41,9 +41,11 @@ inline constexpr double usual_tolerance = 0.01;
 /// its readings are, since what they show then is what the file asks for.
 [[nodiscard]] double model_tolerance(const Experiment& experiment, const Data& data);
 
-/// EA and EI whose whole interval is beyond those of a solid round section of the declared diameter and modulus. `sure` beyond
-/// 1.5 times: a diameter 6 % larger and a modulus 10 % higher give EI 1.4 times as large. Nothing where the modulus is not declared.
-[[nodiscard]] std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers);
+/// EA and EI whose whole interval is beyond `factor` times those of a solid round section of the declared diameter and modulus.
+/// `sure` beyond 1.5 times: a diameter 6 % larger and a modulus 10 % higher give EI 1.4 times as large. Nothing where the modulus
+/// is not declared.
+[[nodiscard]] std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers,
+                                                       double factor = 1.0);
 
 /// Share of what `base` leaves beside the noise that `final` still leaves, as mean squares; in [0, 1].
 [[nodiscard]] double share_left(const Remainder& base, const Remainder& final);
