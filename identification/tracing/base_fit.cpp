@@ -190,9 +190,11 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
 
 void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress) {
   const std::vector<Series> now = model.apply(base.settings).series;
-  if (std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); })) return;
+  if (data.published() || std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); }))
+    return;
   constexpr int most_rounds = 3;
-  constexpr double worthwhile = 1e-3;  // of chi2
+  constexpr double worthwhile = 1e-3;   // of chi2
+  constexpr double smooth_share = 0.5;  // of its rise in a smooth valley, below which there may be another minimum
   for (int round = 0; round < most_rounds; ++round) {
     const double before = base.chi2;
     const std::vector<Setting> here = base.fitted();
@@ -206,6 +208,8 @@ void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& prog
           s.coordinate += side * covariance(static_cast<Eigen::Index>(j), k) / std::sqrt(covariance(k, k));
           s.coordinate = std::clamp(s.coordinate, model.lower(*s.parameter), model.upper(*s.parameter));
         }
+        const Evaluation at = model.evaluate(start);
+        if (!at.complete || data.residual(at).squaredNorm() > base.chi2 + smooth_share * side * side) continue;
         Fit other = fit(model, data, start);
         if (other.report.usable() && other.chi2 < base.chi2) base = std::move(other);
       }

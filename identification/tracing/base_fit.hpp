@@ -18,8 +18,9 @@ namespace snare::identification {
 /// with a tolerance, (I.14). Fits again where either is new; the report of `base` says so where that cannot be done.
 void settle_noise(const Model& model, Data& data, Fit& base);
 
-/// Where equilibria depend on earlier ones (friction, slip, yielding), chi2 has kinks, and a fit may end in one: fits again from one
-/// standard error and half of it to either side of every number, along its valley, and takes the least chi2, until that falls by less than 0.001.
+/// Where equilibria depend on earlier ones (friction, slip, yielding), chi2 has kinks, and a fit may end in one. Fits readings again
+/// from half a standard error and a whole one to either side of every number, along its valley, where chi2 rises by less than half
+/// of what it does in a smooth valley; takes the least chi2, until that falls by less than 0.001.
 void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress);
 
 }  // namespace snare::identification
