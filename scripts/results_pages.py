@@ -147,7 +147,7 @@ def accuracy_and_speed(stored):
          ["force from a distilled table", f"{number(distil['DefaultTable/1']['bound_share'], 1)} of the largest force",
           f"{duration(lookup['seconds'])} (full wire {duration(wire['seconds'])})", ""],
          ["capture of a 16 t visitor, one minute of motion", "", duration(60.0 / capture["real_time_factor"]), ""],
-         ["trace of one test", "", f"up to {duration(longest)}", ""]])
+         ["trace, two cores", "", f"up to {duration(longest)}", ""]])
 
 
 def fastest_other(stored, case):
