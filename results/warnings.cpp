@@ -59,7 +59,7 @@ std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
       1e3 * begin, 1e3 * last->travel)};
 }
 
-/// Warns of a stress that no wire bears, of the series where it is largest; the others are named.
+/// Warns of a stress above the strength of every wire, of the series where it is largest; the others are named.
 std::vector<std::string> overload_of(const std::vector<identification::Series>& series,
                                      const std::vector<identification::Prediction>& predictions) {
   std::vector<std::pair<double, std::size_t>> over;  // stress and series

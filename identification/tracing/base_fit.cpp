@@ -201,7 +201,7 @@ void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& prog
     const Eigen::MatrixXd covariance = base.covariance;
     for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
       for (const double side : {0.5, -0.5, 1.0, -1.0}) {
-        if (!progress.go_on("base model: starts beside it")) return;
+        if (!progress.go_on("base model: starts near it")) return;
         std::vector<Setting> start = here;
         for (std::size_t j = 0; j < start.size(); ++j) {
           Setting& s = start[j];

@@ -20,7 +20,7 @@ void settle_noise(const Model& model, Data& data, Fit& base);
 
 /// Where equilibria depend on earlier ones (friction, slip, yielding), chi2 has kinks, and a fit may end in one. Fits readings again
 /// from half a standard error and a whole one to either side of every number, along its valley, where chi2 rises by less than half
-/// of what it does in a smooth valley; takes the least chi2, until that falls by less than 0.001.
+/// of its rise in a smooth valley; takes the least chi2, until that falls by less than 0.001.
 void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress);
 
 }  // namespace snare::identification

@@ -240,7 +240,7 @@ bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// The least chi2 that an effect promises: what the search has reached, or what its score takes away.
+/// The least chi2 that an effect promises: that of its search, or the current one less the square of its score.
 double promised_chi2(const Candidate& c, const Fit& current) {
   const bool scored = c.score.unobservable.empty();
   const double by_score = current.chi2 - (scored ? c.score.z * c.score.z : 0.0);

@@ -310,15 +310,15 @@ bool Tracer::accept() {
   return !result_.rival_explanation;
 }
 
-// Whether a stiffness of the fit is one that no wire of the declared section has, with all of its interval and by more than what is
-// not known of moduli and diameters.
+// Whether a stiffness of the fit exceeds that of the declared section with all of its interval, by more than moduli and diameters are
+// uncertain.
 bool Tracer::beyond_section(const Fit& fit) const {
   constexpr double well_beyond = 1.05;
   return !beyond_construction(model_, numbers_of(model_, fit), well_beyond).empty();
 }
 
-// What leaves less than the usual tolerance is looked for only where a stiffness beyond the section stands in for it, and counts only
-// where it brings that back and leaves noise.                                             theory.md (I.9)
+// Errors below the usual tolerance are looked into only where a stiffness beyond the section may replace an effect. An effect counts
+// only if it brings the stiffness back and leaves noise.                                  theory.md (I.9)
 void Tracer::look_for_effects() {
   const double usual = result_.tolerance;
   const bool stands_in = usual > 0.0 && !experiment_.model_tolerance && !result_.base_tests.within_noise() &&
