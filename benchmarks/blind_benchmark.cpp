@@ -14,6 +14,7 @@
 #include "base/files.hpp"
 #include "identification/tracing/trace.hpp"
 #include "validation/blind_set.hpp"
+#include "validation/trace_checks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -123,9 +124,7 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   if (set.effect == "none") o.right = t.selected.empty() && t.explained;
   const bool outside = set.effect == "damage" || set.effect == "drift";
   if (outside) {
-    // A drift of another shape in time is a drift.
-    const bool drift = set.effect == "drift" && t.selected == std::vector<std::string>{"force_drift"};
-    o.right = drift || (t.selected.empty() && !t.explained);
+    o.right = validation::is_right_outside(set, t);
     const std::string where = set.effect == "damage" ? "wire" : "sensor";
     o.channel = o.right && t.channel == where;
     const std::string member = "outside:" + where;

@@ -1,8 +1,6 @@
 #include "validation/trace_checks.hpp"
 
 #include "identification/effects/catalogue.hpp"
-#include "identification/tracing/trace.hpp"
-#include "validation/blind_set.hpp"
 
 #include <fmt/format.h>
 
@@ -12,15 +10,17 @@
 
 namespace snare::validation {
 
+bool is_right_outside(const BlindSet& set, const identification::Trace& trace) {
+  if (trace.selected.empty()) return !trace.explained;
+  return set.effect == "drift" && trace.selected == std::vector<std::string>{"force_drift"};
+}
+
 namespace {
 
 /// Whether a trace names what is inside, as 1 or 0.
 double right(const BlindSet& set, const identification::Trace& t) {
   if (set.effect == "none") return t.selected.empty() && t.explained ? 1.0 : 0.0;
-  const bool silent = t.selected.empty() && !t.explained;
-  if (set.effect == "damage") return silent ? 1.0 : 0.0;
-  // A drift of another shape in time is a drift.
-  if (set.effect == "drift") return silent || t.selected == std::vector<std::string>{"force_drift"} ? 1.0 : 0.0;
+  if (set.effect == "drift" || set.effect == "damage") return is_right_outside(set, t) ? 1.0 : 0.0;
   if (t.selected.size() != 1) return 0.0;
   const std::vector<std::string>& members = t.selected_classes.front();
   return std::find(members.begin(), members.end(), set.effect) != members.end() ? 1.0 : 0.0;

@@ -307,8 +307,7 @@ bool needs_space(const PushProblem& test) {
 }
 
 PushCurve solve_spatial_push(const PushProblem& test, const PushOptions& options, int coarsening) {
-  const bool remembers = test.wire.yielding || test.wire.strand_friction;
-  if (remembers || test.pusher.compliance > 0.0) {
+  if (test.wire.yielding || test.wire.strand_friction || test.pusher.compliance > 0.0) {
     return refused("a tilted pusher is computed for elastic wires and a rigid machine");
   }
   if (test.mount.kind == wire::MountKind::supports || test.mount.slip_tension) {

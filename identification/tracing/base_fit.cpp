@@ -188,6 +188,22 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
   }
 }
 
+namespace {
+
+/// The numbers of a fit with number k moved by so many standard errors, the others along its valley, within their bounds.
+std::vector<Setting> along_valley(const Model& model, const Fit& fit, Eigen::Index k, double errors) {
+  std::vector<Setting> settings = fit.fitted();
+  const double error = std::sqrt(fit.covariance(k, k));
+  for (std::size_t j = 0; j < settings.size() && error > 0.0; ++j) {
+    Setting& s = settings[j];
+    s.coordinate = std::clamp(s.coordinate + errors * fit.covariance(static_cast<Eigen::Index>(j), k) / error,
+                              model.lower(*s.parameter), model.upper(*s.parameter));
+  }
+  return settings;
+}
+
+}  // namespace
+
 void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress) {
   const std::vector<Series> now = model.apply(base.settings).series;
   if (data.published() || std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); }))
@@ -196,25 +212,18 @@ void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& prog
   constexpr double worthwhile = 1e-3;   // of chi2
   constexpr double smooth_share = 0.5;  // of its rise in a smooth valley, below which there may be another minimum
   for (int round = 0; round < most_rounds; ++round) {
-    const double before = base.chi2;
-    const std::vector<Setting> here = base.fitted();
-    const Eigen::MatrixXd covariance = base.covariance;
-    for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
-      for (const double side : {0.5, -0.5, 1.0, -1.0}) {
+    const Fit from = base;
+    for (Eigen::Index k = 0; k < from.covariance.cols(); ++k) {
+      for (const double errors : {0.5, -0.5, 1.0, -1.0}) {
         if (!progress.go_on("base model: starts near it")) return;
-        std::vector<Setting> start = here;
-        for (std::size_t j = 0; j < start.size(); ++j) {
-          Setting& s = start[j];
-          s.coordinate += side * covariance(static_cast<Eigen::Index>(j), k) / std::sqrt(covariance(k, k));
-          s.coordinate = std::clamp(s.coordinate, model.lower(*s.parameter), model.upper(*s.parameter));
-        }
+        const std::vector<Setting> start = along_valley(model, from, k, errors);
         const Evaluation at = model.evaluate(start);
-        if (!at.complete || data.residual(at).squaredNorm() > base.chi2 + smooth_share * side * side) continue;
+        if (!at.complete || data.residual(at).squaredNorm() > base.chi2 + smooth_share * errors * errors) continue;
         Fit other = fit(model, data, start);
         if (other.report.usable() && other.chi2 < base.chi2) base = std::move(other);
       }
     }
-    if (before - base.chi2 < worthwhile) return;
+    if (from.chi2 - base.chi2 < worthwhile) return;
   }
 }
 

@@ -304,6 +304,17 @@ double left_out_excess(const Model& model, const Data& data, const Fit& fit) {
   return squares.sum - squares.count;
 }
 
+std::vector<Prediction> forces_only(const std::vector<Prediction>& predictions) {
+  std::vector<Prediction> result;
+  for (const Prediction& p : predictions) {
+    result.emplace_back();
+    result.back().force = p.force;
+    result.back().reading = p.reading;
+    result.back().before_touch = p.before_touch;
+  }
+  return result;
+}
+
 Eigen::VectorXd forces_of(const Series& series) {
   const std::vector<double>& f = series.readings->force;
   return Eigen::Map<const Eigen::VectorXd>(f.data(), static_cast<Eigen::Index>(f.size()));

@@ -89,6 +89,9 @@ class HeldOut {
   std::vector<Eigen::VectorXd> measured_;
 };
 
+/// Predictions without their curves, which models that are not the final one do not need.
+[[nodiscard]] std::vector<Prediction> forces_only(const std::vector<Prediction>& predictions);
+
 /// Forces of a series' readings [N].
 [[nodiscard]] Eigen::VectorXd forces_of(const Series& series);
 

@@ -182,16 +182,19 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const C
   candidate.heldout_improves = heldout_before && after && (*after < *heldout_before || *after < 1.1 * sigma);
 }
 
+/// |cos| of the angle between the changes of the curves by two effects; 0 where one of them has no direction.
+double cosine(const Candidate& a, const Candidate& b) {
+  if (a.score.direction.size() == 0 || b.score.direction.size() == 0) return 0.0;
+  return std::abs(a.score.direction.dot(b.score.direction));
+}
+
 /// Classes: the leading effect with all whose refits are within 6 of its BIC, in units of the variance that it leaves
 /// where that is more than the noise's; then the others by their directions, |cos| > 0.95, or as what the base model's
 /// numbers do already.
 void classify(const Fit& current, double inflation, Round& round, const std::vector<Fit>& fits) {
   std::vector<Candidate>& all = round.candidates;
   std::vector<bool> placed(all.size(), false);
-  const auto alike = [&](const Candidate& a, const Candidate& b) {
-    if (a.score.direction.size() == 0 || b.score.direction.size() == 0) return false;
-    return std::abs(a.score.direction.dot(b.score.direction)) > collinear;
-  };
+  const auto alike = [](const Candidate& a, const Candidate& b) { return cosine(a, b) > collinear; };
   const auto absorbed = [](const Candidate& c) { return c.score.absorbed; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (placed[i]) continue;
@@ -267,12 +270,9 @@ void search_starts(const Model& model, const Data& data, const Current& current,
 /// Whether an effect that changes the curves in the same way has been refitted and did not come near the best.
 bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vector<Fit>& fits, std::size_t which,
                       double worst) {
-  const Eigen::VectorXd& direction = candidates[which].score.direction;
-  if (direction.size() == 0) return false;
   for (std::size_t k = 0; k < which; ++k) {
-    const Candidate& other = candidates[k];
-    if (!other.refitted || other.score.direction.size() == 0 || fits[k].chi2 < worst) continue;
-    if (std::abs(other.score.direction.dot(direction)) > same_direction) return true;
+    const bool lost = candidates[k].refitted && fits[k].chi2 >= worst;
+    if (lost && cosine(candidates[k], candidates[which]) > same_direction) return true;
   }
   return false;
 }

@@ -27,46 +27,6 @@ SolverSettings for_search(const SolverSettings& asked) {
   return search;
 }
 
-/// What is traced: the experiment with laws replaced by readings, divided into fitted and held-out series.
-struct Division {
-  explicit Division(const Experiment& experiment);
-
-  bool from_laws = false;
-  std::vector<Series> all;
-  std::vector<bool> is_heldout;  // one a series of `all`
-  std::vector<Series> fitted, heldout;
-};
-
-Division::Division(const Experiment& experiment) : all(experiment.series) {
-  from_laws = replace_laws(all);
-  const std::vector<std::string>& names = experiment.heldout;
-  for (const Series& s : all) is_heldout.push_back(std::find(names.begin(), names.end(), s.name) != names.end());
-  check_readings(experiment.file, all, is_heldout);
-  for (std::size_t k = 0; k < all.size(); ++k) (is_heldout[k] ? heldout : fitted).push_back(all[k]);
-}
-
-Data data_of(const std::vector<Series>& fitted, PublishedScatter scatter) {
-  Data data;
-  for (std::size_t k = 0; k < fitted.size(); ++k) {
-    data.series.push_back(k);
-    data.measured.push_back(forces_of(fitted[k]));
-  }
-  data.noise = declared_noise(fitted, scatter);
-  return data;
-}
-
-/// What is kept of models that are not the final one.
-std::vector<Prediction> forces_only(const std::vector<Prediction>& predictions) {
-  std::vector<Prediction> result;
-  for (const Prediction& p : predictions) {
-    result.emplace_back();
-    result.back().force = p.force;
-    result.back().reading = p.reading;
-    result.back().before_touch = p.before_touch;
-  }
-  return result;
-}
-
 /// A trace under way.
 class Tracer {
  public:

@@ -1,6 +1,7 @@
 #include "identification/tracing/trace_input.hpp"
 
 #include "base/errors.hpp"
+#include "identification/tracing/model_error.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 #include <utility>
 
 namespace snare::identification {
-
-namespace {}  // namespace
 
 bool replace_laws(std::vector<Series>& series) {
   bool any = false;
@@ -60,6 +59,24 @@ void check_readings(const std::filesystem::path& file, const std::vector<Series>
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
+}
+
+Division::Division(const Experiment& experiment) : all(experiment.series) {
+  from_laws = replace_laws(all);
+  const std::vector<std::string>& names = experiment.heldout;
+  for (const Series& s : all) is_heldout.push_back(std::find(names.begin(), names.end(), s.name) != names.end());
+  check_readings(experiment.file, all, is_heldout);
+  for (std::size_t k = 0; k < all.size(); ++k) (is_heldout[k] ? heldout : fitted).push_back(all[k]);
+}
+
+Data data_of(const std::vector<Series>& fitted, PublishedScatter scatter) {
+  Data data;
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    data.series.push_back(k);
+    data.measured.push_back(forces_of(fitted[k]));
+  }
+  data.noise = declared_noise(fitted, scatter);
+  return data;
 }
 
 std::vector<std::string> default_free(const Experiment& experiment) {

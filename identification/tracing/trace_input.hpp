@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identification/fitting/data.hpp"
 #include "identification/fitting/experiment.hpp"
 
 #include <filesystem>
@@ -16,6 +17,20 @@ namespace snare::identification {
 /// follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only readings.
 void check_readings(const std::filesystem::path& file, const std::vector<Series>& series,
                     const std::vector<bool>& heldout);
+
+/// What is traced: the experiment with laws replaced by readings, divided into fitted and held-out series. Refuses what
+/// check_readings() refuses.
+struct Division {
+  explicit Division(const Experiment& experiment);
+
+  bool from_laws = false;
+  std::vector<Series> all;
+  std::vector<bool> is_heldout;  ///< one a series of `all`
+  std::vector<Series> fitted, heldout;
+};
+
+/// The readings of the fitted series with their declared noise.
+[[nodiscard]] Data data_of(const std::vector<Series>& fitted, PublishedScatter scatter);
 
 /// Numbers that are fitted when the experiment names none: the two stiffnesses, on supports that of bending.
 [[nodiscard]] std::vector<std::string> default_free(const Experiment& experiment);

@@ -68,7 +68,7 @@ TEST(SlowTrace, IsSilentWhereNothingIsMissing) {
     EXPECT_TRUE(*final.lower < base.value && base.value < *final.upper) << base.key;
     EXPECT_LT(*final.upper - *final.lower, 4.0 * (*base.upper - *base.lower)) << base.key;
   }
-  // It says what it could have seen.
+  // The scores state the smallest size that these data show.
   for (const Candidate& c : t.rounds.front().candidates) {
     if (c.score.effect->name == "contact_friction") {
       ASSERT_TRUE(c.score.detectable);
@@ -114,7 +114,7 @@ TEST(SlowTrace, CanBeInterrupted) {
   options.progress = [](const std::string& stage) { return stage.find("refit") == std::string::npos; };
   const Trace t = trace(blind("contact_friction", 30.0, 2), options);
   EXPECT_TRUE(t.interrupted);
-  EXPECT_GT(t.base.rmse, 0.0);  // what was finished is there
+  EXPECT_GT(t.base.rmse, 0.0);  // the base model was finished
 }
 
 }  // namespace
