@@ -4,13 +4,15 @@
 # What scripts/setup.sh has unpacked there in place of a package that is not installed.
 list(APPEND CMAKE_PREFIX_PATH "${PROJECT_SOURCE_DIR}/build/debian/usr")
 
-# snare_required_unless_auto(<variable> <option>): how find_package looks for what a part of the build needs.
-function(snare_required_unless_auto variable option)
-  if(${option} STREQUAL "AUTO")
-    set(${variable} QUIET PARENT_SCOPE)
-  else()
-    set(${variable} REQUIRED PARENT_SCOPE)
-  endif()
+# snare_required_unless_auto(<variable> <options>...): how find_package looks for what parts of the build need: REQUIRED where one of
+# their options is ON, QUIET otherwise.
+function(snare_required_unless_auto variable)
+  set(${variable} QUIET PARENT_SCOPE)
+  foreach(option IN LISTS ARGN)
+    if(${option} AND NOT ${option} STREQUAL "AUTO")
+      set(${variable} REQUIRED PARENT_SCOPE)
+    endif()
+  endforeach()
 endfunction()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
