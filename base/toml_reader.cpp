@@ -110,7 +110,9 @@ std::string TomlDocument::suggestion(std::string_view key, const Visit& visit) c
   for (const auto& [node, other] : visits_)  // the right key in the wrong table
     if (nearest.empty() && !other.address.empty() && other.asked.contains(key)) nearest = dotted(other.address, key);
   if (!nearest.empty()) return fmt::format("unknown key; did you mean {}?", nearest);
-  return visit.asked.empty() ? "unknown key" : fmt::format("unknown key; known here: {}", fmt::join(visit.asked, ", "));
+  std::vector<std::string> known(visit.asked.begin(), visit.asked.end());
+  std::erase(known, "");  // asked for by what is said of a whole table
+  return known.empty() ? "unknown key" : fmt::format("unknown key; known here: {}", fmt::join(known, ", "));
 }
 
 void TomlDocument::report_unknown_keys() {
@@ -332,6 +334,11 @@ std::string TomlTable::scope() const {
 void require_schema(const TomlTable& root, std::string_view schema) {
   const Choice<bool> only[] = {{schema, true}};
   static_cast<void>(root.choice("schema", only));
+}
+
+bool TomlTable::holds_table(std::string_view key) const {
+  const Found found = find(key);
+  return found.node != nullptr && found.node->kind == TomlNode::Kind::table;
 }
 
 TomlTable TomlTable::table(std::string_view key) const {

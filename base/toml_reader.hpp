@@ -133,6 +133,8 @@ class TomlTable {
     return index ? std::optional<Value>(choices[*index].value) : std::nullopt;
   }
 
+  /// Whether a table is under the key.
+  [[nodiscard]] bool holds_table(std::string_view key) const;
   /// The table under a key. Where there is none the result is empty: it reports the missing table when
   /// something is required of it.
   [[nodiscard]] TomlTable table(std::string_view key) const;

@@ -210,23 +210,28 @@ void order_welds(Composition& c) {
   welds = std::move(ordered);
 }
 
-/// Ends of wires on what moves.
+/// Ends of wires on what moves, or that give.
 void add_mounts(Composition& c) {
+  bool leave_the_world = false;
   for (std::size_t w = 0; w < c.wires.size(); ++w) {
     const std::pair<wire::End, const MotionCarrier*> ends[] = {{wire::End::left, &c.wires[w].from_carrier},
                                                                {wire::End::right, &c.wires[w].to_carrier}};
     if (c.wires[w].law) continue;
     for (const auto& [end, carrier] : ends) {
-      if (carrier->kind == MotionCarrier::Kind::world) continue;
+      const coupling::MountGive& give = c.wires[w].mounts.give[index_of(end)];
+      const bool moves = carrier->kind != MotionCarrier::Kind::world;
+      if (!moves && !give.gives()) continue;
+      leave_the_world = leave_the_world || moves;
       coupling::MotionMount mount;
       mount.name = c.wires[w].wire.name + (end == wire::End::left ? " left mount" : " right mount");
       mount.wire = c.counted(static_cast<int>(w));
       mount.end = end;
       mount.carrier = *carrier;
+      mount.give = give;
       c.motion.mounts.push_back(mount);
     }
   }
-  if (!c.motion.mounts.empty() && c.damping.mass_rate > 0.0)
+  if (leave_the_world && c.damping.mass_rate > 0.0)
     c.document.root().table("damping").fail(
         "mass_rate_1_s", "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
 }

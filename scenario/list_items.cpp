@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace snare::scenario {
 
@@ -58,15 +59,15 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
     if (table.has(key)) table.fail(key, "the wire is elastic and naturally straight in motion");
   }
-  static constexpr Choice<wire::SpatialEnd::Kind> mounts[] = {{"clamped", wire::SpatialEnd::Kind::clamp},
-                                                              {"pinned", wire::SpatialEnd::Kind::twisting_pin}};
-  const auto kind = table.has("mount") ? table.choice("mount", mounts).value_or(mount) : mount;
+  w.mounts = read_mounts(table, mount);
   w.wire.rod.elements = table.integer_or("elements", 40, 8, 20000);
   w.wire.rod.formulation = read_formulation(table);
   const WireStandIn stand_in = read_wire_stand_in(table, w.specification, damping, beside);
   w.wire.rod.quasi_static = stand_in.quasi_static;
   w.law = stand_in.law;
   w.push = stand_in.push;
+  if (w.law && w.mounts.give_way())
+    table.table("mount").fail("", "a law stands for the wire and for what its mounts give: only \"kind\" is allowed");
   // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
   // without a force: it has no equilibrium that could be followed.
   constexpr double least_share = 1e-3;
@@ -77,7 +78,7 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
         fmt::format("must leave a quasi-static wire a torsional stiffness of at least {:g} of its bending stiffness",
                     least_share));
   w.wire.rod.damping = damping;
-  w.wire.rod.properties.left.kind = w.wire.rod.properties.right.kind = kind;
+  w.mounts.set(w.wire.rod.properties);
   w.wire.strength = read_strength(table, w.specification);
   w.wire.tightness = read_tightness(table);
   return w;
@@ -97,8 +98,7 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   rod.quasi_static = w.wire.rod.quasi_static;
   rod.damping = w.wire.rod.damping;
   rod.strands.time = w.wire.rod.strands.time;
-  rod.properties.left.kind = w.wire.rod.properties.left.kind;
-  rod.properties.right.kind = w.wire.rod.properties.right.kind;
+  w.mounts.set(rod.properties);
   w.wire.rod = rod;
   if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
   if (w.from_carrier != w.to_carrier)
@@ -148,13 +148,16 @@ coupling::MotionWire at_rest(DeclaredWire w, const Eigen::Matrix3Xd* shape) {
       (Matrix3d() << (w.to - w.from) / w.span, w.bulge, (w.to - w.from).cross(w.bulge) / w.span).finished();
   const Eigen::Matrix3Xd rest = shape != nullptr ? *shape : coupling::resting_wire(w.wire.rod);
   w.wire.positions = (rest_frame * rest).colwise() + w.from;
-  for (auto* end : {&w.wire.rod.properties.left, &w.wire.rod.properties.right}) {
-    end->position = rest_frame * end->position + w.from;
-    end->direction = rest_frame * end->direction;
-    end->director = rest_frame * end->director;
+  for (const wire::End which : wire::ends) {
+    wire::SpatialEnd& end = which == wire::End::left ? w.wire.rod.properties.left : w.wire.rod.properties.right;
+    end.position = rest_frame * end.position + w.from;
+    end.direction = rest_frame * end.direction;
+    end.director = rest_frame * end.director;
+    // A mount that gives holds the end as a part of the motion; the wire's own spring was that of the shape at rest.
+    const Eigen::Index vertex = which == wire::End::left ? 0 : w.wire.positions.cols() - 1;
+    if (!end.gives()) w.wire.positions.col(vertex) = end.position;
+    end.translational_stiffness = std::numeric_limits<double>::infinity();
   }
-  w.wire.positions.col(0) = w.wire.rod.properties.left.position;
-  w.wire.positions.rightCols<1>() = w.wire.rod.properties.right.position;
   return w.wire;
 }
 

@@ -3,6 +3,7 @@
 #include "base/toml_reader.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/pressed_start.hpp"
+#include "scenario/mount_reader.hpp"
 #include "scenario/names.hpp"
 #include "scenario/placement.hpp"
 #include "scenario/push_law.hpp"
@@ -24,6 +25,7 @@ namespace snare::scenario {
 struct DeclaredWire {
   wire::WireSpecification specification;
   coupling::MotionWire wire;
+  WireMounts mounts;
   /// Of the ends and of the slack, in the world at the start.
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(), bulge = Eigen::Vector3d::UnitY();
   double span = 0.0;                     ///< [m]

@@ -4,6 +4,8 @@
 #include "multibody/arm/arm_part.hpp"
 #include "wire/end.hpp"
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,13 +46,24 @@ struct MotionWeld {
   int body = 0;  ///< index
 };
 
-/// An end of a wire on a carrier that moves, held where the wire's mount stands at the start; it starts with the carrier's
-/// motion. The mount must be rigid: clamp, twisting pin or pin.
+/// How a mount gives along its axis: a spring that may slip, and a dashpot beside it.                   theory.md (M.37)
+struct MountGive {
+  double stiffness = std::numeric_limits<double>::infinity();   ///< [N/m], > 0; infinite: it does not give
+  double damping = 0.0;                                         ///< [N s/m], >= 0
+  double slip_force = std::numeric_limits<double>::infinity();  ///< of the spring, beyond which it slips [N], > 0
+
+  [[nodiscard]] bool gives() const { return !std::isinf(stiffness); }
+  [[nodiscard]] bool slips() const { return !std::isinf(slip_force); }
+};
+
+/// An end of a wire on a carrier, held where the wire's mount stands at the start; it starts with the carrier's motion. The wire's own end
+/// must be rigid along x: clamp, twisting pin or pin.
 struct MotionMount {
   std::string name = "mount";
   int wire = 0;  ///< index
   wire::End end = wire::End::left;
   MotionCarrier carrier;
+  MountGive give = {};  ///< along the direction of the wire's end, which turns with the carrier
 };
 
 }  // namespace snare::coupling

@@ -129,8 +129,7 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
   }
   for (const MotionMount& m : motion.mounts) {
     const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
-    mounts_.emplace_back(m.name, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)], m.end,
-                         options);
+    mounts_.emplace_back(m, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)], options);
   }
   for (const MotionBushing& b : motion.bushings)
     bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF), frame_of(b.second, bodies, b.X_WG.value_or(b.X_WF)));
@@ -312,6 +311,7 @@ double ConstraintSet::lost(const VectorView& y) const {
 
 void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, MotionSample* sample) const {
   for (const BushingPart& b : bushings_) energy.strain += b.state(y).energy;
+  for (const MountPart& m : mounts_) energy.strain += m.spring_energy(y);
   for (const Arm& a : arms_) {
     const multibody::ArmState state = a.part->state(y);
     multibody::Kinematics kinematics(a.model.tree);
@@ -385,7 +385,10 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
     sum.power += w.force.dot(s.linear) + moment.dot(s.angular);
   };
   for (const WeldPart& w : welds_) add(w, w.wrench(at.y).moment);
-  for (const MountPart& m : mounts_) add(m, -m.moment(at));
+  for (const MountPart& m : mounts_) {
+    add(m, m.wrench(at.y).moment - m.moment(at));
+    sum.lost += m.lost_power(at.y);
+  }
   for (const BushingPart& b : bushings_) {
     const FrameForces::Work work = b.work(at.y);
     add_forces(b, work.wrenches, at, sum);

@@ -106,7 +106,7 @@ struct Motion {
   std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
   std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
-  std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies; the others stand still
+  std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies, and those that give; the others stand still
   std::vector<MotionBushing> bushings;
   std::vector<LawWire> law_wires;  ///< behind the other wires where wires are counted
   std::vector<BodyContact> body_contacts;

@@ -19,7 +19,15 @@ Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& fro
 Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
   const Vector3d from = rod.properties.left.position;
   const Vector3d to = rod.properties.right.position;
-  if (rod.length <= (to - from).norm()) return straight_wire(rod, from, to);
+  const Vector3d along = (to - from).normalized();
+  const double span = (to - from).norm();
+  // A wire that is pulled straight stretches its mounts as well.
+  if (rod.length <= span) {
+    const double left = 1.0 / rod.properties.left.translational_stiffness;
+    const double right = 1.0 / rod.properties.right.translational_stiffness;
+    const double tension = (span - rod.length) / (rod.length / rod.properties.axial_stiffness + left + right);
+    return straight_wire(rod, from + tension * left * along, to - tension * right * along);
+  }
   wire::PlanarRodProperties plane;
   plane.bending_stiffness = rod.properties.bending_stiffness;
   plane.axial_stiffness = rod.properties.axial_stiffness;
@@ -30,12 +38,16 @@ Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod) {
   };
   plane.left.kind = in_plane(rod.properties.left);
   plane.right.kind = in_plane(rod.properties.right);
-  plane.right.position = {(to - from).norm(), 0.0};
+  for (auto [planar, spatial] :
+       {std::pair{&plane.left, &rod.properties.left}, std::pair{&plane.right, &rod.properties.right}}) {
+    planar->rotational_stiffness = spatial->rotational_stiffness;
+    planar->translational_stiffness = spatial->translational_stiffness;
+  }
+  plane.right.position = {span, 0.0};
   const wire::PlanarRod planar(rod.mesh(), plane);
   const wire::Controls controls = rod.controls();
   const wire::LooseWire loose = wire::find_loose_wire(planar, controls, 1);
   if (!loose.report.usable()) throw base::InputError({"", 0, "wire", "", loose.report.message});
-  const Vector3d along = (to - from).normalized();
   Vector3d up = Vector3d::UnitY() - along.y() * along;
   if (up.norm() < 1e-6) up = Vector3d::UnitX() - along.x() * along;
   up.normalize();

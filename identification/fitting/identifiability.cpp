@@ -146,6 +146,25 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
   return result;
 }
 
+void Identifiability::add_direction(std::size_t k, const VectorXd& change, const MatrixXd& jacobian) {
+  constexpr double least_share = 0.1;  // of the largest effect on the readings: what moves less stays as known as it is
+  const VectorXd effect = jacobian.colwise().norm().transpose().cwiseProduct(change).cwiseAbs();
+  NullDirection direction{k, {}, VectorXd::Zero(change.size())};
+  std::vector<bool> held(known.size(), false);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    if (i != k && !(effect[row] > least_share * effect.maxCoeff())) continue;
+    direction.change[row] = change[row];
+    if (i != k) direction.others.push_back(i);
+    known[i] = false;
+  }
+  directions.push_back(std::move(direction));
+  for (const NullDirection& d : directions) held[d.held] = true;
+  VectorXd scale = VectorXd::Ones(jacobian.cols());
+  for (Index i = 0; i < scale.size(); ++i) scale[i] = 1.0 / std::max(jacobian.col(i).norm(), 1e-300);
+  covariance = covariance_beside(jacobian, scale, held);
+}
+
 std::string null_words(const std::vector<NamedChange>& changes) {
   std::vector<std::string> keys, amounts;
   bool relative = true, shifts = true;

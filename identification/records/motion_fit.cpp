@@ -214,6 +214,47 @@ bool stays_along(const MotionModel& model, const MotionData& data, const MotionF
 
 }  // namespace
 
+namespace {
+
+/// Whether chi2 rises on both sides of the answer as the interval of a number promises: the number three standard errors
+/// away, the others where straight lines would fit them anew. A side that ends at a bound, or beyond which nothing moves, counts as one.
+bool rises_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                 const Eigen::VectorXd& direction) {
+  const auto dof = static_cast<double>(std::max<Eigen::Index>(1, data.rows - optimum.jacobian.cols()));
+  const double noise = std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
+  constexpr double change = 3.0;  // of the residual, as the interval promises
+  const double size = change * noise / (optimum.jacobian * direction).norm();
+  for (const double step : {size, -size}) {
+    std::vector<MotionSetting> moved = optimum.settings;
+    bool inside = true;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      MotionSetting& s = moved[k];
+      s.value += step * direction[static_cast<Eigen::Index>(k)] * s.number.scale;
+      inside = inside && s.value >= s.number.lower && s.value <= s.number.upper;
+    }
+    if (!inside) continue;
+    const std::vector<RecordPrediction> there = model.predict(moved, data.records, data.readings);
+    if (!std::ranges::all_of(there, &RecordPrediction::usable)) continue;
+    const double rise = (data.residual(there).squaredNorm() - optimum.chi2) / (noise * noise);
+    if (is_no_rise(rise, change)) return false;
+  }
+  return true;
+}
+
+/// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a number by its square, as on
+/// the height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane has none.
+void test_intervals(const MotionModel& model, const MotionData& data, MotionFit& fit) {
+  const Eigen::Index count = fit.rank.covariance.rows();
+  for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
+    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(fit.rank.covariance(k, k) > 0.0)) continue;
+    const Eigen::VectorXd direction = fit.rank.covariance.col(k) / fit.rank.covariance(k, k);
+    if (rises_along(model, data, fit, direction)) continue;
+    fit.rank.add_direction(static_cast<std::size_t>(k), direction, fit.jacobian);
+  }
+}
+
+}  // namespace
+
 void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit) {
   const auto numbers = static_cast<Eigen::Index>(fit.settings.size());
   if (numbers == 0 || !fit.report.usable() || fit.jacobian.cols() != numbers || model.stopped()) return;
@@ -224,6 +265,7 @@ void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit)
   fit.rank = identifiability_of(fit.jacobian, wide - fit.jacobian, [&](const Eigen::VectorXd& direction) {
     return stays_along(model, data, fit, direction);
   });
+  test_intervals(model, data, fit);
   if (fit.rank.directions.empty() || fit.covariance.cols() != numbers) return;
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < numbers; ++k)

@@ -116,7 +116,8 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
   }
 }
 
-void expect_mount_jacobian(wire::Formulation formulation) {
+/// strain: of the spring of a mount that gives [m].
+void expect_mount_jacobian(wire::Formulation formulation, const MountGive& give = {}, double strain = 0.0) {
   for (const wire::End end : wire::ends) {
     for (const bool driven : {false, true}) {
       const MotionOptions options;
@@ -127,8 +128,8 @@ void expect_mount_jacobian(wire::Formulation formulation) {
       frame.driven = driven;
       BodyPart body(frame, Vector3d::Zero(), options);
       multibody::Pose X_BM;
-      X_BM.p = end == wire::End::left ? Vector3d::Zero() : Vector3d(0.2, 0.0, 0.0);
-      MountPart mount("mount", {body, X_BM}, rod, end, options);
+      X_BM.p = end == wire::End::left ? Vector3d(-strain, 0.0, 0.0) : Vector3d(0.2 - strain, 0.0, 0.0);
+      MountPart mount({"mount", 0, end, {MotionCarrier::Kind::body, 0, 0}, give}, {body, X_BM}, rod, options);
       numerics::DaeSystem system({&rod, &body, &mount});
       std::mt19937 random(3);
       std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -143,7 +144,7 @@ void expect_mount_jacobian(wire::Formulation formulation) {
       rod.place(positions, velocities, y);
       y.segment<3>(body.velocity()) << 0.1, -0.2, 0.3;
       if (!driven) y.segment<3>(body.spin()) << 0.4, -0.3, 0.5;
-      y.segment<3>(mount.multipliers()) << 0.3, -0.5, 0.2;
+      y.segment(mount.multipliers(), mount.constraints()) = Vector3d(0.3, -0.5, 0.2).head(mount.constraints());
       for (double& v : rate) v = 0.1 * unit(random);
       expect_jacobian(system, y, rate, {body.quaternion()}, 1e-7);
     }
@@ -155,6 +156,15 @@ TEST(MotionLink, MountJacobianMatchesDifferences) {
 }
 TEST(MotionLink, MountJacobianOfHigherOrderMatchesDifferences) {
   expect_mount_jacobian(wire::Formulation::higher_order);
+}
+
+TEST(MotionLink, JacobianOfAMountThatGivesMatchesDifferences) {
+  MountGive give{40.0, 3.0};
+  expect_mount_jacobian(wire::Formulation::vertices, give);
+  expect_mount_jacobian(wire::Formulation::higher_order, give);
+  give.slip_force = 0.1;  // at a strain of 2.5 mm
+  expect_mount_jacobian(wire::Formulation::vertices, give, 0.01);
+  expect_mount_jacobian(wire::Formulation::vertices, give, -0.01);
 }
 
 TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
