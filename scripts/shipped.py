@@ -252,7 +252,7 @@ def map_of(folder, title):
     page = (folder / "report.html").read_text(encoding="utf-8")
     for found in re.findall(r"<svg\b.*?</svg>", page, re.S):
         if f">{title}</text>" in found:
-            return found.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1).replace("currentColor", "#333333") + "\n"
+            return found.replace("currentColor", "#333333") + "\n"
     raise SystemExit(f"{folder}/report.html: no map is called {title}")
 
 

@@ -98,7 +98,7 @@ void ConstraintSet::check(const Motion& motion, Complaints& c) {
     c.require(end.kind != wire::SpatialEnd::Kind::free && std::isinf(end.translational_stiffness), m.name + ".wire",
               m.wire, "must have a rigid mount there");
     c.require(!motion.wires[at_index(m.wire)].rod.strands.act(), m.name + ".wire", m.wire,
-              "must not be of strands that slide: their moment on a moving mount is not computed");
+              "must not be of strands that slide: their moment on a mount that moves or gives is not computed");
     const std::size_t k = 2 * at_index(m.wire) + index_of(m.end);
     c.require(!taken[k], m.name + ".wire", m.wire, "must not be held twice at one end");
     taken[k] = true;
@@ -184,8 +184,7 @@ void ConstraintSet::place(VectorXd& y) {
     y.segment<3>(held_[k]->velocity()) = s.linear;
     y.segment<3>(held_[k]->spin()) = s.X_WF.R.transpose() * s.angular;
   }
-  for (const MountPart& m : mounts_)
-    y.segment<3>(m.rod().velocity_of(m.rod().model().vertex_at(m.end()))) = m.carrier().state(y).linear;
+  for (const MountPart& m : mounts_) m.place(y);
   for (const CarriedWire& w : carried_wires(y)) {
     for (int i = 0; i < w.rod->vertices(); ++i) y.segment<3>(w.rod->velocity_of(i)) = w.velocity(i, y);
   }

@@ -60,7 +60,7 @@ void MountPart::declare(numerics::DaeLayout& layout) {
 MountPart::Hold MountPart::hold(const VectorView& y) const {
   const MovingFrame::State s = carrier().state(y);
   Hold h;
-  h.r = y.segment<3>(place()) - s.X_WF.p;
+  h.r = y.segment<3>(position()) - s.X_WF.p;
   h.w = y.segment<3>(speed()) - s.linear;
   h.omega = s.angular;
   h.along = s.X_WF.R.col(0);
@@ -76,6 +76,15 @@ MountPart::Hold MountPart::hold(const VectorView& y) const {
   h.spring = -give_.stiffness * h.strain - give_.damping * h.rate;
   h.force = h.axes * y.segment<2>(force()) + h.spring * h.along;
   return h;
+}
+
+void MountPart::place(VectorXd& y) const {
+  const Hold h = hold(y);
+  if (give_.gives()) {
+    y.segment<3>(speed()) -= h.axes * (h.axes.transpose() * h.w);
+  } else {
+    y.segment<3>(speed()) = carrier().state(y).linear;
+  }
 }
 
 // z' = (k |u - z| - F)/(k tau) beyond F, towards the strain.
@@ -129,9 +138,9 @@ void MountPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
     append_sparsity_of_give(entries);
   } else {
     for (int i = 0; i < 3; ++i) {
-      entries.emplace_back(place() + i, stabiliser() + i);
+      entries.emplace_back(position() + i, stabiliser() + i);
       entries.emplace_back(speed() + i, force() + i);
-      entries.emplace_back(force() + i, place() + i);
+      entries.emplace_back(force() + i, position() + i);
       entries.emplace_back(stabiliser() + i, speed() + i);
     }
   }
@@ -158,25 +167,25 @@ void MountPart::append_sparsity_of_give(std::vector<std::pair<int, int>>& entrie
   for (const int column : carrier().velocities()) columns.push_back(column);
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < constraints(); ++i) {
-      entries.emplace_back(place() + k, stabiliser() + i);
+      entries.emplace_back(position() + k, stabiliser() + i);
       entries.emplace_back(speed() + k, force() + i);
-      entries.emplace_back(force() + i, place() + k);
-      entries.emplace_back(stabiliser() + i, place() + k);
+      entries.emplace_back(force() + i, position() + k);
+      entries.emplace_back(stabiliser() + i, position() + k);
       entries.emplace_back(stabiliser() + i, speed() + k);
     }
     for (int j = 0; j < 3; ++j) {
-      entries.emplace_back(speed() + k, place() + j);
+      entries.emplace_back(speed() + k, position() + j);
       entries.emplace_back(speed() + k, speed() + j);
     }
     for (const int column : columns) {
       entries.emplace_back(speed() + k, column);
-      entries.emplace_back(place() + k, column);
+      entries.emplace_back(position() + k, column);
     }
   }
   if (slip_ < 0) return;
   entries.emplace_back(slip_, slip_);
   for (int k = 0; k < 3; ++k) {
-    entries.emplace_back(slip_, place() + k);
+    entries.emplace_back(slip_, position() + k);
     entries.emplace_back(speed() + k, slip_);
   }
   for (const int column : carrier().coordinates()) entries.emplace_back(slip_, column);
@@ -187,7 +196,7 @@ void MountPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
   const int n = constraints();
   // The end: m v' + ... - f = 0, x' - v - B mu = 0.
   rows.segment<3>(speed()) -= h.force;
-  rows.segment<3>(place()) -= h.axes * at.y.segment(stabiliser(), n);
+  rows.segment<3>(position()) -= h.axes * at.y.segment(stabiliser(), n);
   // The constraint: B^T r = 0, B^T w = 0; and z' of what slips.
   rows.segment(force(), n) += h.axes.transpose() * h.r;
   rows.segment(stabiliser(), n) += h.axes.transpose() * h.w;
@@ -203,8 +212,8 @@ void MountPart::residual(const DaePoint& at, Eigen::Ref<VectorXd> rows) {
 void MountPart::add_rigid(const numerics::PatternValues& into) const {
   for (int i = 0; i < 3; ++i) {
     into.add(speed() + i, force() + i, -1.0);
-    into.add(place() + i, stabiliser() + i, -1.0);
-    into.add(force() + i, place() + i, 1.0);
+    into.add(position() + i, stabiliser() + i, -1.0);
+    into.add(force() + i, position() + i, 1.0);
     into.add(stabiliser() + i, speed() + i, 1.0);
   }
 }
@@ -231,7 +240,7 @@ Wrench MountPart::add_change(const Hold& h, const VectorView& y, int column, con
   const Vector3d drift = change.turn.cross(Vector3d(h.axes * y.segment<2>(stabiliser())));
   for (int k = 0; k < 3; ++k) {
     into.add(speed() + k, column, -df[k]);
-    into.add(place() + k, column, -drift[k]);
+    into.add(position() + k, column, -drift[k]);
   }
   if (slip_ >= 0) into.add(slip_, column, -slip(h.strain).by_strain * du);
   return {-dr.cross(h.force) - h.r.cross(df), -df};
@@ -244,7 +253,7 @@ std::vector<std::pair<int, Wrench>> MountPart::add_own_changes(const Hold& h, co
   for (int k = 0; k < 3; ++k) {
     Change shift, velocity;
     shift.end_shift[k] = velocity.end_velocity[k] = 1.0;
-    changes.emplace_back(place() + k, add_change(h, y, place() + k, shift, into));
+    changes.emplace_back(position() + k, add_change(h, y, position() + k, shift, into));
     changes.emplace_back(speed() + k, add_change(h, y, speed() + k, velocity, into));
   }
   const auto pushed = [&](int column, const Vector3d& df) {
@@ -253,7 +262,7 @@ std::vector<std::pair<int, Wrench>> MountPart::add_own_changes(const Hold& h, co
   };
   for (int i = 0; i < 2; ++i) {
     pushed(force() + i, h.axes.col(i));
-    for (int k = 0; k < 3; ++k) into.add(place() + k, stabiliser() + i, -h.axes(k, i));
+    for (int k = 0; k < 3; ++k) into.add(position() + k, stabiliser() + i, -h.axes(k, i));
   }
   if (slip_ >= 0) {
     pushed(slip_, give_.stiffness * h.along);

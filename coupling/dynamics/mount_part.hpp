@@ -28,6 +28,9 @@ class MountPart final : public Constraint {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
+  /// Gives the end the mount's velocity, in what it holds. Unknowns y in SI units.
+  void place(Eigen::VectorXd& y) const;
+
   [[nodiscard]] int constraints() const override { return give_.gives() ? 2 : 3; }
   [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
   /// Constraint: what B^T w changes by along the rates of the coordinates while the velocities stay [m/s^2].
@@ -87,7 +90,7 @@ class MountPart final : public Constraint {
   [[nodiscard]] std::vector<int> balances() const;
   void append_curvatures(std::vector<int>& list) const;
   [[nodiscard]] int vertex() const { return rod_.model().vertex_at(end_); }
-  [[nodiscard]] int place() const { return rod_.position_of(vertex()); }
+  [[nodiscard]] int position() const { return rod_.position_of(vertex()); }
   [[nodiscard]] int speed() const { return rod_.velocity_of(vertex()); }
 
   // First of the multipliers each, and of the rows of the same index: place and velocity of the end.

@@ -180,63 +180,76 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
 
 namespace {
 
-/// Whether chi2 stays where it is when the number that moves most along `direction` is moved and held.
-bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
-                 const Eigen::VectorXd& direction) {
-  constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
+/// A step along a direction from the answer: the number that moves most is held there.
+struct Move {
+  Eigen::Index held = 0;
+  std::vector<MotionSetting> settings;
+  bool clipped = false;   ///< the number has a bound before
+  double promised = 0.0;  ///< change of the residual by it, over its noise, as the derivatives have it
+};
+
+/// Standard deviation of a row of the residual.
+double noise_of(const MotionData& data, const MotionFit& optimum) {
   const auto dof = static_cast<double>(std::max<Eigen::Index>(1, data.rows - optimum.jacobian.cols()));
-  const double noise = std::sqrt(std::max(optimum.chi2 / dof, 1e-300));  // of a row of the residual
-  Eigen::Index most = 0;
-  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&most);
-  const auto at = [](const MotionSetting& s, double change) {
-    return std::clamp(s.value + change * s.number.scale, s.number.lower, s.number.upper);
-  };
-  std::vector<MotionSetting> others;
-  MotionFitOptions options;
-  const double promised = (optimum.jacobian * direction).norm() / std::abs(direction[most]) / noise;  // by a scale
-  const double size = std::min(far, doubtful_change / std::max(promised, 1e-300));
-  for (const double step : {size, -size}) {
-    others.clear();
-    options.fixed.clear();
-    for (std::size_t k = 0; k < optimum.settings.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      std::vector<MotionSetting>& list = i == most ? options.fixed : others;
-      list.push_back(optimum.settings[k]);
-      list.back().value = at(optimum.settings[k], step * direction[i] / direction[most]);
-    }
-    if (options.fixed.front().value != optimum.settings[static_cast<std::size_t>(most)].value) break;
+  return std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
+}
+
+/// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side.
+Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::VectorXd& direction, double share) {
+  constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
+  Move move;
+  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&move.held);
+  const double by_scale =
+      (optimum.jacobian * direction).norm() / std::abs(direction[move.held]) / noise_of(data, optimum);
+  const double size = share * std::min(far, doubtful_change / std::max(by_scale, 1e-300));
+  move.promised = by_scale * std::abs(size);
+  move.settings = optimum.settings;
+  for (std::size_t k = 0; k < move.settings.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    MotionSetting& s = move.settings[k];
+    const double to = s.value + size * direction[i] / direction[move.held] * s.number.scale;
+    s.value = std::clamp(to, s.number.lower, s.number.upper);
+    move.clipped = move.clipped || (i == move.held && s.value != to);
   }
+  return move;
+}
+
+/// Whether chi2 stays where it is when the held number is there and the others are fitted anew.
+bool stays(const MotionModel& model, const MotionData& data, const MotionFit& optimum, const Move& move) {
+  MotionFitOptions options;
+  std::vector<MotionSetting> others = move.settings;
+  options.fixed = {others[static_cast<std::size_t>(move.held)]};
+  others.erase(others.begin() + move.held);
   options.max_iterations = 15;
   options.derivatives = FitDerivatives::last;
   const MotionFit moved = fit_motion(model, data, others, options);
-  return moved.report.usable() && is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), promised * size);
+  const double noise = noise_of(data, optimum);
+  return moved.report.usable() && is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), move.promised);
 }
 
-}  // namespace
+/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt.
+bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                 const Eigen::VectorXd& direction) {
+  Move move = move_along(data, optimum, direction, 1.0);
+  if (move.clipped) move = move_along(data, optimum, direction, -1.0);
+  return stays(model, data, optimum, move);
+}
 
-namespace {
-
-/// Whether chi2 rises on both sides of the answer as the interval of a number promises: the number three standard errors
-/// away, the others where straight lines would fit them anew. A side that ends at a bound, or beyond which nothing moves, counts as one.
+/// Whether chi2 rises on both sides of the answer as the interval of a number promises. Where half the way it rises along a straight line as
+/// in a linear model nothing is fitted anew. A side that ends at a bound, or on which nothing can be simulated, counts as a rise.
 bool rises_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
                  const Eigen::VectorXd& direction) {
-  const auto dof = static_cast<double>(std::max<Eigen::Index>(1, data.rows - optimum.jacobian.cols()));
-  const double noise = std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
-  constexpr double change = 3.0;  // of the residual, as the interval promises
-  const double size = change * noise / (optimum.jacobian * direction).norm();
-  for (const double step : {size, -size}) {
-    std::vector<MotionSetting> moved = optimum.settings;
-    bool inside = true;
-    for (std::size_t k = 0; k < moved.size(); ++k) {
-      MotionSetting& s = moved[k];
-      s.value += step * direction[static_cast<Eigen::Index>(k)] * s.number.scale;
-      inside = inside && s.value >= s.number.lower && s.value <= s.number.upper;
-    }
-    if (!inside) continue;
-    const std::vector<RecordPrediction> there = model.predict(moved, data.records, data.readings);
-    if (!std::ranges::all_of(there, &RecordPrediction::usable)) continue;
+  const double noise = noise_of(data, optimum);
+  for (const double side : {1.0, -1.0}) {
+    const Move half = move_along(data, optimum, direction, 0.5 * side);
+    const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
+    if (model.stopped() || half.clipped || !std::ranges::all_of(there, &RecordPrediction::usable)) continue;
     const double rise = (data.residual(there).squaredNorm() - optimum.chi2) / (noise * noise);
-    if (is_no_rise(rise, change)) return false;
+    const double share = rise / (half.promised * half.promised);
+    const bool is_straight = share > 0.5 && share < 2.0;
+    if (is_straight) continue;
+    const Move whole = move_along(data, optimum, direction, side);
+    if (!whole.clipped && stays(model, data, optimum, whole)) return false;
   }
   return true;
 }

@@ -45,6 +45,11 @@ def answer(kind, *settings):
     return run.stderr if run.returncode == 2 else ""
 
 
+def table_form(schema):
+    """Of what may be a name or a table: the table."""
+    return next((form for form in schema.get("anyOf", []) if "properties" in form), schema)
+
+
 def tables_of(schema, address=""):
     """Every table of a schema with its address in the reader's words."""
     yield address, schema
@@ -54,6 +59,7 @@ def tables_of(schema, address=""):
             if address:
                 continue  # of a series: the same tables
         here = f"{address}.{key}" if address else key
+        one = table_form(one)
         if one.get("type") == "object":
             if "properties" in one:
                 yield from tables_of(one, here)
@@ -149,8 +155,8 @@ def elements_of(document, schema, root, address=""):
         inner = resolve(schema.get("properties", {}).get(key, schema["additionalProperties"]), root) if schema["additionalProperties"] else \
             resolve(schema["properties"][key], root)
         here = f"{address}.{key}" if address else key
-        if isinstance(value, dict) and "anyOf" not in inner:
-            yield from elements_of(value, inner, root, here)
+        if isinstance(value, dict):
+            yield from elements_of(value, table_form(inner), root, here)
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             for k, element in enumerate(value):
                 yield from elements_of(element, inner["items"], root, f"{here}[{element.get('name', k + 1)}]")
