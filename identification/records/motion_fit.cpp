@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace snare::identification {
 
@@ -96,45 +97,71 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
 
 }  // namespace
 
+namespace {
+
+/// What a number's steps down and up lead to.
+struct Beside {
+  double down = 0.0, up = 0.0;   // 0: no step to that side
+  Eigen::VectorXd below, above;  // signals there; empty: none
+};
+
+/// Signals beside `settings` for the numbers of which a step is asked; a step that nothing can be simulated at has none.
+void take_steps(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
+                const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+                std::vector<Beside>& beside) {
+  std::vector<std::vector<MotionSetting>> points;
+  std::vector<std::optional<std::size_t>> only;
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    for (const double move : {-beside[k].down, beside[k].up}) {
+      if (move == 0.0) continue;
+      points.push_back(together(settings, fixed));
+      points.back()[k].value += move;
+      only.push_back(settings[k].number.record);
+    }
+  }
+  const auto predictions = model.predict_many(points, data.records, data.readings, &base, only);
+  std::size_t next = 0;
+  for (Beside& b : beside) {
+    if (b.down > 0.0) b.below = data.signal(predictions[next++]);
+    if (b.up > 0.0) b.above = data.signal(predictions[next++]);
+    if (b.below.size() == 0) b.down = 0.0;
+    if (b.above.size() == 0) b.up = 0.0;
+  }
+}
+
+}  // namespace
+
 Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
                                    const std::vector<MotionSetting>& settings,
                                    const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
                                    Differences differences, double widen) {
-  std::vector<std::vector<MotionSetting>> points;
-  std::vector<std::optional<std::size_t>> only;
-  std::vector<std::pair<double, double>> steps;  // down, up
-  for (std::size_t k = 0; k < settings.size(); ++k) {
-    const MotionNumber& n = settings[k].number;
+  std::vector<Beside> beside(settings.size());
+  const auto step_down = [&](std::size_t k) {
     const double step = widen * step_of(settings[k], differences);
-    const double up = settings[k].value + step <= n.upper ? step : 0.0;
-    const bool both = differences == Differences::central || up == 0.0;
-    const double down = both && settings[k].value - step >= n.lower ? step : 0.0;
-    steps.emplace_back(down, up);
-    for (const double move : {-down, up}) {
-      if (move == 0.0) continue;
-      points.push_back(together(settings, fixed));
-      points.back()[k].value += move;
-      only.push_back(n.record);
-    }
+    return settings[k].value - step >= settings[k].number.lower ? step : 0.0;
+  };
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    const double step = widen * step_of(settings[k], differences);
+    if (settings[k].value + step <= settings[k].number.upper) beside[k].up = step;
+    if (differences == Differences::central || beside[k].up == 0.0) beside[k].down = step_down(k);
   }
-  const auto predictions = model.predict_many(points, data.records, data.readings, &base, only);
+  take_steps(model, data, settings, base, fixed, beside);
+  // Forward of a number nothing may move, as where a body would begin inside a wire.
+  std::vector<Beside> backward(settings.size());
+  bool again = false;
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    if (beside[k].down + beside[k].up > 0.0 || differences == Differences::central) continue;
+    backward[k].down = step_down(k);
+    again = again || backward[k].down > 0.0;
+  }
+  if (again) take_steps(model, data, settings, base, fixed, backward);
   const Eigen::VectorXd here = data.signal(base);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(data.rows, static_cast<Eigen::Index>(settings.size()));
-  std::size_t next = 0;
   for (std::size_t k = 0; k < settings.size(); ++k) {
-    auto [down, up] = steps[k];
-    Eigen::VectorXd below = down > 0.0 ? data.signal(predictions[next++]) : here;
-    Eigen::VectorXd above = up > 0.0 ? data.signal(predictions[next++]) : here;
-    if (below.size() == 0) {  // no motion on that side, or no such number
-      below = here;
-      down = 0.0;
-    }
-    if (above.size() == 0) {
-      above = here;
-      up = 0.0;
-    }
-    if (down + up == 0.0) continue;
-    columns.col(static_cast<Eigen::Index>(k)) = (above - below) * (settings[k].number.scale / (down + up));
+    const Beside& b = beside[k].down + beside[k].up > 0.0 ? beside[k] : backward[k];
+    if (b.down + b.up == 0.0) continue;
+    const Eigen::VectorXd change = (b.up > 0.0 ? b.above : here) - (b.down > 0.0 ? b.below : here);
+    columns.col(static_cast<Eigen::Index>(k)) = change * (settings[k].number.scale / (b.down + b.up));
   }
   return columns;
 }
@@ -214,8 +241,9 @@ Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::V
   return move;
 }
 
-/// Whether chi2 stays where it is when the held number is there and the others are fitted anew.
-bool stays(const MotionModel& model, const MotionData& data, const MotionFit& optimum, const Move& move) {
+/// Whether chi2 stays where it is when the held number is there and the others are fitted anew; none where nothing can be simulated.
+std::optional<bool> stays(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                          const Move& move) {
   MotionFitOptions options;
   std::vector<MotionSetting> others = move.settings;
   options.fixed = {others[static_cast<std::size_t>(move.held)]};
@@ -223,33 +251,39 @@ bool stays(const MotionModel& model, const MotionData& data, const MotionFit& op
   options.max_iterations = 15;
   options.derivatives = FitDerivatives::last;
   const MotionFit moved = fit_motion(model, data, others, options);
+  if (!std::ranges::all_of(moved.predictions, &RecordPrediction::usable)) return std::nullopt;
   const double noise = noise_of(data, optimum);
-  return moved.report.usable() && is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), move.promised);
+  return is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), move.promised);
 }
 
-/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt.
+/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or on the other where the first has a
+/// bound or cannot be simulated.
 bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
                  const Eigen::VectorXd& direction) {
-  Move move = move_along(data, optimum, direction, 1.0);
-  if (move.clipped) move = move_along(data, optimum, direction, -1.0);
-  return stays(model, data, optimum, move);
+  for (const double side : {1.0, -1.0}) {
+    const Move move = move_along(data, optimum, direction, side);
+    if (move.clipped) continue;
+    if (const std::optional<bool> answer = stays(model, data, optimum, move)) return *answer;
+  }
+  return false;
 }
 
 /// Whether chi2 rises on both sides of the answer as the interval of a number promises. Where half the way it rises along a straight line as
-/// in a linear model nothing is fitted anew. A side that ends at a bound, or on which nothing can be simulated, counts as a rise.
+/// in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives miss by a little rises, too. A side that ends at a bound, or on which nothing can be simulated, counts as a rise.
 bool rises_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
                  const Eigen::VectorXd& direction) {
   const double noise = noise_of(data, optimum);
+  const Eigen::VectorXd effect = optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
+  const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
   for (const double side : {1.0, -1.0}) {
     const Move half = move_along(data, optimum, direction, 0.5 * side);
     const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
     if (model.stopped() || half.clipped || !std::ranges::all_of(there, &RecordPrediction::usable)) continue;
     const double rise = (data.residual(there).squaredNorm() - optimum.chi2) / (noise * noise);
     const double share = rise / (half.promised * half.promised);
-    const bool is_straight = share > 0.5 && share < 2.0;
-    if (is_straight) continue;
+    if (!go_together && share > 0.5 && share < 2.0) continue;
     const Move whole = move_along(data, optimum, direction, side);
-    if (!whole.clipped && stays(model, data, optimum, whole)) return false;
+    if (!whole.clipped && stays(model, data, optimum, whole).value_or(false)) return false;
   }
   return true;
 }
