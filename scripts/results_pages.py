@@ -574,6 +574,16 @@ def named_effects(trace):
     return ", ".join(f"`{place.split()[0]}`" for place in trace["selected_places"]) + f": {values}"
 
 
+@region
+def air_table_bench(stored):
+    made = stored.json("air_table_bench.json")
+    names = {"declared": "the declared wire and bench", "leading": f"the declared wire on the leading bench (`mount = {{ {made['leading_mount']} }}`)",
+             "published_law": "the published quadratic"}
+    return table(["by", "peak [N]", "impulse [N s]", "contact [ms]"],
+                 [[what, number(made[name]["peak_N"], 3), number(made[name]["impulse_Ns"], 3), number(1e3 * made[name]["duration_s"], 3)]
+                  for name, what in names.items()])
+
+
 def traced_by_file(stored):
     return {**stored.json("traced_records.json"), "air_table": stored.json("traced_air_table.json")}
 

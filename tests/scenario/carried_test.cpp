@@ -115,5 +115,48 @@ TEST(Carried, AnArmAloneMovesAsByItself) {
               1.0, 1e-3);
 }
 
+// Mounts that give are parts of the motion, wherever they stand; what the wire itself gives in its mount is its end cell's.
+TEST(Carried, MountsGiveWhereTheyStandAndWhereTheyMove) {
+  const std::string mount =
+      "wires[wire].mount={kind=\"clamped\",translational_stiffness_N_m=42e3,translational_damping_Ns_m=5.0,"
+      "slip_tension_N=30.0,rotational_stiffness_Nm_rad=0.6,side=\"right\"}";
+  const coupling::Motion still =
+      run_of("air_table.toml", {mount, "bodies[target].position_mm=[40.0,-97.0,0.0]"}).motion;
+  ASSERT_EQ(still.mounts.size(), 1U);
+  EXPECT_EQ(still.mounts[0].end, wire::End::right);
+  EXPECT_EQ(still.mounts[0].carrier.kind, coupling::MotionCarrier::Kind::world);
+  EXPECT_EQ(still.mounts[0].give.stiffness, 42e3);
+  EXPECT_EQ(still.mounts[0].give.damping, 5.0);
+  EXPECT_EQ(still.mounts[0].give.slip_force, 30.0);
+  const wire::SpatialRodProperties& rod = still.wires[0].rod.properties;
+  EXPECT_EQ(rod.right.rotational_stiffness, 0.6);
+  EXPECT_TRUE(std::isinf(rod.left.rotational_stiffness));
+  EXPECT_TRUE(std::isinf(rod.right.translational_stiffness));
+  // The wire begins at rest: its buckled ends push the mount outward.
+  EXPECT_GT(still.wires[0].positions(0, 40), 0.175 + 1e-4);
+  EXPECT_EQ(still.wires[0].positions(0, 0), 0.0);
+
+  const coupling::Motion carried =
+      run_of("jemrms_capture.toml", {"wires[wire].mount={translational_stiffness_N_m=42e3}"}).motion;
+  ASSERT_EQ(carried.mounts.size(), 2U);
+  for (const coupling::MotionMount& m : carried.mounts) EXPECT_EQ(m.give.stiffness, 42e3);
+}
+
+TEST(Carried, WhatAMountCannotGiveIsRefused) {
+  static constexpr test::WrongSetting wrong[] = {
+      {"wires[wire].mount={translational_damping_Ns_m=5.0}", "only beside translational_stiffness_N_m"},
+      {"wires[wire].mount={slip_tension_N=5.0}", "only beside translational_stiffness_N_m"},
+      {"wires[wire].mount={kind=\"pinned\",rotational_stiffness_Nm_rad=1.0}", "only of clamped mounts"},
+      {"wires[wire].mount={side=\"top\"}", "must be \"left\", \"right\" or \"both\""},
+      {"wires[wire].mount={translational_stiffness_N_m=0.0}", "must be > 0 and"},
+      {"wires[wire].mount={stiffness=1.0}", "unknown key"}};
+  test::expect_refused(wrong, [](const char* s) { return run_of("air_table.toml", {s}); });
+  EXPECT_THAT(test::refusal([] {
+                return run_of("air_table.toml", {"wires[wire].model=\"quadratic\"",
+                                                 "wires[wire].mount={translational_stiffness_N_m=42e3}"});
+              }),
+              testing::HasSubstr("a law stands for the wire and for what its mounts give"));
+}
+
 }  // namespace
 }  // namespace snare::scenario
