@@ -42,11 +42,9 @@ using EndKinds = std::array<Kind, 2>;
 
 /// Points of the line on which a wire begins, in the world.
 struct StartPoints {
-  std::string file;                 ///< as the table names it; empty: straight from `from_mm` to `to_mm`
-  Matrix3Xd places;                 ///< (3, n) [m]
-  Matrix3Xd velocities;             ///< (3, n) [m/s]
-  std::vector<double> coordinates;  ///< of the points on the wire, or before its length is known along the line [m]
-  bool is_material = false;         ///< whether the file has given them
+  std::string file;             ///< as the table names it; empty: straight from `from_mm` to `to_mm`
+  coupling::LinePoints points;  ///< coordinates of the unstretched wire, or before its length is known along the line
+  bool is_material = false;     ///< whether the file has given them
 };
 
 bool is_one_free(const EndKinds& ends) {
@@ -81,44 +79,46 @@ std::optional<StartPoints> read_points(const TomlTable& table, const std::string
     return std::nullopt;
   }
   const auto n = static_cast<Eigen::Index>(csv.rows);
-  StartPoints points{name, Matrix3Xd(3, n), Matrix3Xd::Zero(3, n), csv.columns[6], !csv.columns[6].empty()};
+  StartPoints start{name, {Matrix3Xd(3, n), Matrix3Xd::Zero(3, n), csv.columns[6]}, !csv.columns[6].empty()};
   for (int k = 0; k < 3; ++k) {
-    points.places.row(k) = Eigen::Map<const Eigen::RowVectorXd>(csv.columns[base::at(k)].data(), n);
+    start.points.places.row(k) = Eigen::Map<const Eigen::RowVectorXd>(csv.columns[base::at(k)].data(), n);
     const std::vector<double>& v = csv.columns[base::at(3 + k)];
-    if (!v.empty()) points.velocities.row(k) = Eigen::Map<const Eigen::RowVectorXd>(v.data(), n);
+    if (!v.empty()) start.points.velocities.row(k) = Eigen::Map<const Eigen::RowVectorXd>(v.data(), n);
   }
-  return points;
+  return start;
 }
 
 /// Whether neighbouring points differ, and coordinates of the unstretched wire ascend from 0.
-bool are_in_order(const StartPoints& points, const TomlTable& table) {
-  if (points.is_material && points.coordinates.front() != 0.0) {
+bool are_in_order(const StartPoints& start, const TomlTable& table) {
+  const auto& [places, velocities, coordinates] = start.points;
+  if (start.is_material && coordinates.front() != 0.0) {
     table.fail("shape_file", "must have s_mm that begins with 0, at the first end of the wire");
     return false;
   }
-  for (Eigen::Index i = 1; i < points.places.cols(); ++i) {
-    const bool apart = (points.places.col(i) - points.places.col(i - 1)).norm() > 0.0;
+  for (Eigen::Index i = 1; i < places.cols(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (apart && (!points.is_material || points.coordinates[k] > points.coordinates[k - 1])) continue;
-    table.fail(points.file.empty() ? "to_mm" : "shape_file",
-               points.file.empty() ? "must not be where the wire begins"
-                                   : fmt::format("must have points apart from each other{}; nos {} and {} are not",
-                                                 points.is_material ? ", with s_mm that ascends" : "", i, i + 1));
+    const bool apart = (places.col(i) - places.col(i - 1)).norm() > 0.0;
+    if (apart && (!start.is_material || coordinates[k] > coordinates[k - 1])) continue;
+    if (start.file.empty())
+      table.fail("to_mm", "must not be where the wire begins");
+    else
+      table.fail("shape_file", fmt::format("must have points apart from each other{}; nos {} and {} are not",
+                                           start.is_material ? ", with s_mm that ascends" : "", i, i + 1));
     return false;
   }
   return true;
 }
 
 /// Reports a length that is not that of the line; the coordinates become those of the unstretched wire.
-bool fits_length(DeclaredWire& w, const TomlTable& table, StartPoints& points) {
-  const double given = w.specification.length, along = points.coordinates.back();
+bool fits_length(DeclaredWire& w, const TomlTable& table, StartPoints& start) {
+  const double given = w.specification.length, along = start.points.coordinates.back();
   if (!(given > 0.0)) return false;  // which has been reported
-  if (points.is_material) {
+  if (start.is_material) {
     if (!base::exceeds(std::abs(given - along), rounding)) {
       w.specification.length = along;
       return true;
     }
-    table.fail("length_mm", fmt::format("must be {}, the last s_mm of {}, or be left out", in_mm(along), points.file));
+    table.fail("length_mm", fmt::format("must be {}, the last s_mm of {}, or be left out", in_mm(along), start.file));
     return false;
   }
   const double stretch = along / given - 1.0;
@@ -131,13 +131,13 @@ bool fits_length(DeclaredWire& w, const TomlTable& table, StartPoints& points) {
                     100.0 * most_stretch, -100.0 * least_stretch));
     return false;
   }
-  for (double& s : points.coordinates) s *= given / along;
+  for (double& s : start.points.coordinates) s *= given / along;
   return true;
 }
 
 /// Reports stretches and curvatures along the line that the wire cannot have, at the points and between them.
-void check_line(const CentreLine& line, const DeclaredWire& w, const StartPoints& points, const TomlTable& table) {
-  const std::vector<double>& at = points.coordinates;
+void check_line(const CentreLine& line, const DeclaredWire& w, const StartPoints& start, const TomlTable& table) {
+  const std::vector<double>& at = start.points.coordinates;
   const double sharpest = 2.0 / w.specification.diameter;
   for (std::size_t i = 0; i < 2 * at.size() - 1; ++i) {
     const double s = 0.5 * (at[i / 2] + at[(i + 1) / 2]);
@@ -173,18 +173,18 @@ void check_line(const CentreLine& line, const DeclaredWire& w, const StartPoints
 }
 
 /// Reports an end that is not where the file says, and the velocity of one that is held.
-void check_end(wire::End end, const DeclaredWire& w, const StartPoints& points, const PlacedFrame& on,
+void check_end(wire::End end, const DeclaredWire& w, const StartPoints& start, const PlacedFrame& on,
                const TomlTable& table) {
   const bool left = end == wire::End::left;
   const char* const place_key = left ? "from_mm" : "to_mm";
   const CentreLine& line = *w.line;
   const double s = left ? 0.0 : line.length();
   const Vector3d place = on.X_WF.R.transpose() * (line.place(s) - on.X_WF.p);
-  if (!points.file.empty() && table.has(place_key)) {
+  if (!start.file.empty() && table.has(place_key)) {
     const auto given = read_vector(table, place_key, Range::from(-farthest_mm, farthest_mm), mm);
     if (given && base::exceeds((*given - place).norm(), rounding))
-      table.fail(place_key, fmt::format("must be {}, where the line of {} {}, or be left out", in_mm(place),
-                                        points.file, left ? "begins" : "ends"));
+      table.fail(place_key, fmt::format("must be {}, where the line of {} {}, or be left out", in_mm(place), start.file,
+                                        left ? "begins" : "ends"));
   }
   const Kind kind = w.wire.rod.properties.end(end).kind;
   if (kind != Kind::free && line.velocity(s).norm() > 0.0)
@@ -193,7 +193,7 @@ void check_end(wire::End end, const DeclaredWire& w, const StartPoints& points, 
 }
 
 /// Reports what cannot stand beside a line on which the wire begins.
-void check_keys(const DeclaredWire& w, const StartPoints& points, const TomlTable& table) {
+void check_keys(const DeclaredWire& w, const StartPoints& start, const TomlTable& table) {
   const wire::SpatialRodProperties& p = w.wire.rod.properties;
   if (table.has("bulge")) table.fail("bulge", "belongs to a wire that begins at rest between two mounts");
   if (w.law) table.fail("model", "must be \"full\" or \"quasi_static\" of a wire with shape_file or a free end");
@@ -204,7 +204,7 @@ void check_keys(const DeclaredWire& w, const StartPoints& points, const TomlTabl
   if (w.wire.rod.quasi_static && turns)
     table.fail("model",
                "must be \"full\" of a wire with a free end that no clamp holds: it has no equilibrium to follow");
-  if (points.velocities.isZero(0.0)) return;
+  if (start.points.velocities.isZero(0.0)) return;
   if (w.wire.rod.quasi_static) table.fail("model", "must be \"full\" of a wire that begins with velocities");
   if (w.from_carrier.kind != coupling::MotionCarrier::Kind::world ||
       w.to_carrier.kind != coupling::MotionCarrier::Kind::world)
@@ -233,58 +233,57 @@ std::optional<StartPoints> read_start_points(const TomlTable& table, const Besid
   const auto in_world = [](const PlacedFrame& on, const Matrix3Xd& places) -> Matrix3Xd {
     return (on.X_WF.R * places).colwise() + on.X_WF.p;
   };
-  std::optional<StartPoints> points;
+  std::optional<StartPoints> start;
   if (table.has("shape_file")) {
     const std::string name = table.text("shape_file");
     if (name.empty()) return std::nullopt;
     try {
-      points = read_points(table, name, beside);
-      if (points) {
-        points->places = in_world(from, points->places);
-        points->velocities = from.X_WF.R * points->velocities;
-      }
+      start = read_points(table, name, beside);
     } catch (const base::InputError& error) {
       for (const base::InputProblem& p : error.problems())
         table.fail("shape_file",
                    p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
     }
+    if (!start) return std::nullopt;
+    start->points.places = in_world(from, start->points.places);
+    start->points.velocities = from.X_WF.R * start->points.velocities;
   } else {
     const Range range = Range::from(-farthest_mm, farthest_mm);
     const auto begin = read_vector(table, "from_mm", range, mm), end = read_vector(table, "to_mm", range, mm);
     if (!begin || !end) return std::nullopt;
-    points = StartPoints{"", Matrix3Xd(3, 2), Matrix3Xd::Zero(3, 2), {}, false};
-    points->places << in_world(from, *begin), in_world(to, *end);
+    start = StartPoints{"", {Matrix3Xd(3, 2), Matrix3Xd::Zero(3, 2), {}}, false};
+    start->points.places << in_world(from, *begin), in_world(to, *end);
   }
-  if (!points || !are_in_order(*points, table)) return std::nullopt;
+  if (!are_in_order(*start, table)) return std::nullopt;
   try {
-    if (!points->is_material) points->coordinates = coupling::arc_lengths(points->places);
+    if (!start->is_material) start->points = coupling::measured_points(start->points);
   } catch (const std::domain_error& error) {
     table.fail("shape_file", error.what());
     return std::nullopt;
   }
-  return points;
+  return start;
 }
 
 /// Lays a wire of which all but its place is known onto the line through its points, and reports where it does not fit there.
-void lay_on_line(DeclaredWire& w, const TomlTable& table, StartPoints points, const PlacedFrame& from,
+void lay_on_line(DeclaredWire& w, const TomlTable& table, StartPoints start, const PlacedFrame& from,
                  const PlacedFrame& to) {
   if (w.wire.rod.properties.left.kind != Kind::free) w.from_carrier = from.carrier;
   if (w.wire.rod.properties.right.kind != Kind::free) w.to_carrier = to.carrier;
-  check_keys(w, points, table);
-  if (!fits_length(w, table, points)) return;
+  check_keys(w, start, table);
+  if (!fits_length(w, table, start)) return;
   if (w.specification.diameter >= thickest * w.specification.length)
     table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the length of {} mm",
                                           in_mm(thickest * w.specification.length), in_mm(w.specification.length)));
   set_rod(w, w.specification.length);
   try {
-    w.line.emplace(points.places, points.velocities, points.coordinates);
+    w.line.emplace(start.points);
   } catch (const std::domain_error& error) {
     table.fail("shape_file", error.what());
     return;
   }
-  check_line(*w.line, w, points, table);
-  check_end(wire::End::left, w, points, from, table);
-  check_end(wire::End::right, w, points, to, table);
+  check_line(*w.line, w, start, table);
+  check_end(wire::End::left, w, start, from, table);
+  check_end(wire::End::right, w, start, to, table);
 }
 
 }  // namespace
@@ -296,9 +295,9 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   const PlacedFrame to = placement.frame(table, "to_frame").value_or(PlacedFrame{});
   const std::optional<EndKinds> ends = read_ends(table);
   const bool on_a_line = table.has("shape_file") || (ends && is_one_free(*ends));
-  const std::optional<StartPoints> points = on_a_line ? read_start_points(table, beside, from, to) : std::nullopt;
+  const std::optional<StartPoints> start = on_a_line ? read_start_points(table, beside, from, to) : std::nullopt;
   std::optional<double> natural_length;
-  if (on_a_line) natural_length = points ? points->coordinates.back() : 1.0;
+  if (on_a_line) natural_length = start ? start->points.coordinates.back() : 1.0;
   DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, beside, natural_length);
   w.wire.name = name;
   if (ends) {
@@ -307,7 +306,7 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   }
   if (on_a_line) {
     for (const char* key : {"from_mm", "to_mm", "bulge"}) static_cast<void>(table.has(key));
-    if (points) lay_on_line(w, table, *points, from, to);
+    if (start) lay_on_line(w, table, *start, from, to);
     return w;
   }
   const auto place = [&table](const PlacedFrame& on, std::string_view key, Vector3d& point) {

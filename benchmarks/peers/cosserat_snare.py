@@ -123,7 +123,7 @@ friction   = {max(scenario.rods[a].friction, scenario.rods[b].friction)}
         tips = all(r.end is EndCondition.FREE for r in scenario.rods)
         if not ends_move:
             return f"mass_rate_1_s = {2 * slow!r}"
-        return "" if tips else f"bending_time_s = {2 / slow!r}"
+        return "" if tips else f"bending_time_s = {0.1 / slow!r}"
 
     def rod(self, k, rod, n_elements, path):
         material = rod.material

@@ -4,7 +4,8 @@
 
 #include <Eigen/Geometry>
 
-#include <cassert>
+#include <algorithm>
+#include <cmath>
 
 namespace snare::coupling {
 
@@ -33,10 +34,22 @@ Vector3d director_across(const Vector3d& direction) {
   return (Vector3d::Unit(axis) - direction[axis] * direction).normalized();
 }
 
+/// Of a curve between two of its coordinates [m], by Simpson's rule.
+double length_between(const CentreLine& curve, double from, double to) {
+  constexpr int pieces = 8;
+  double sum = 0.0;
+  for (int j = 0; j <= pieces; ++j) {
+    const double weight = j == 0 || j == pieces ? 1.0 : (j % 2 == 1 ? 4.0 : 2.0);
+    sum += weight * (1.0 + curve.stretch(from + j * (to - from) / pieces));
+  }
+  return sum * (to - from) / (3.0 * pieces);
+}
+
 }  // namespace
 
-CentreLine::CentreLine(const Matrix3Xd& points, const Matrix3Xd& velocities, const std::vector<double>& coordinates)
-    : x_(curves_through(points, coordinates)), v_(curves_through(velocities, coordinates)) {}
+CentreLine::CentreLine(const LinePoints& points)
+    : x_(curves_through(points.places, points.coordinates)),
+      v_(curves_through(points.velocities, points.coordinates)) {}
 
 Vector3d CentreLine::of(const Curves& curves, double s, Evaluation what) {
   return {(curves[0].*what)(s), (curves[1].*what)(s), (curves[2].*what)(s)};
@@ -48,33 +61,32 @@ double CentreLine::curvature(double s) const {
   return first.cross(second).norm() / (size * size * size);
 }
 
-// Over the lengths of the chords the spline's speed differs from one by the square of what it turns between points; over its own
-// arc lengths, by the fourth power.
-std::vector<double> arc_lengths(const Matrix3Xd& points) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  std::vector<double> lengths(n, 0.0);
-  for (std::size_t i = 1; i < n; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    lengths[i] = lengths[i - 1] + (points.col(k) - points.col(k - 1)).norm();
-  }
-  constexpr int passes = 3,
-                parts = 8;  // a piece of a cubic that turns by 45 degrees: to 1e-10 of its length by Simpson's rule
-  const Matrix3Xd still = Matrix3Xd::Zero(3, points.cols());
-  for (int pass = 0; pass < passes; ++pass) {
-    const CentreLine line(points, still, lengths);
-    std::vector<double> along(n, 0.0);
-    for (std::size_t i = 1; i < n; ++i) {
-      const double from = lengths[i - 1], step = (lengths[i] - from) / (2 * parts);
-      double sum = 0.0;
-      for (int j = 0; j <= 2 * parts; ++j) {
-        const double weight = j == 0 || j == 2 * parts ? 1.0 : (j % 2 == 1 ? 4.0 : 2.0);
-        sum += weight * (1.0 + line.stretch(from + j * step));
-      }
-      along[i] = along[i - 1] + sum * step / 3.0;
+// Between the new points the curve turns so little that a spline over its length has the speed one.
+LinePoints measured_points(const LinePoints& points) {
+  const Eigen::Index n = points.places.cols();
+  constexpr Eigen::Index most_parts = 16, enough = 4000;
+  const Eigen::Index parts = std::clamp<Eigen::Index>(enough / n, 1, most_parts), count = (n - 1) * parts + 1;
+  LinePoints chords{points.places, points.velocities, {0.0}};
+  for (Eigen::Index i = 1; i < n; ++i)
+    chords.coordinates.push_back(chords.coordinates.back() + (points.places.col(i) - points.places.col(i - 1)).norm());
+  const CentreLine curve(chords);
+  LinePoints finer{Matrix3Xd(3, count), Matrix3Xd(3, count), {0.0}};
+  Eigen::Index next = 0;
+  const auto put = [&](double at) {
+    finer.places.col(next) = curve.place(at);
+    finer.velocities.col(next++) = curve.velocity(at);
+  };
+  put(0.0);
+  for (std::size_t i = 1; i < chords.coordinates.size(); ++i) {
+    const double from = chords.coordinates[i - 1];
+    const double width = (chords.coordinates[i] - from) / static_cast<double>(parts);
+    for (Eigen::Index k = 0; k < parts; ++k) {
+      const double at = from + static_cast<double>(k) * width;
+      finer.coordinates.push_back(finer.coordinates.back() + length_between(curve, at, at + width));
+      put(at + width);
     }
-    lengths = along;
   }
-  return lengths;
+  return finer;
 }
 
 void begin_on(const CentreLine& line, MotionWire& wire) {

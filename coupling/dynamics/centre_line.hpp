@@ -9,14 +9,24 @@
 
 namespace snare::coupling {
 
+/// Points along a wire at the start of a motion.
+struct LinePoints {
+  Eigen::Matrix3Xd places;          ///< (3, n) [m], n >= 2, no two neighbours in one place
+  Eigen::Matrix3Xd velocities;      ///< (3, n) [m/s]
+  std::vector<double> coordinates;  ///< from 0 on, ascending: material ones, or along the line [m]
+};
+
+/// More points on the curve that a spline over the lengths of their chords draws through points, with how far they lie along it. What the
+/// points have as coordinates is not looked at.                                               theory.md (M.37)
+/// Throws std::domain_error where points lie too close for roundings.
+[[nodiscard]] LinePoints measured_points(const LinePoints& points);
+
 /// The line on which a wire begins a motion: cubic splines of its places and velocities over the material coordinate S, as a
-/// lath would lie through the points.                                                          theory.md (M.37)
+/// lath would lie through the points.                                                         theory.md (M.37)
 class CentreLine {
  public:
-  /// Through points (3, n) [m] with velocities (3, n) [m/s], n >= 2, at ascending coordinates from 0 [m].
   /// Throws std::domain_error where coordinates lie too close for roundings.
-  CentreLine(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& velocities,
-             const std::vector<double>& coordinates);
+  explicit CentreLine(const LinePoints& points);
 
   [[nodiscard]] double length() const { return x_.front().knots().back(); }  ///< unstretched [m]
   /// Place [m] at a coordinate [m].
@@ -38,9 +48,6 @@ class CentreLine {
 
   Curves x_, v_;
 };
-
-/// How far points (3, n) [m], n >= 2 and no two neighbours in one place, lie along the spline through them, from the first on [m].
-[[nodiscard]] std::vector<double> arc_lengths(const Eigen::Matrix3Xd& points);
 
 /// Lays a wire of the line's length onto it, without twist: places and velocities of its vertices, and its ends, which hold the directions
 /// that the line has there.

@@ -28,21 +28,22 @@ Matrix3Xd helix_points(int count, double turn) {
   return points;
 }
 
-CentreLine helix_line(int count, double turn) {
-  const Matrix3Xd points = helix_points(count, turn);
-  return {points, Matrix3Xd::Zero(3, count), arc_lengths(points)};
+CentreLine line_through(const Matrix3Xd& points) {
+  return CentreLine(measured_points({points, Matrix3Xd::Zero(3, points.cols()), {}}));
 }
 
 TEST(CentreLine, HasTheLengthOfAHelixToFourthOrder) {
   const double turn = 2.0 * pi, exact = turn * std::hypot(radius, pitch);
-  const auto error = [&](int count) { return std::abs(arc_lengths(helix_points(count, turn)).back() / exact - 1.0); };
+  const auto error = [&](int count) {
+    return std::abs(line_through(helix_points(count, turn)).length() / exact - 1.0);
+  };
   EXPECT_LT(error(41), 1e-5);
   // Each halving of the spacing leaves a sixteenth; the ends, by three points each, leave room for an eighth.
   EXPECT_LT(error(81), error(41) / 8.0);
 }
 
 TEST(CentreLine, HasTheCurvatureAndTheDirectionsOfAHelix) {
-  const CentreLine line = helix_line(161, 2.0 * pi);
+  const CentreLine line = line_through(helix_points(161, 2.0 * pi));
   const double exact = radius / (radius * radius + pitch * pitch);
   for (const double share : {0.2, 0.5, 0.77}) {
     const double s = share * line.length();
@@ -69,7 +70,7 @@ MotionWire wire_on(const CentreLine& line, wire::Formulation formulation) {
 // A curve of constant curvature bends a round wire by EI kappa and does not twist it, whatever its torsion; the directors at both
 // clamps follow the line.
 TEST(CentreLine, BendsAWireWithoutTwist) {
-  const CentreLine line = helix_line(161, 1.5 * pi);
+  const CentreLine line = line_through(helix_points(161, 1.5 * pi));
   for (const auto formulation : {wire::Formulation::vertices, wire::Formulation::higher_order}) {
     const MotionWire w = wire_on(line, formulation);
     wire::RodPart part("wire", w.rod, {});
@@ -88,10 +89,17 @@ TEST(CentreLine, BendsAWireWithoutTwist) {
   }
 }
 
+// Four points a circle: the spline is far from the circle, and yet the wire is evenly stretched along it.
+TEST(CentreLine, IsEvenlyStretchedHoweverFewItsPoints) {
+  const CentreLine line = line_through(helix_points(5, 2.0 * pi));
+  for (int i = 0; i <= 100; ++i)
+    EXPECT_LT(std::abs(line.stretch(0.01 * i * line.length())), 1e-5);  // 90 degrees in 16 parts
+}
+
 TEST(CentreLine, OfAStraightWireIsStraightToRoundOff) {
   Matrix3Xd points(3, 2);
   points << 0.1, 0.3, 0.2, 0.2, 0.0, -0.4;
-  const CentreLine line(points, Matrix3Xd::Zero(3, 2), arc_lengths(points));
+  const CentreLine line = line_through(points);
   EXPECT_NEAR(line.length(), std::hypot(0.2, 0.4), 1e-15);
   const MotionWire w = wire_on(line, wire::Formulation::higher_order);
   for (int i = 0; i <= 40; ++i)
