@@ -49,7 +49,7 @@ RUNS = {
         "impact": {"ladder": each("edges", (20, 40, 80)), "defaults": {"defaults": True}, "order": each("edges", (20, 40, 80))},
         "tip": {"ladder": each("edges", (10, 20, 30, 40)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (10, 20, 40))},
         "frequency": {"ladder": each("edges", (10, 20, 40)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (10, 20, 40))},
-        "twist": {"ladder": each("edges", (10, 20, 40)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (10, 20, 40))},
+        "twist": {"ladder": each("edges", (10, 16, 20)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (5, 10, 20))},
     },
     "PyElastica": {
         "push": {"ladder": each("elements", (20, 40, 80)), "defaults": {"defaults": True}, "order": each("elements", (20, 40, 80))},
