@@ -10,8 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,7 +26,7 @@ using testing::HasSubstr;
 
 constexpr double gravity = 9.81;
 
-struct Run {
+struct Course {
   coupling::MotionResult result;
   std::vector<coupling::MotionSample> samples;
 };
@@ -42,8 +45,8 @@ density_kg_m3 = 7930.0
 )" + wire))
         .motions.runs.at(0);
   }
-  [[nodiscard]] static Run run(const NamedMotion& motion) {
-    Run all;
+  [[nodiscard]] static Course course_of(const NamedMotion& motion) {
+    Course all;
     all.result = coupling::simulate(motion.motion, motion.options, [&all](const coupling::MotionSample& s) {
       all.samples.push_back(s);
       return false;
@@ -84,7 +87,7 @@ TEST_F(WireStarts, PinnedWireSwingsAsAPhysicalPendulum) {
              fmt::format("length_mm = 180.0\nelements = {}\nfrom_mm = [0.0, 0.0, 0.0]\nto_mm = [{}, 0.0, {}]\n"
                          "ends = {{ left = \"pinned\", right = \"free\" }}\n",
                          elements, 180.0 * std::sin(angle), -180.0 * std::cos(angle)));
-    const Run all = run(motion);
+    const Course all = course_of(motion);
     const double found =
         falls_through_zero(all.samples, [](const coupling::MotionSample& s) { return s.wires[0].rightCols<1>().x(); });
     EXPECT_NEAR(found, quarter, 3e-4 * quarter) << angle;  // the samples are straight between 1/360 of a quarter
@@ -102,7 +105,7 @@ TEST_F(WireStarts, PinnedWireSwingsUpToWhereItBegan) {
   const NamedMotion motion =
       read(fmt::format("duration_s = {}\noutput_interval_s = 0.01\n[gravity]\nvector_m_s2 = [0.0, 0.0, -9.81]\n", half),
            "elements = 12\nshape_file = \"line.csv\"\nends = { left = \"pinned\", right = \"free\" }\n");
-  const Run all = run(motion);
+  const Course all = course_of(motion);
   const Eigen::Vector3d tip = all.samples.back().wires[0].rightCols<1>();
   EXPECT_NEAR(tip.x(), -0.18, 2e-3);  // of the period, 1/(4 n^2), and of the waves of its release
   EXPECT_GT(std::abs(tip.y()), 1e-6);
@@ -128,7 +131,7 @@ TEST_F(WireStarts, PluckedStringHasItsFrequency) {
                        1.1 * quarter, quarter / 50.0),
            fmt::format("length_mm = {}\nbending_stiffness_Nm2 = {}\nshape_file = \"sine.csv\"\nmount = \"pinned\"\n",
                        1e3 * length, bending));
-  const Run all = run(motion);
+  const Course all = course_of(motion);
   const double found =
       falls_through_zero(all.samples, [](const coupling::MotionSample& s) { return s.wires[0](1, 20); });
   EXPECT_NEAR(found, quarter, 5e-4 * quarter);
@@ -144,7 +147,7 @@ TEST_F(WireStarts, ThrownWireFliesAsARigidRod) {
   const NamedMotion motion =
       read(fmt::format("duration_s = {}\noutput_interval_s = 0.02\n[gravity]\nvector_m_s2 = [0.0, 0.0, -9.81]\n", time),
            "elements = 12\nshape_file = \"thrown.csv\"\nends = { left = \"free\", right = \"free\" }\n");
-  const Run all = run(motion);
+  const Course all = course_of(motion);
   for (const coupling::MotionSample& s : all.samples) {
     const double t = s.time;
     const Eigen::Vector3d middle(speed * t, 0.0, t - 0.5 * gravity * t * t);
@@ -170,7 +173,7 @@ TEST_F(WireStarts, ClampHoldsTheDirectionOfTheLine) {
   const coupling::MotionWire& w = motion.motion.wires[0];
   EXPECT_NEAR(w.rod.length, 0.05 * pi, 1e-7);
   EXPECT_LT((w.rod.properties.left.direction - Eigen::Vector3d(-std::sqrt(0.5), std::sqrt(0.5), 0.0)).norm(), 1e-4);
-  const Run all = run(motion);
+  const Course all = course_of(motion);
   EXPECT_NEAR(all.samples.front().energy.strain, 0.5 * w.rod.properties.bending_stiffness * 100.0 * w.rod.length,
               2e-2 * all.samples.front().energy.strain);  // of the free end's cell, which has no moment
   EXPECT_LT(largest_energy_error(all.samples), 1e-2 * all.samples.front().energy.strain);
@@ -190,7 +193,7 @@ TEST_F(WireStarts, HangingWireStaysWhereItsStretchBearsIt) {
       read("duration_s = 0.2\noutput_interval_s = 0.01\n[gravity]\nvector_m_s2 = [0.0, 0.0, -9.81]\n",
            "axial_stiffness_N = 100.0\nelements = 20\nshape_file = \"hanging.csv\"\n"
            "ends = { left = \"pinned\", right = \"free\" }\n");
-  const Run all = run(motion);
+  const Course all = course_of(motion);
   for (const coupling::MotionSample& s : all.samples) {
     EXPECT_LT((s.wires[0] - all.samples.front().wires[0]).norm(),
               1e-5);  // of an edge's mean stretch, taken at its middle
