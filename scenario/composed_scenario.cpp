@@ -10,6 +10,7 @@
 #include "scenario/drive_reader.hpp"
 #include "scenario/housing_wall.hpp"
 #include "scenario/law_wire_reader.hpp"
+#include "scenario/listed_wire.hpp"
 #include "scenario/load_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/phase_reader.hpp"
@@ -349,8 +350,13 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
     if (mesh == WireMesh::halved) w.wire.rod.elements = (w.wire.rod.elements + 1) / 2;
   }
   PressedRests pressed;
-  for (DeclaredWire& w : c.wires)
-    if (!w.law) c.motion.wires.push_back(w.wall ? at_rest_in_wall(std::move(w), pressed) : at_rest(std::move(w)));
+  for (DeclaredWire& w : c.wires) {
+    if (w.law) continue;
+    if (w.line)
+      c.motion.wires.push_back(on_line(std::move(w)));
+    else
+      c.motion.wires.push_back(w.wall ? at_rest_in_wall(std::move(w), pressed) : at_rest(std::move(w)));
+  }
   motions.model_keys = std::move(c.model_keys);
   motions.law_models.assign(c.law_models.begin(), c.law_models.end());
   motions.drawn = std::move(c.drawn);

@@ -47,7 +47,7 @@ constexpr std::string_view frame_keys[] = {"frame",     "other_frame", "from_fra
                                            "tip_frame", "relative_to", "shaft_frame", "body"};
 constexpr std::string_view name_keys[] = {"name",       "shape", "other_shape", "wire",
                                           "other_wire", "joint", "snare",       "contact"};
-constexpr std::string_view file_keys[] = {"file", "course_file", "torque_file"};
+constexpr std::string_view file_keys[] = {"file", "course_file", "shape_file", "torque_file"};
 
 template <std::size_t count>
 bool is_one_of(std::string_view word, const std::string_view (&words)[count]) {

@@ -53,9 +53,9 @@ multibody::Pose read_pose_in_frame(const TomlTable& table) {
 }
 
 DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount,
-                            const std::optional<BesideScenario>& beside) {
+                            const std::optional<BesideScenario>& beside, std::optional<double> natural_length) {
   DeclaredWire w;
-  w.specification = read_wire(table);
+  w.specification = read_wire(table, Held::at_its_ends, natural_length);
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
     if (table.has(key)) table.fail(key, "the wire is elastic and naturally straight in motion");
   }
@@ -84,6 +84,22 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   return w;
 }
 
+void set_rod(DeclaredWire& w, double span) {
+  wire::RodInMotion rod = wire::rod_in_motion(w.specification, span, w.wire.rod.elements);
+  rod.formulation = w.wire.rod.formulation;
+  rod.quasi_static = w.wire.rod.quasi_static;
+  rod.damping = w.wire.rod.damping;
+  rod.strands.time = w.wire.rod.strands.time;
+  for (const wire::End which : wire::ends) {
+    wire::SpatialEnd& end = rod.properties.end(which);
+    const wire::SpatialEnd& declared = w.wire.rod.properties.end(which);
+    end.kind = declared.kind;
+    end.rotational_stiffness = declared.rotational_stiffness;
+    end.translational_stiffness = declared.translational_stiffness;
+  }
+  w.wire.rod = rod;
+}
+
 void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key, const std::string& bulge_key) {
   w.span = (w.to - w.from).norm();
   if (!(w.span > 0.0)) table.fail(to_key, "must not be where the wire begins");
@@ -93,13 +109,7 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
     table.fail(bulge_key, "must have a bulge, a direction across the chord");
   else
     w.bulge = across.normalized();
-  wire::RodInMotion rod = wire::rod_in_motion(w.specification, w.span, w.wire.rod.elements);
-  rod.formulation = w.wire.rod.formulation;
-  rod.quasi_static = w.wire.rod.quasi_static;
-  rod.damping = w.wire.rod.damping;
-  rod.strands.time = w.wire.rod.strands.time;
-  w.mounts.set(rod.properties);
-  w.wire.rod = rod;
+  set_rod(w, w.span);
   if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
   if (w.from_carrier != w.to_carrier)
     table.fail("model",
@@ -107,26 +117,7 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
                            "between mounts that stand still",
                            table.text("model")));
   else if (w.push && w.span > 0.0)
-    check_push_model(*w.push, rod, w.span, table);
-}
-
-DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placement& placement,
-                              const wire::RodDamping& damping, const BesideScenario& beside) {
-  const std::string name = names.take(table);
-  DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, beside);
-  w.wire.name = name;
-  const auto place = [&](std::string_view frame_key, std::string_view key, Vector3d& point,
-                         coupling::MotionCarrier& carrier) {
-    const PlacedFrame on = placement.frame(table, frame_key).value_or(PlacedFrame{});
-    if (const auto given = read_vector(table, key, Range::from(-far, far), mm)) point = on.X_WF.p + on.X_WF.R * *given;
-    carrier = on.carrier;
-  };
-  place("from_frame", "from_mm", w.from, w.from_carrier);
-  place("to_frame", "to_mm", w.to, w.to_carrier);
-  if (table.has("bulge")) w.bulge = read_vector(table, "bulge", Range::from(-1e3, 1e3), 1.0).value_or(w.bulge);
-  w.bulge = placement.find(table.text_or("from_frame", "world")).value_or(PlacedFrame{}).X_WF.R * w.bulge;
-  stretch(w, table, "to_mm", table.has("bulge") ? "bulge" : "");
-  return w;
+    check_push_model(*w.push, w.wire.rod, w.span, table);
 }
 
 coupling::LawWire law_in_place(const DeclaredWire& w) {
@@ -149,7 +140,7 @@ coupling::MotionWire at_rest(DeclaredWire w, const Eigen::Matrix3Xd* shape) {
   const Eigen::Matrix3Xd rest = shape != nullptr ? *shape : coupling::resting_wire(w.wire.rod);
   w.wire.positions = (rest_frame * rest).colwise() + w.from;
   for (const wire::End which : wire::ends) {
-    wire::SpatialEnd& end = which == wire::End::left ? w.wire.rod.properties.left : w.wire.rod.properties.right;
+    wire::SpatialEnd& end = w.wire.rod.properties.end(which);
     end.position = rest_frame * end.position + w.from;
     end.direction = rest_frame * end.direction;
     end.director = rest_frame * end.director;

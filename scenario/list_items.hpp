@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/toml_reader.hpp"
+#include "coupling/dynamics/centre_line.hpp"
 #include "coupling/dynamics/model.hpp"
 #include "coupling/dynamics/pressed_start.hpp"
 #include "scenario/mount_reader.hpp"
@@ -35,22 +36,23 @@ struct DeclaredWire {
   coupling::MotionCarrier from_carrier, to_carrier;
   std::optional<coupling::RoundWall>
       wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
+  std::optional<coupling::CentreLine> line;  ///< in the world, on which it begins; none: at rest between its mounts
 };
 
 /// The wire for which a law stands, in its place but without a shaft.
 [[nodiscard]] coupling::LawWire law_in_place(const DeclaredWire& wire);
 
 /// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires. beside: of a wire that
-/// laws of pushes may stand for.
+/// laws of pushes may stand for. natural_length: of one that may leave its length out [m].
 [[nodiscard]] DeclaredWire read_wire_item(const base::TomlTable& table, const wire::RodDamping& damping,
                                           wire::SpatialEnd::Kind mount,
-                                          const std::optional<BesideScenario>& beside = {});
+                                          const std::optional<BesideScenario>& beside = {},
+                                          std::optional<double> natural_length = {});
+/// Sets the constants of the rod from all that is declared of it; its mounts a span [m] apart.
+void set_rod(DeclaredWire& wire, double span);
 /// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys: those of the file
 /// that give the far end and the direction.
 void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key, const std::string& bulge_key);
-/// A wire of the list, with its ends on frames.
-[[nodiscard]] DeclaredWire read_listed_wire(const base::TomlTable& table, Names& names, const Placement& placement,
-                                            const wire::RodDamping& damping, const BesideScenario& beside);
 /// The wire at rest where its mounts are. Throws InputError when it finds no rest. shape: where it rests in its own frame, chord along x and bulge
 /// to y, (3, vertices) [m]; none: it is looked for.
 [[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire, const Eigen::Matrix3Xd* shape = nullptr);

@@ -41,7 +41,7 @@ bool WireMounts::give_way() const {
 
 void WireMounts::set(wire::SpatialRodProperties& properties) const {
   for (const wire::End which : wire::ends) {
-    wire::SpatialEnd& end = which == wire::End::left ? properties.left : properties.right;
+    wire::SpatialEnd& end = properties.end(which);
     end.kind = kind;
     end.rotational_stiffness = rotational_stiffness[index_of(which)];
     end.translational_stiffness = give[index_of(which)].stiffness;

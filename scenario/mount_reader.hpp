@@ -12,7 +12,7 @@ namespace snare::scenario {
 /// The mounts of a wire of a scenario, at its left and its right end.
 struct WireMounts {
   wire::SpatialEnd::Kind kind = wire::SpatialEnd::Kind::clamp;
-  std::array<coupling::MountGive, 2> give;  ///< along the chord, theory.md (M.37)
+  std::array<coupling::MountGive, 2> give;  ///< along the chord, theory.md (M.38)
   /// Of clamps that turn [N m/rad]; infinite: rigid.
   std::array<double, 2> rotational_stiffness{std::numeric_limits<double>::infinity(),
                                              std::numeric_limits<double>::infinity()};

@@ -62,13 +62,15 @@ void read_modulus(const TomlTable& table, Held held, wire::WireSpecification& wi
 
 }  // namespace
 
-wire::WireSpecification read_wire(const TomlTable& table, Held held) {
+wire::WireSpecification read_wire(const TomlTable& table, Held held, std::optional<double> natural_length) {
   static constexpr Choice<wire::Construction> constructions[] = {{"solid", wire::Construction::solid},
                                                                  {"strand", wire::Construction::strand}};
   wire::WireSpecification wire;
   wire.construction = table.choice("construction", constructions).value_or(wire.construction);
   wire.diameter = table.number("diameter_mm", Range::above(0.0, 100.0), mm);
-  wire.length = table.number("length_mm", Range::above(0.0, largest_length), mm);
+  const Range length = Range::above(0.0, largest_length);
+  wire.length = natural_length ? table.number_or("length_mm", *natural_length, length, mm)
+                               : table.number("length_mm", length, mm);
   wire.density = table.number("density_kg_m3", Range::above(0.0, 1e5));
   const Range bending = Range::from(smallest_bending_stiffness, 1e9);
   wire.bending_stiffness_override = table.optional_number("bending_stiffness_Nm2", bending);

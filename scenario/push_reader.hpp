@@ -35,7 +35,9 @@ void require_simple_motion(const PushTables& tables, const coupling::PushProblem
 /// Reads and checks a wire alone, of a table with the keys of [wire].
 /// Whether a wire's ends are held, so that its axial stiffness counts.
 enum class Held { at_its_ends, on_supports };
-[[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table, Held held = Held::at_its_ends);
+/// natural_length: of a wire that may leave its length out [m].
+[[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table, Held held = Held::at_its_ends,
+                                                std::optional<double> natural_length = {});
 /// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
 void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const base::TomlTable& table);
 /// The same of wire and mounts alone.

@@ -62,6 +62,7 @@ struct SpatialRodProperties {
   SpatialEnd left;
   SpatialEnd right;
   [[nodiscard]] const SpatialEnd& end(End which) const noexcept { return which == End::left ? left : right; }
+  [[nodiscard]] SpatialEnd& end(End which) noexcept { return which == End::left ? left : right; }
 };
 
 }  // namespace snare::wire

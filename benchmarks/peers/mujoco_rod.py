@@ -185,5 +185,62 @@ def frequency(edges=20, share=0.9, until=0.2, defaults=False):
     return {"frequency_Hz": peer.frequency(tips, window * step), "step_s": step}
 
 
+def ball_chain(edges, step, angle, turning, weld):
+    """Model of the straight wire between clamps: edges joined by balls, of which the first is held in its middle and the last is welded in its middle
+    to a clamp that slides along x and is turned by an angle. turning: factor of the rotational inertia about the wire; weld: attributes of the weld.
+    """
+    spacing = LENGTH / edges
+    mass = DENSITY * AREA * spacing
+    polar = min(turning * mass * DIAMETER**2 / 8, mass * spacing**2 / 6)
+    shape = f'mass="{mass}" diaginertia="{polar} {mass * spacing**2 / 12} {mass * spacing**2 / 12}"'
+    links = "".join(f'<body name="edge_{k}" pos="{spacing} 0 0"><joint name="ball_{k}" type="ball" stiffness="{BENDING / spacing}"/>'
+                    f'<inertial pos="{spacing / 2} 0 0" {shape}/>' for k in range(1, edges + 1)) + "</body>" * edges
+    return mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <option timestep="{step}" integrator="Euler" gravity="0 0 0"><flag contact="disable"/></option>
+  <size memory="100M"/>
+  <worldbody>
+    <body name="edge_0" pos="{-spacing / 2} 0 0">{links}</body>
+    <body name="clamp" pos="{LENGTH} 0 0" quat="{math.cos(angle / 2)} {math.sin(angle / 2)} 0 0">
+      <joint type="slide" axis="1 0 0"/><inertial pos="0 0 0" {shape}/>
+    </body>
+  </worldbody>
+  <equality><weld body1="edge_{edges}" body2="clamp" anchor="0 0 0" relpose="{spacing / 2} 0 0 1 0 0 0" {weld}/></equality>
+</mujoco>""")
+
+
+def twist(edges=20, share=0.5, until=0.2, turning=100.0, defaults=False):
+    """Frequencies of the straight wire, twisted evenly between its clamps. A flex of one dimension has points alone, without torsion, so that this is a
+    chain of bodies joined by balls with the stiffness EI over an edge about all axes; the moment at which the wire buckles does not depend on GJ.
+    The enlarged rotational inertia about the wire leaves where the frequencies vanish."""
+    spacing = LENGTH / edges
+    about = 2 / spacing * math.sqrt(BENDING / (DENSITY * AREA * DIAMETER**2 / 8 * turning))  # fastest turning about the wire [rad/s]
+    zigzag = math.sqrt(48 * BENDING / (DENSITY * AREA)) / spacing**2
+    step = DEFAULT_STEP if defaults else share * 2 / max(about, zigzag)
+    weld = "" if defaults else CONTACT.format(2 * step)
+    squares = []
+    for part in peer.SHARES:
+        angle = part * ref.GREENHILL / BENDING * LENGTH
+        model = ball_chain(edges, step, angle, 1.0 if defaults else turning, weld)
+        data = mujoco.MjData(model)
+        slopes = [1e-5 * math.pi * math.sin(2 * math.pi * k / edges) for k in range(edges + 1)]  # of 1e-5 L sin^2(pi x/L) in the middles of the edges
+        for k in range(1, edges + 1):
+            turned = angle * (k - 1) / edges  # of the edge before
+            bend = np.array([0.0, math.sin(turned), math.cos(turned)]) * (slopes[k] - slopes[k - 1])
+            quaternion = np.zeros(4)
+            mujoco.mju_mulQuat(quaternion, np.array([1.0, *(bend / 2)]), np.array([math.cos(angle / edges / 2), math.sin(angle / edges / 2), 0.0, 0.0]))
+            data.joint(f"ball_{k}").qpos[:] = quaternion / np.linalg.norm(quaternion)
+        mujoco.mj_forward(model, data)
+        middle = model.body(f"edge_{edges // 2}").id
+        window = max(1, round(2e-4 / step))
+        track = [float(data.xipos[middle][1])]
+        for _ in range(round(until / step / window)):
+            mujoco.mj_step(model, data, nstep=window)
+            track.append(float(data.xipos[middle][1]))
+        check(data)
+        squares.append(peer.frequency(track, window * step)**2)
+    return {"critical": peer.critical(squares), "step_s": step}
+
+
 if __name__ == "__main__":
     peer.main(globals())

@@ -11,7 +11,7 @@ CASES = {
 PROGRAMS = {
     "snare": {"environment": "rods", "script": "snare_wire.py", "version": None, "what": "discrete elastic rods; static paths, motion by IDA"},
     "EXUDYN": {"environment": "rods", "script": "exudyn_cable.py", "version": "1.13.6", "what": "ANCF cable of the plane; for the twist geometrically exact beams"},
-    "MuJoCo": {"environment": "rods", "script": "mujoco_rod.py", "version": "4.0.0", "what": "flexcomp of one dimension with edge stiffness, explicit steps"},
+    "MuJoCo": {"environment": "rods", "script": "mujoco_rod.py", "version": "4.0.0", "what": "flexcomp of one dimension with edge stiffness, for the twist bodies joined by balls; explicit steps"},
     "PyElastica": {"environment": "rods", "script": "elastica_rod.py", "version": "1.0.0", "what": "Cosserat rod, explicit steps"},
     "dismech-newton": {"environment": "dismech", "script": "dismech_rod.py", "version": "0.1.0.post4", "what": "implicit discrete elastic rods, on the CPU"},
     "Newton": {"environment": "newton", "script": "newton_rod.py", "version": "1.8.0", "what": "rod of capsules by VBD, on the CPU"},
@@ -49,6 +49,7 @@ RUNS = {
         "impact": {"ladder": each("edges", (20, 40, 80)), "defaults": {"defaults": True}, "order": each("edges", (20, 40, 80))},
         "tip": {"ladder": each("edges", (10, 20, 30, 40)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (10, 20, 40))},
         "frequency": {"ladder": each("edges", (10, 20, 40)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (10, 20, 40))},
+        "twist": {"ladder": each("edges", (10, 16, 20)), "defaults": {"edges": 40, "defaults": True}, "order": each("edges", (5, 10, 20))},
     },
     "PyElastica": {
         "push": {"ladder": each("elements", (20, 40, 80)), "defaults": {"defaults": True}, "order": each("elements", (20, 40, 80))},
@@ -72,7 +73,6 @@ RUNS = {
 
 # Reasons for cases without an adapter.
 CANNOT = {
-    ("MuJoCo", "twist"): "flexcomp clamps both ends to one body, so that they cannot turn against each other; a raw flex was not tried",
     ("dismech-newton", "push"): "no adapter: the solver reports no contact force",
     ("dismech-newton", "impact"): "no adapter: bodies are obstacles that move as prescribed",
     ("Newton", "push"): "no adapter: the cantilever does not converge",

@@ -8,7 +8,7 @@
 
 namespace snare::coupling {
 
-/// One end of a wire held by a frame that moves, or that gives along its axis.               theory.md (M.17), (M.37)
+/// One end of a wire held by a frame that moves, or that gives along its axis.               theory.md (M.17), (M.38)
 ///
 ///   B^T r = 0,  B^T w = 0,  r = x - p_WM,  w = v - v_M - omega x r
 /// x, v: the end vertex; M: the mount's frame, its x axis a the direction of increasing arc length, its y axis the director. A rigid mount

@@ -20,7 +20,12 @@ std::string to_string(MotionEvent::Kind kind) {
 
 double end_tension(const Eigen::Matrix3Xd& x, const Eigen::Vector3d& left, const Eigen::Vector3d& right) {
   const Eigen::Index n = x.cols() - 1;
-  return std::min(-left.dot((x.col(1) - x.col(0)).normalized()), right.dot((x.col(n) - x.col(n - 1)).normalized()));
+  const double at_left = -left.dot((x.col(1) - x.col(0)).normalized());
+  const double at_right = right.dot((x.col(n) - x.col(n - 1)).normalized());
+  // A free end has no mount: no force at all.
+  if (left.isZero(0.0)) return at_right;
+  if (right.isZero(0.0)) return at_left;
+  return std::min(at_left, at_right);
 }
 
 double end_tension(const MotionSample& sample, std::size_t wire) {

@@ -1,4 +1,4 @@
-// Mounts that give along the wire: springs, dashpots and slip between the wire's end and its mount, theory.md (M.37).
+// Mounts that give along the wire: springs, dashpots and slip between the wire's end and its mount, theory.md (M.38).
 
 #include "coupling/dynamics/simulate.hpp"
 #include "coupling/dynamics/start.hpp"
