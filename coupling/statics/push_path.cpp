@@ -38,6 +38,16 @@ bool is_finite(const PushPoint& p) {
   return std::all_of(p.force_by.begin(), p.force_by.end(), finite);
 }
 
+/// Whether a force that is none of the mounts', the pusher's and the weight holds the wire: the condition that keeps a loose wire from
+/// sliding along itself, where its supports do not.
+bool is_unbalanced(const PushPoint& p) {
+  constexpr double share = 1e-4, rounding = 1e-6;  // [N] the latter
+  double largest = 0.0;
+  for (const double force : {p.force, p.transverse_force, p.reaction_along_left, p.reaction_across_left, p.reaction_along_right, p.reaction_across_right})
+    largest = std::max(largest, std::abs(force));
+  return p.imbalance > share * largest + rounding;
+}
+
 }  // namespace
 
 bool remembers(const PushProblem& test) {
@@ -59,7 +69,8 @@ numerics::SolveReport PushPath::interrupted() const {
 
 void PushPath::add(PushPoint point) {
   not_finite_ = not_finite_ || !is_finite(point);
-  if (not_finite_) return;
+  unbalanced_ = unbalanced_ || is_unbalanced(point);
+  if (not_finite_ || unbalanced_) return;
   point.iterations = iterations_;
   curve_.newton_iterations += iterations_;
   iterations_ = 0;
@@ -94,6 +105,7 @@ PushCurve PushPath::run(const std::vector<double>& travel) {
 numerics::SolveReport PushPath::record_here(double travel) {
   record(travel);
   if (not_finite_) return ended(numerics::Termination::not_finite, "a result is not finite");
+  if (unbalanced_) return ended(numerics::Termination::step_too_small, "the forces on the wire do not balance");
   if (options_.progress && !options_.progress(travel)) return interrupted();
   return {};
 }

@@ -53,6 +53,7 @@ class PushPath : public RememberingPath {
   PushCurve curve_;
   int iterations_ = 0;       // since the last point of the curve
   bool not_finite_ = false;  // a point was not added
+  bool unbalanced_ = false;  // the same
 
  private:
   [[nodiscard]] numerics::SolveReport through_points(const std::vector<double>& travel);
