@@ -177,7 +177,6 @@ int ConstraintSet::event_count() const {
 void ConstraintSet::place(VectorXd& y) {
   for (std::size_t k = 0; k < arms_.size(); ++k) {
     arms_[k].part->write_state(motion_.arms[k].start, y);
-    arms_[k].part->stop_ruled_motors(y);  // a brake is on from the start
     arms_[k].part->settle(0.0, y);
   }
   // What is held moves with its carrier, v = v_F and w_B = R_WF^T w_F: X_BH of a weld is the identity here.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -221,10 +222,10 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     if (q) p.iterations += q->iterations;
     if (h && q && h->same_state(p) && q->same_state(p)) {
       error = extrapolate(p, *h, *q);
-    } else {  // in other states of contact, or one mesh has not come here: they differ by what they err
+    } else {  // in other states of contact, or a mesh has not come here: they differ by what they err
       for (const CoarsePoint* other : {h, q})
         if (other) error = std::max(error, std::abs(p.force - other->values.front()));
-      if (!h && !q && i > 0) error = result.discretisation_error[i - 1];
+      if (!h && !q) error = std::numeric_limits<double>::quiet_NaN();
     }
   }
   if (!result.curve.steps.empty()) {

@@ -69,7 +69,7 @@ numerics::SolveReport PushPath::interrupted() const {
 
 void PushPath::add(PushPoint point) {
   not_finite_ = not_finite_ || !is_finite(point);
-  unbalanced_ = unbalanced_ || is_unbalanced(point);
+  unbalanced_ = unbalanced_ || (!curve_.points.empty() && is_unbalanced(point));  // of the first touch the shape alone is known
   if (not_finite_ || unbalanced_) return;
   point.iterations = iterations_;
   curve_.newton_iterations += iterations_;

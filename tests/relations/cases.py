@@ -57,7 +57,10 @@ class Case:
         return copy.deepcopy(self)
 
     def texts(self):
-        return {"case.toml": toml(self.main), **{name.replace("__", "."): f if isinstance(f, str) else toml(f) for name, f in self.files.items()}}
+        return {
+            "case.toml": toml(self.main),
+            **{name.replace("__", "."): f if isinstance(f, str) else toml(f) for name, f in self.files.items()},
+        }
 
 
 def word(value):
@@ -76,7 +79,9 @@ def key(name):
 
 def toml(table):
     """Plain keys first; a list of tables has a head for each, what stands deeper is on one line."""
-    plain = {k: v for k, v in table.items() if not isinstance(v, dict) and not (isinstance(v, list) and v and isinstance(v[0], dict))}
+    plain = {
+        k: v for k, v in table.items() if not isinstance(v, dict) and not (isinstance(v, list) and v and isinstance(v[0], dict))
+    }
     lines = [f"{key(k)} = {word(v)}" for k, v in plain.items()]
     for name, value in table.items():
         for entry in [] if name in plain else value if isinstance(value, list) else [value]:
@@ -142,7 +147,16 @@ class Runner:
         folder.mkdir(exist_ok=True)
         for name, text in texts.items():
             (folder / name).write_text(text)
-        line = [self.snare, *case.verb.split(), str(folder / "case.toml"), "--out", str(folder / "out"), "--quiet", "--threads", "1"]
+        line = [
+            self.snare,
+            *case.verb.split(),
+            str(folder / "case.toml"),
+            "--out",
+            str(folder / "out"),
+            "--quiet",
+            "--threads",
+            "1",
+        ]
         try:
             run = subprocess.run(line, capture_output=True, text=True, timeout=LIMIT)
         except subprocess.TimeoutExpired:

@@ -13,7 +13,9 @@ def string(stretch, length, span, at, d):
 
 
 def readings(draw, force, travel, sigma, number):
-    rows = [f"{travel * k / (number - 1):.6g},{force(travel * k / (number - 1)) + draw.gauss(0.0, sigma):.7g}" for k in range(number)]
+    rows = [
+        f"{travel * k / (number - 1):.6g},{force(travel * k / (number - 1)) + draw.gauss(0.0, sigma):.7g}" for k in range(number)
+    ]
     return "displacement_mm,force_N\n" + "\n".join(rows) + "\n"
 
 
@@ -28,9 +30,21 @@ def generate(seed):
     if on_supports:
         wire |= {"length_mm": round(1.2 * span, 5), "bending_stiffness_Nm2": float(f"{bending * factor:.4g}")}
     else:
-        wire |= {"axial_stiffness_N": float(f"{stretch * factor:.4g}"), "bending_stiffness_Nm2": max(1e-15, float(f"{1e-9 * stretch * (1e-3 * span)**2:.3g}"))}
-    main = {"schema": "snare-experiment/1", "title": str(seed), "wire": wire, "mount": {"kind": "supports", "span_mm": span, "support_radius_mm": 0.0} if on_supports else {"kind": "pinned", "span_mm": span},
-            "pusher": {"shape": "cylinder", "radius_mm": 0.0, "friction": 0.0, "direction": "outward"}, "solver": {"elements": 64}, "series": []}
+        wire |= {
+            "axial_stiffness_N": float(f"{stretch * factor:.4g}"),
+            "bending_stiffness_Nm2": max(1e-15, float(f"{1e-9 * stretch * (1e-3 * span)**2:.3g}")),
+        }
+    main = {
+        "schema": "snare-experiment/1",
+        "title": str(seed),
+        "wire": wire,
+        "mount": (
+            {"kind": "supports", "span_mm": span, "support_radius_mm": 0.0} if on_supports else {"kind": "pinned", "span_mm": span}
+        ),
+        "pusher": {"shape": "cylinder", "radius_mm": 0.0, "friction": 0.0, "direction": "outward"},
+        "solver": {"elements": 64},
+        "series": [],
+    }
     files = {}
     travel = span * (2e-3 if on_supports else draw.between(0.01, 0.03))
     for k in range(draw.choice([1, 2, 3])):
@@ -38,7 +52,7 @@ def generate(seed):
 
         def force(d, at=at):
             if on_supports:
-                return 3.0 * bending * 1e-3 * d * span * 1e-3 / (at * (span - at) * 1e-6)**2
+                return 3.0 * bending * 1e-3 * d * span * 1e-3 / (at * (span - at) * 1e-6) ** 2
             return string(stretch, length, span, at, d)
 
         sigma = float(f"{draw.log(0.002, 0.02) * force(travel):.3g}")

@@ -11,7 +11,10 @@ def generate(seed):
     inner = (generate_push if push else generate_bodies).generate(f"{seed} inside").main
     if push:
         inner["series"] = inner["series"][:1]
-        keys = [("wire.diameter_mm", inner["wire"]["diameter_mm"]), ("series[s0].contact_position_mm", inner["series"][0]["contact_position_mm"])]
+        keys = [
+            ("wire.diameter_mm", inner["wire"]["diameter_mm"]),
+            ("series[s0].contact_position_mm", inner["series"][0]["contact_position_mm"]),
+        ]
         collect = {"force": "series[s0].largest_force_N"}
     else:
         b = inner["bodies"][0]
@@ -19,5 +22,16 @@ def generate(seed):
         collect = {"end": "bodies[b0].position_after_mm[1]", "kinetic": "energy_J.kinetic"}
         inner["duration_s"] = 0.1
     vary = [{"key": key, "values": [float(f"{value * f:.5g}") for f in (0.97, 1.02)]} for key, value in keys]
-    return Case("sweep", {"schema": "snare-sweep/1", "title": str(seed), "case": "inner.toml", "verb": "push" if push else "simulate", "design": "grid", "vary": vary, "collect": collect},
-                inner__toml=inner)
+    return Case(
+        "sweep",
+        {
+            "schema": "snare-sweep/1",
+            "title": str(seed),
+            "case": "inner.toml",
+            "verb": "push" if push else "simulate",
+            "design": "grid",
+            "vary": vary,
+            "collect": collect,
+        },
+        inner__toml=inner,
+    )

@@ -114,7 +114,11 @@ def forces_times_ten(case, run):
             other.main["wire"][k] *= 10.0
     for s in other.main["series"]:
         s["force_sigma_N"] *= 10.0
-    same_fit(run(case), run(other), factor={"wire.axial_stiffness_N": 10.0, "wire.bending_stiffness_Nm2": 10.0, "reading.force_offset_N": 10.0})
+    same_fit(
+        run(case),
+        run(other),
+        factor={"wire.axial_stiffness_N": 10.0, "wire.bending_stiffness_Nm2": 10.0, "reading.force_offset_N": 10.0},
+    )
 
 
 def the_other_end_first(case, run):
@@ -132,4 +136,16 @@ def residual_is_difference(case, run):
     different("residual_N", one["residual_N"], rest, 1e-6 * max(abs(one["measured_N"])))
 
 
-RELATIONS = [order_of_series, names_of_series, order_of_free, start_values, duplicated, split_series, backwards, scaled_column, forces_times_ten, the_other_end_first, residual_is_difference]
+RELATIONS = [
+    order_of_series,
+    names_of_series,
+    order_of_free,
+    start_values,
+    duplicated,
+    split_series,
+    backwards,
+    scaled_column,
+    forces_times_ten,
+    the_other_end_first,
+    residual_is_difference,
+]

@@ -8,8 +8,16 @@ import numpy
 from cases import Broken, Undecided, different, same_numbers
 
 # [solver] of every motion that is compared, at its defaults.
-DEFAULTS = {"relative_tolerance": 1e-6, "position_tolerance_m": 3e-7, "velocity_tolerance_m_s": 3e-3, "quasi_static_velocity_tolerance_m_s": 1e-4,
-            "body_position_tolerance_m": 1e-8, "body_velocity_tolerance_m_s": 1e-6, "body_angle_tolerance_rad": 1e-7, "body_spin_tolerance_rad_s": 1e-5}
+DEFAULTS = {
+    "relative_tolerance": 1e-6,
+    "position_tolerance_m": 3e-7,
+    "velocity_tolerance_m_s": 3e-3,
+    "quasi_static_velocity_tolerance_m_s": 1e-4,
+    "body_position_tolerance_m": 1e-8,
+    "body_velocity_tolerance_m_s": 1e-6,
+    "body_angle_tolerance_rad": 1e-7,
+    "body_spin_tolerance_rad_s": 1e-5,
+}
 FLOOR = {"_mm": 3e-4, "_m_s": 3e-5, "_deg": 3e-4, "_rad_s": 3e-4, "_J": 1e-7, "_N": 1e-3, "_Nm": 1e-4}  # some thirty tolerances
 LISTS = ("frames", "bodies", "shapes", "snares", "wires", "contacts", "bushings", "loads", "sensors", "welds")
 SKIP = re.compile(r"(gap_mm|arc_mm|points|integrator_J| q[wxyz])$")
@@ -27,7 +35,9 @@ def tight(case, share=0.1):
     other = case.changed()
     solver = other.main.setdefault("solver", {})
     for name, value in DEFAULTS.items():
-        solver[name] = max(1e-10, solver.get(name, value) * share) if name == "relative_tolerance" else solver.get(name, value) * share
+        solver[name] = (
+            max(1e-10, solver.get(name, value) * share) if name == "relative_tolerance" else solver.get(name, value) * share
+        )
     return other
 
 
@@ -101,7 +111,7 @@ def twice_the_output_rate(case, run):
     one, two = run(case), run(other)
     for name in columns(one):
         a, b = one[name], two[name][::2]
-        different(name, a, b[:len(a)], 1e-9 * size(one, name) + 1e-3 * floor(name))
+        different(name, a, b[: len(a)], 1e-9 * size(one, name) + 1e-3 * floor(name))
 
 
 def split_by_checkpoints(case, run):
@@ -129,7 +139,9 @@ def renamed(main):
         if isinstance(value, list):
             return [change(v, at) for v in value]
         if isinstance(value, str) and at not in ("title", "file", "kind", "model", "pose"):
-            return " on ".join("::".join(new.get(w, w) if k == 0 else w for k, w in enumerate(part.split("::"))) for part in value.split(" on "))
+            return " on ".join(
+                "::".join(new.get(w, w) if k == 0 else w for k, w in enumerate(part.split("::"))) for part in value.split(" on ")
+            )
         return value
 
     return change(main), new
@@ -156,7 +168,15 @@ def far_away(case):
 
 def an_idle_body(case, run):
     other = case.changed()
-    other.main.setdefault("bodies", []).append({"name": "idle", "mass_kg": 3.0, "inertia_kg_m2": [0.1, 0.2, 0.15], "position_mm": far_away(case), "spin_rad_s": [0.3, 0.0, 0.1]})
+    other.main.setdefault("bodies", []).append(
+        {
+            "name": "idle",
+            "mass_kg": 3.0,
+            "inertia_kg_m2": [0.1, 0.2, 0.15],
+            "position_mm": far_away(case),
+            "spin_rad_s": [0.3, 0.0, 0.1],
+        }
+    )
     alike(case, other, run, only=lambda n: not n.endswith("_J"))
 
 
@@ -165,8 +185,21 @@ def an_idle_wire(case, run):
         raise Undecided("no wires")
     x, y, z = far_away(case)
     other = case.changed()
-    other.main["wires"].append({"name": "idle", "construction": "solid", "diameter_mm": 1.0, "length_mm": 151.0, "youngs_modulus_GPa": 200.0, "poisson_ratio": 0.3,
-                                "density_kg_m3": 8000.0, "from_mm": [x, y, z], "to_mm": [x + 150.0, y, z], "elements": 8, "model": "quasi_static" if case.main["wires"][0].get("model") != "full" else "full"})
+    other.main["wires"].append(
+        {
+            "name": "idle",
+            "construction": "solid",
+            "diameter_mm": 1.0,
+            "length_mm": 151.0,
+            "youngs_modulus_GPa": 200.0,
+            "poisson_ratio": 0.3,
+            "density_kg_m3": 8000.0,
+            "from_mm": [x, y, z],
+            "to_mm": [x + 150.0, y, z],
+            "elements": 8,
+            "model": "quasi_static" if case.main["wires"][0].get("model") != "full" else "full",
+        }
+    )
     if case.main["wires"][0].get("model") == "stretched":
         raise Undecided("a wire beside laws has another order")
     alike(case, other, run, only=lambda n: not n.endswith("_J") and "idle" not in n)
@@ -222,7 +255,9 @@ def moved(case, turn, shift, carrier=None):
     if carrier is None:
         main.setdefault("frames", []).insert(0, {"name": "moved", "position_mm": shift, "rotation_deg": turn})
     else:
-        main.setdefault("bodies", []).insert(0, {"name": "moved", "driven": True, "position_mm": shift, "rotation_deg": turn, "velocity_m_s": carrier})
+        main.setdefault("bodies", []).insert(
+            0, {"name": "moved", "driven": True, "position_mm": shift, "rotation_deg": turn, "velocity_m_s": carrier}
+        )
     return other
 
 
@@ -236,12 +271,15 @@ def triple(run, name):
         return None
     what, axis = found.groups()
     letter = axis[0] if axis.endswith("_mm") else axis[1]
-    vector = numpy.array([run[f"{what} " + axis.replace(letter, c, 1) if axis.endswith("_mm") else f"{what} {axis[0]}{c}{axis[2:]}"] for c in "xyz"])
+    vector = numpy.array(
+        [run[f"{what} " + axis.replace(letter, c, 1) if axis.endswith("_mm") else f"{what} {axis[0]}{c}{axis[2:]}"] for c in "xyz"]
+    )
     return vector, "xyz".index(letter), "place" if axis.endswith("_mm") else "velocity" if axis.endswith("_m_s") else "force"
 
 
 def seen(matrix, shift=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), acceleration=(0.0, 0.0, 0.0)):
     """Columns of a motion as another observer has them."""
+
     def expected(run, name):
         vector = triple(run, name)
         if vector is None:
@@ -250,10 +288,15 @@ def seen(matrix, shift=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), acceleration=(
         t = run["time_s"]
         new = matrix @ values
         if kind == "place":
-            new = new + numpy.outer(shift, numpy.ones_like(t)) + 1e3 * (numpy.outer(velocity, t) + 0.5 * numpy.outer(acceleration, t**2))
+            new = (
+                new
+                + numpy.outer(shift, numpy.ones_like(t))
+                + 1e3 * (numpy.outer(velocity, t) + 0.5 * numpy.outer(acceleration, t**2))
+            )
         elif kind == "velocity":
             new = new + numpy.outer(velocity, numpy.ones_like(t)) + numpy.outer(acceleration, t)
         return new[k]
+
     return expected
 
 
@@ -270,7 +313,11 @@ def world_shifted(case, run):
 def plain(case, *keys):
     """Whether nothing drags against the world or has a course of its own."""
     m = case.main
-    if any(k in m for k in keys) or m.get("damping", {}).get("mass_rate_1_s") or any(b.get("drag_Ns_m") for b in m.get("bodies", [])):
+    if (
+        any(k in m for k in keys)
+        or m.get("damping", {}).get("mass_rate_1_s")
+        or any(b.get("drag_Ns_m") for b in m.get("bodies", []))
+    ):
         raise Undecided("something holds to the world")
 
 
@@ -279,8 +326,15 @@ def on_a_standing_carrier(case, run):
     plain(case, "arms", "snares")
     if any(k.startswith("strand_extra") for w in case.main.get("wires", []) for k in w):
         raise Undecided("not on moving mounts")
-    fixed = tuple(f"{s['name']} " for s in case.main.get("shapes", []) if s.get("frame", "world") == "world")  # small bodies of the world have columns
-    alike(case, moved(case, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]), run, only=lambda n: not n.startswith(fixed) or " on " in n)
+    fixed = tuple(
+        f"{s['name']} " for s in case.main.get("shapes", []) if s.get("frame", "world") == "world"
+    )  # small bodies of the world have columns
+    alike(
+        case,
+        moved(case, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        run,
+        only=lambda n: not n.startswith(fixed) or " on " in n,
+    )
 
 
 def galilei(case, run):
@@ -293,20 +347,40 @@ def galilei(case, run):
     for b in other.main["bodies"][1:]:
         if b.get("frame", "moved") == "moved":
             b["velocity_m_s"] = [v + s for v, s in zip(b.get("velocity_m_s", [0.0] * 3), speed)]
-    alike(base, other, run, expected=seen(numpy.eye(3), velocity=speed), only=lambda n: n not in ("kinetic_J", "potential_J", "work_J"))
+    alike(
+        base,
+        other,
+        run,
+        expected=seen(numpy.eye(3), velocity=speed),
+        only=lambda n: n not in ("kinetic_J", "potential_J", "work_J"),
+    )
 
 
 def gravity_is_acceleration(case, run):
     """What falls freely together does not see that it falls."""
     m = case.main
     plain(case, "arms", "snares")
-    if not m.get("bodies") or any(b.get("driven") for b in m["bodies"]) or any(t.get(n, "world") == "world" for key, n in (("shapes", "frame"), ("bushings", "frame"), ("wires", "from_frame"), ("wires", "to_frame")) for t in m.get(key, [])):
+    if (
+        not m.get("bodies")
+        or any(b.get("driven") for b in m["bodies"])
+        or any(
+            t.get(n, "world") == "world"
+            for key, n in (("shapes", "frame"), ("bushings", "frame"), ("wires", "from_frame"), ("wires", "to_frame"))
+            for t in m.get(key, [])
+        )
+    ):
         raise Undecided("something stands on the world")
     other, base = case.changed(), case.changed()
     base.main.pop("gravity", None)
     pull = [3.0, -9.81, 5.0]
     other.main["gravity"] = {"vector_m_s2": pull}
-    alike(base, other, run, expected=seen(numpy.eye(3), acceleration=pull), only=lambda n: n not in ("kinetic_J", "potential_J", "work_J"))
+    alike(
+        base,
+        other,
+        run,
+        expected=seen(numpy.eye(3), acceleration=pull),
+        only=lambda n: n not in ("kinetic_J", "potential_J", "work_J"),
+    )
 
 
 def mirrored(case, run):
@@ -335,9 +409,30 @@ def mirrored(case, run):
     alike(case, other, run, expected=lambda one, n: -one[n] if re.search(signs[0][0], n) else one[n])
 
 
-UNITS = {"mm": (1, 0, 0), "m": (1, 0, 0), "s": (0, 0, 1), "kg": (0, 1, 0), "kg_m2": (2, 1, 0), "kg_m3": (-3, 1, 0), "m_s": (1, 0, -1), "m_s2": (1, 0, -2), "rad_s": (0, 0, -1),
-         "N": (1, 1, -2), "Nm": (2, 1, -2), "Nm2": (3, 1, -2), "N_m": (0, 1, -2), "Nm_rad": (2, 1, -2), "Ns_m": (0, 1, -1), "Nms_rad": (2, 1, -1), "1_s": (0, 0, -1), "1_m": (-1, 0, 0),
-         "GPa": (-1, 1, -2), "N_m2": (-1, 1, -2), "s_m": (-1, 0, 1), "J": (2, 1, -2)}
+UNITS = {
+    "mm": (1, 0, 0),
+    "m": (1, 0, 0),
+    "s": (0, 0, 1),
+    "kg": (0, 1, 0),
+    "kg_m2": (2, 1, 0),
+    "kg_m3": (-3, 1, 0),
+    "m_s": (1, 0, -1),
+    "m_s2": (1, 0, -2),
+    "rad_s": (0, 0, -1),
+    "N": (1, 1, -2),
+    "Nm": (2, 1, -2),
+    "Nm2": (3, 1, -2),
+    "N_m": (0, 1, -2),
+    "Nm_rad": (2, 1, -2),
+    "Ns_m": (0, 1, -1),
+    "Nms_rad": (2, 1, -1),
+    "1_s": (0, 0, -1),
+    "1_m": (-1, 0, 0),
+    "GPa": (-1, 1, -2),
+    "N_m2": (-1, 1, -2),
+    "s_m": (-1, 0, 1),
+    "J": (2, 1, -2),
+}
 SUFFIXES = sorted(UNITS, key=len, reverse=True)
 EXPLICIT = {"static_speed_m_s": 0.01, "dynamic_speed_m_s": 1.0, "bristle_displacement_m": 1e-6, "bristle_time_s": 1e-5}
 
@@ -358,12 +453,22 @@ def in_full(case):
     m["damping"] = {"bending_time_s": 1e-5, "axial_time_s": 1e-5, "strand_time_s": 1e-5, **m.get("damping", {})}
     for t in [*m.get("shapes", []), *m.get("contacts", [])]:
         if "friction" in t:
-            t.update({k: v for k, v in EXPLICIT.items() if k not in t and not (t.get("law") == "smooth" and k.startswith("bristle"))})
+            t.update(
+                {k: v for k, v in EXPLICIT.items() if k not in t and not (t.get("law") == "smooth" and k.startswith("bristle"))}
+            )
         if "model" not in t:
             t["foundation"] = {"damping_s_m": 1000.0, **t.get("foundation", {})}
     for t in m.get("shapes", []):
         if t["kind"] == "grapple_shaft":
-            for k, v in (("shaft_radius_mm", 6.0), ("shaft_length_mm", 60.0), ("cam_radius_mm", 12.0), ("underside_length_mm", 6.0), ("cam_length_mm", 18.0), ("end_radius_mm", 4.0), ("bulge_mm", 2.0)):
+            for k, v in (
+                ("shaft_radius_mm", 6.0),
+                ("shaft_length_mm", 60.0),
+                ("cam_radius_mm", 12.0),
+                ("underside_length_mm", 6.0),
+                ("cam_length_mm", 18.0),
+                ("end_radius_mm", 4.0),
+                ("bulge_mm", 2.0),
+            ):
                 t.setdefault(k, v)
     return base
 
@@ -382,9 +487,9 @@ def rescaled(base, length, mass, time):
                 for t in v:
                     walk(t)
             elif k == "k":
-                table[k] = v * mass * length / time**2 / length**table["p"]
+                table[k] = v * mass * length / time**2 / length ** table["p"]
             elif k == "c" and table.get("model") == "power":
-                table[k] = v * mass * length / time**2 / length**table["p"] * time / length
+                table[k] = v * mass * length / time**2 / length ** table["p"] * time / length
             else:
                 f = factor(k, length, mass, time)
                 if f != 1.0:
@@ -432,9 +537,26 @@ def time_reversed(case, run):
     """What loses nothing comes back."""
     m = case.main
     lossless = not any(k in m for k in ("wires", "arms", "snares", "welds", "frames")) and all(
-        not any(t.get(k) for k in ("c_Ns_m", "c", "friction", "drag_Ns_m", "drag_Nms_rad", "translational_damping_Ns_m", "rotational_damping_Nms_rad"))
-        for key in ("bodies", "contacts", "bushings") for t in m.get(key, []))
-    if not lossless or any("com_mm" in b or b.get("driven") for b in m["bodies"]) or any("shape" in t or "duration_s" in t or t.get("ramp_s") for t in m.get("loads", [])):
+        not any(
+            t.get(k)
+            for k in (
+                "c_Ns_m",
+                "c",
+                "friction",
+                "drag_Ns_m",
+                "drag_Nms_rad",
+                "translational_damping_Ns_m",
+                "rotational_damping_Nms_rad",
+            )
+        )
+        for key in ("bodies", "contacts", "bushings")
+        for t in m.get(key, [])
+    )
+    if (
+        not lossless
+        or any("com_mm" in b or b.get("driven") for b in m["bodies"])
+        or any("shape" in t or "duration_s" in t or t.get("ramp_s") for t in m.get("loads", []))
+    ):
         raise Undecided("not lossless")
     base = tight(case)
     for b in base.main.get("bushings", []):
@@ -442,7 +564,24 @@ def time_reversed(case, run):
     one = run(base)
     back = base.changed()
     for b in back.main["bodies"]:
-        end = {c: float(one[f"{b['name']} {c}"][-1]) for c in ("x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s")}
+        end = {
+            c: float(one[f"{b['name']} {c}"][-1])
+            for c in (
+                "x_mm",
+                "y_mm",
+                "z_mm",
+                "qw",
+                "qx",
+                "qy",
+                "qz",
+                "vx_m_s",
+                "vy_m_s",
+                "vz_m_s",
+                "wx_rad_s",
+                "wy_rad_s",
+                "wz_rad_s",
+            )
+        }
         b["position_mm"] = [end["x_mm"], end["y_mm"], end["z_mm"]]
         q = numpy.array([end["qw"], end["qx"], end["qy"], end["qz"]])
         q *= math.copysign(1.0, q[0])
@@ -466,7 +605,12 @@ def energy_closes(case, run):
     run.asked = run.asked[:1]
     largest = max(numpy.ptp(one[n]) for n in ("kinetic_J", "strain_J", "potential_J", "dissipated_J", "work_J"))
     total = one["kinetic_J"] + one["strain_J"] + one["potential_J"] + one["dissipated_J"] - one["work_J"]
-    different("integrator_J", total - total[0], one["integrator_J"] - one["integrator_J"][0], 1e-6 * largest + 1e-12 * max(abs(total)) + 1e-12)
+    different(
+        "integrator_J",
+        total - total[0],
+        one["integrator_J"] - one["integrator_J"][0],
+        1e-6 * largest + 1e-12 * max(abs(total)) + 1e-12,
+    )
     gap, less = (numpy.nanmax(numpy.abs(r["integrator_J"])) for r in (one, fine))
     if gap > 0.01 * largest + 1e-8 and less > 0.3 * gap:
         raise Broken("integrator_J", f"integrator_J: {gap:.4g} of {largest:.4g}, and {less:.4g} at a tenth of the tolerances")
@@ -495,12 +639,17 @@ def energy_of_bodies(case, run):
         raise Undecided("not of bodies alone")
     one = run(case)
     bodies = [b for b in m["bodies"] if not b.get("driven")]
-    kinetic = sum(0.5 * b["mass_kg"] * sum(one[f"{b['name']} v{c}_m_s"]**2 for c in "xyz") + sum(0.5 * i * one[f"{b['name']} w{c}_rad_s"]**2 for i, c in zip(b["inertia_kg_m2"], "xyz"))
-                  for b in bodies)
+    kinetic = sum(
+        0.5 * b["mass_kg"] * sum(one[f"{b['name']} v{c}_m_s"] ** 2 for c in "xyz")
+        + sum(0.5 * i * one[f"{b['name']} w{c}_rad_s"] ** 2 for i, c in zip(b["inertia_kg_m2"], "xyz"))
+        for b in bodies
+    )
     different("kinetic_J", one["kinetic_J"], kinetic, 1e-6 * numpy.max(kinetic) + 1e-9)
     pull = m.get("gravity", {"vector_m_s2": [0.0] * 3})["vector_m_s2"]
     potential = -sum(b["mass_kg"] * g * 1e-3 * one[f"{b['name']} {c}_mm"] for b in bodies for g, c in zip(pull, "xyz"))
-    different("potential_J", one["potential_J"] - one["potential_J"][0], potential - potential[0], 1e-6 * numpy.ptp(potential) + 1e-9)
+    different(
+        "potential_J", one["potential_J"] - one["potential_J"][0], potential - potential[0], 1e-6 * numpy.ptp(potential) + 1e-9
+    )
 
 
 def summary_is_history(case, run):
@@ -517,6 +666,43 @@ def summary_is_history(case, run):
         different(key, one[f"{key}_J"][-1:], [one.answer["energy_J"][key]], 1e-9 * abs(one.answer["energy_J"][key]) + 1e-12)
 
 
+def points_of(file):
+    """Points, tensions, curvatures and velocities of a ParaView file, and the numbers of points of its wires."""
+    text = file.read_text()
+
+    def numbers(start):
+        at = text.index(">", text.index(start)) + 1
+        return numpy.array(text[at : text.index("</DataArray>", at)].split(), dtype=float)
+
+    return numbers('Name="Points"').reshape(-1, 3), numbers('Name="tension_N"'), numbers('Name="curvature_1_m"'), numbers('Name="velocity_m_s"').reshape(-1, 3)
+
+
+def tension_is_stretch(case, run):
+    """The tension of a piece of a wire that is straight is what its length and the rate of that say."""
+    m = case.main
+    if not m.get("wires") or m["wires"][0]["model"] == "stretched":
+        raise Undecided("no wire with a shape")
+    other = case.changed()
+    other.main.setdefault("output", {})["paraview"] = True
+    files = sorted(run(other).out.glob("motion_*.vtp"))
+    w = m["wires"][0]
+    section = 1e9 * w["youngs_modulus_GPa"] * math.pi / 4.0 * (1e-3 * w["diameter_mm"]) ** 2
+    stretch, n = w.get("axial_stiffness_N", section), w["elements"]
+    rest = 1e-3 * w["length_mm"] / n
+    for file in files[:: max(1, len(files) // 6)]:
+        x, tension, curvature, velocity = (v[: n + 1] for v in points_of(file))
+        edge = numpy.diff(x, axis=0)
+        chord = numpy.linalg.norm(edge, axis=1)
+        rate = numpy.sum(numpy.diff(velocity, axis=0) * edge, axis=1) / chord
+        want = stretch * (chord - rest + m["damping"]["axial_time_s"] * rate) / rest
+        ends = numpy.array([tension[:-1], tension[1:]])
+        bow = stretch * (chord * numpy.maximum(abs(curvature[1:]), abs(curvature[:-1]))) ** 2 / 24.0
+        error = 2.0 * bow + numpy.ptp(ends, axis=0) + 5e-8 * stretch + 0.01 * abs(want)
+        straight = bow < 0.02 * abs(want)
+        if straight.any():
+            different("tension_N", ends.mean(axis=0)[straight], want[straight], error[straight], f" of {file.name}")
+
+
 def force_is_load(case, run):
     """A constant force on a body is a load at its centre of mass in the world's axes."""
     bodies = [b for b in case.main.get("bodies", []) if not b.get("driven")]
@@ -527,7 +713,9 @@ def force_is_load(case, run):
     next(b for b in one.main["bodies"] if b["name"] == name)["force_N"] = [1.0, -2.0, 0.5]
     b = next(b for b in two.main["bodies"] if b["name"] == name)
     b.pop("force_N", None)
-    two.main.setdefault("loads", []).append({"name": "constant", "frame": name, "axes": "world", "position_mm": b.get("com_mm", [0.0] * 3), "force_N": [1.0, -2.0, 0.5]})
+    two.main.setdefault("loads", []).append(
+        {"name": "constant", "frame": name, "axes": "world", "position_mm": b.get("com_mm", [0.0] * 3), "force_N": [1.0, -2.0, 0.5]}
+    )
     alike(one, two, run)
 
 
@@ -572,7 +760,9 @@ def centre_of_mass(case, run):
             if w.get(f"{end}_frame") == b["name"]:
                 w[f"{end}_mm"] = [float(x) for x in numpy.array(w[f"{end}_mm"]) - offset]
     for s in [s for s in two.main.get("bushings", []) if b["name"] in (s.get("frame"), s.get("other_frame"))]:
-        two.main.setdefault("frames", []).append({"name": f"old_{s['name']}", "frame": b["name"], "position_mm": [float(-x) for x in offset]})
+        two.main.setdefault("frames", []).append(
+            {"name": f"old_{s['name']}", "frame": b["name"], "position_mm": [float(-x) for x in offset]}
+        )
         for end in ("frame", "other_frame"):
             if s.get(end) == b["name"]:
                 s[end] = f"old_{s['name']}"
@@ -582,7 +772,13 @@ def centre_of_mass(case, run):
 def in_two_halves(case, run):
     """A body, or two halves of it welded together."""
     m = case.main
-    if any(k in m for k in ("arms", "snares")) or not m.get("bodies") or "com_mm" in m["bodies"][0] or m["bodies"][0].get("driven") or m.get("welds"):
+    if (
+        any(k in m for k in ("arms", "snares"))
+        or not m.get("bodies")
+        or "com_mm" in m["bodies"][0]
+        or m["bodies"][0].get("driven")
+        or m.get("welds")
+    ):
         raise Undecided("no plain body")
     other = case.changed()
     b = other.main["bodies"][0]
@@ -590,15 +786,24 @@ def in_two_halves(case, run):
     d = math.sqrt(0.2 * min(inertia) / mass)
     half = [0.5 * inertia[0], 0.5 * (inertia[1] - mass * d * d), 0.5 * (inertia[2] - mass * d * d)]
     b |= {"mass_kg": 0.5 * mass, "inertia_kg_m2": half, "com_mm": [-1e3 * d, 0.0, 0.0]}
-    other.main["bodies"].append({"name": "half", "frame": b["name"], "mass_kg": 0.5 * mass, "inertia_kg_m2": half, "com_mm": [1e3 * d, 0.0, 0.0]})
+    other.main["bodies"].append(
+        {"name": "half", "frame": b["name"], "mass_kg": 0.5 * mass, "inertia_kg_m2": half, "com_mm": [1e3 * d, 0.0, 0.0]}
+    )
     if "force_N" in b:
-        other.main.setdefault("loads", []).append({"name": "half", "frame": b["name"], "axes": "world", "force_N": b.pop("force_N")})
+        other.main.setdefault("loads", []).append(
+            {"name": "half", "frame": b["name"], "axes": "world", "force_N": b.pop("force_N")}
+        )
     for name in ("drag_Ns_m", "drag_Nms_rad"):
         if name in b:
             raise Undecided("drag of a half")
     other.main.setdefault("welds", []).append({"name": "half", "body": "half", "frame": b["name"]})
     spin = [f"{b['name']} w{c}_rad_s" for c in "xyz"]
-    alike(case, other, run, only=lambda n: n in spin or not n.startswith(b["name"] + " ") and not n.endswith("_J") or n in ("kinetic_J",))
+    alike(
+        case,
+        other,
+        run,
+        only=lambda n: n in spin or not n.startswith(b["name"] + " ") and not n.endswith("_J") or n in ("kinetic_J",),
+    )
 
 
 def sensors_watch(case, run):
@@ -607,7 +812,9 @@ def sensors_watch(case, run):
     names = [b["name"] for b in case.main.get("bodies", [])]
     if not names:
         raise Undecided("nothing to read")
-    other.main["sensors"] = [{"name": f"see{k}", "kind": kind, "frame": names[0]} for k, kind in enumerate(("position", "velocity", "attitude", "rate"))] + other.main.get("sensors", [])
+    other.main["sensors"] = [
+        {"name": f"see{k}", "kind": kind, "frame": names[0]} for k, kind in enumerate(("position", "velocity", "attitude", "rate"))
+    ] + other.main.get("sensors", [])
     same_numbers(run(case), run(other))
 
 
@@ -617,6 +824,7 @@ def weak(name, change):
         if change(other.main) is False:
             raise Undecided("it is there, or nothing to be on")
         alike(case, other, run)
+
     relation.__name__ = f"weak_{name}"
     relation.__doc__ = "What is too weak to be seen changes nothing."
     return relation
@@ -640,7 +848,15 @@ def rub(main):
 def spring(main):
     if not main.get("bodies") or main["bodies"][0].get("driven"):
         return False
-    main.setdefault("bushings", []).append({"name": "faint", "frame": "world", "other_frame": main["bodies"][0]["name"], "translational_stiffness_N_m": 1e-9, "rotational_stiffness_Nm_rad": 1e-12})
+    main.setdefault("bushings", []).append(
+        {
+            "name": "faint",
+            "frame": "world",
+            "other_frame": main["bodies"][0]["name"],
+            "translational_stiffness_N_m": 1e-9,
+            "rotational_stiffness_Nm_rad": 1e-12,
+        }
+    )
     return None
 
 
@@ -655,7 +871,38 @@ def page(main):
     main.setdefault("output", {})["paraview"] = True
 
 
-RELATIONS = [twice_the_output_rate, split_by_checkpoints, order_of_lists, names_of_things, an_idle_body, an_idle_wire, world_turned, world_shifted, on_a_standing_carrier, galilei,
-             gravity_is_acceleration, mirrored, masses_times_four, lengths_times_two, times_times_four, wires_the_other_way, time_reversed, energy_closes, dissipation_never_falls,
-             momentum_closes, energy_of_bodies, summary_is_history, force_is_load, weight_is_force, centre_of_mass, in_two_halves, sensors_watch,
-             weak("drag", drag), weak("friction", rub), weak("spring", spring), weak("gravity", pull), weak("paraview", page)]
+RELATIONS = [
+    twice_the_output_rate,
+    split_by_checkpoints,
+    order_of_lists,
+    names_of_things,
+    an_idle_body,
+    an_idle_wire,
+    world_turned,
+    world_shifted,
+    on_a_standing_carrier,
+    galilei,
+    gravity_is_acceleration,
+    mirrored,
+    masses_times_four,
+    lengths_times_two,
+    times_times_four,
+    wires_the_other_way,
+    time_reversed,
+    energy_closes,
+    dissipation_never_falls,
+    momentum_closes,
+    energy_of_bodies,
+    summary_is_history,
+    tension_is_stretch,
+    force_is_load,
+    weight_is_force,
+    centre_of_mass,
+    in_two_halves,
+    sensors_watch,
+    weak("drag", drag),
+    weak("friction", rub),
+    weak("spring", spring),
+    weak("gravity", pull),
+    weak("paraview", page),
+]

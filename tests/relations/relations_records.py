@@ -30,7 +30,9 @@ def order_of_free(case, run):
 def duplicated(case, run):
     other = case.changed()
     other.main["records"] += [{**r, "name": r["name"] + "b"} for r in case.main["records"]]
-    same_fit(run(case), run(other), errors=math.sqrt(0.5), spread=2.0)  # the order of the noise is chosen by what the readings show, twice
+    same_fit(
+        run(case), run(other), errors=math.sqrt(0.5), spread=2.0
+    )  # the order of the noise is chosen by what the readings show, twice
 
 
 def start_values(case, run):
@@ -101,9 +103,24 @@ def the_other_way(case, run):
         if name.endswith("csv"):
             head, *rows = text.splitlines()
             other.files[name] = "\n".join([head, *(f"{t},{-float(x)!r}" for t, x in (row.split(",") for row in rows))]) + "\n"
-    for v in [other.files["scenario__toml"]["bodies"][0]["velocity_m_s"], *(r["set"]["bodies[b].velocity_m_s"] for r in other.main["records"] if "set" in r)]:
+    for v in [
+        other.files["scenario__toml"]["bodies"][0]["velocity_m_s"],
+        *(r["set"]["bodies[b].velocity_m_s"] for r in other.main["records"] if "set" in r),
+    ]:
         v[0] = -v[0]
     same_fit(run(case), run(other))
 
 
-RELATIONS = [order_of_records, names_of_records, order_of_free, duplicated, start_values, in_metres, split_record, twice_the_output_rate, another_clock, masses_times_four, the_other_way]
+RELATIONS = [
+    order_of_records,
+    names_of_records,
+    order_of_free,
+    duplicated,
+    start_values,
+    in_metres,
+    split_record,
+    twice_the_output_rate,
+    another_clock,
+    masses_times_four,
+    the_other_way,
+]
