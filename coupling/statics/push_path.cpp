@@ -38,14 +38,12 @@ bool is_finite(const PushPoint& p) {
   return std::all_of(p.force_by.begin(), p.force_by.end(), finite);
 }
 
-/// Whether a force that is none of the mounts', the pusher's and the weight holds the wire: the condition that keeps a loose wire from
-/// sliding along itself, where its supports do not.
-bool is_unbalanced(const PushPoint& p) {
-  constexpr double share = 1e-4, rounding = 1e-6;  // [N] the latter
+/// Of a point the largest force on the wire [N].
+double largest_force(const PushPoint& p) {
   double largest = 0.0;
   for (const double force : {p.force, p.transverse_force, p.reaction_along_left, p.reaction_across_left, p.reaction_along_right, p.reaction_across_right})
     largest = std::max(largest, std::abs(force));
-  return p.imbalance > share * largest + rounding;
+  return largest;
 }
 
 }  // namespace
@@ -69,7 +67,11 @@ numerics::SolveReport PushPath::interrupted() const {
 
 void PushPath::add(PushPoint point) {
   not_finite_ = not_finite_ || !is_finite(point);
-  unbalanced_ = unbalanced_ || (!curve_.points.empty() && is_unbalanced(point));  // of the first touch the shape alone is known
+  // A force that is none of the mounts', the pusher's and the weight holds the wire: the condition that keeps a loose wire from sliding along
+  // itself, where its supports do not. Of the first touch the shape alone is known.
+  constexpr double share = 0.01, rounding = 1e-6;  // [N] the latter
+  largest_force_ = std::max(largest_force_, largest_force(point));
+  unbalanced_ = unbalanced_ || (!curve_.points.empty() && point.imbalance > share * largest_force_ + rounding);
   if (not_finite_ || unbalanced_) return;
   point.iterations = iterations_;
   curve_.newton_iterations += iterations_;

@@ -54,6 +54,7 @@ class PushPath : public RememberingPath {
   int iterations_ = 0;       // since the last point of the curve
   bool not_finite_ = false;  // a point was not added
   bool unbalanced_ = false;  // the same
+  double largest_force_ = 0.0;  // so far [N]
 
  private:
   [[nodiscard]] numerics::SolveReport through_points(const std::vector<double>& travel);

@@ -164,7 +164,9 @@ class Runner:
         return Run(case.verb, run.returncode, run.stderr, folder / "out")
 
     def commands(self, verb):
-        return [shlex.join([str(self.snare), verb, f"{name}/case.toml", "--out", f"{name}/out"]) for name in self.asked]
+        """What shows the relation at hand, by hand."""
+        at = [self.folder / name for name in self.asked]
+        return [shlex.join([str(self.snare), *verb.split(), f"{folder}/case.toml", "--out", f"{folder}/out"]) for folder in at]
 
 
 def different(what, first, second, allowed, where=""):

@@ -42,7 +42,7 @@ def generate(seed):
         for name in ("spin_rad_s", "rotation_deg"):
             main["bodies"][1].pop(name, None)
         main["bodies"][0].pop("spin_rad_s", None)
-        main["bodies"][1]["velocity_m_s"] = main["bodies"][0]["velocity_m_s"]
+        main["bodies"][1]["velocity_m_s"] = list(main["bodies"][0]["velocity_m_s"])
     if draw.maybe(0.4):
         main["loads"] = [load(draw, k, number) for k in range(draw.choice([1, 2]))]
     if draw.maybe(0.5):

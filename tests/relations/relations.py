@@ -9,7 +9,7 @@ runs the file and a changed one and holds their numbers against each other). Whe
 they differ by no more than the runs say of their own errors: the stated error of a push, of a motion what a tenth of its tolerances changes. Every file
 meets M relations of its subject, drawn with it (0: all). A relation may be undecided: it does not apply to this file, or a run has no result.
 A line of FILE of `--journal` for every file that is done, which is not run again. `--results` gets the counts, as JSON. Of a broken relation the smallest file
-that still breaks it goes to DIR with the two commands that show it. What is known, with its reason, stands in KNOWN below: it is counted and
+that still breaks it goes to DIR (else a folder of its own beside the temporary files) with the two commands that show it. What is known, with its reason, stands in KNOWN below: it is counted and
 printed, and is no failure. Exits 1 where another relation is broken.
 """
 
@@ -105,8 +105,8 @@ def one_file(a, subject, number):
                 found["broken"].append(
                     {"relation": relation.__name__, "what": what, "said": said, "known": known(subject, relation.__name__, case)}
                 )
-                if a.keep and not found["broken"][-1]["known"]:
-                    keep(a, seed, relation, case, what)
+                if not found["broken"][-1]["known"]:
+                    found["broken"][-1]["shown"] = keep(a, seed, relation, case, what)
             if result == "undecided" and not decided and said.startswith(("status", "longer")) and len(run.asked) == 1:
                 found["relations"] = {relation.__name__: "undecided"}
                 found["why"] = said
@@ -116,8 +116,8 @@ def one_file(a, subject, number):
 
 
 def keep(a, seed, relation, case, what):
-    """The smallest file, and what shows it."""
-    folder = pathlib.Path(a.keep) / f"{seed.replace(' ', '_')}_{relation.__name__}"
+    """Leaves the smallest file, and returns what shows it: what was said, and the commands."""
+    folder = (a.keep or pathlib.Path(tempfile.gettempdir()) / "snare_relations") / f"{seed.replace(' ', '_')}_{relation.__name__}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     small = shrink(case, lambda c: broken_alike(a.snare, relation, c, what), a.shrink)
@@ -125,7 +125,7 @@ def keep(a, seed, relation, case, what):
     said = verdict(relation, small, run)[2]
     for name in run.asked:
         shutil.rmtree(folder / name / "out", ignore_errors=True)
-    (folder / "commands.txt").write_text(said + "\n" + "\n".join(run.commands(case.verb)) + "\n")
+    return [said, *run.commands(case.verb)]
 
 
 def broken_alike(snare, relation, case, what):
@@ -140,6 +140,8 @@ def broken_alike(snare, relation, case, what):
 def report(found):
     for b in found["broken"]:
         print(f"{found['file']} {b['relation']}: {b['said']}{'  known: ' + b['known'] if b['known'] else ''}", flush=True)
+        for line in b.get("shown", []):
+            print(f"    {line}", flush=True)
 
 
 def counts(journal):
@@ -213,7 +215,9 @@ def finish(a, journal):
         total.update(row)
     new = [dict(b, file=line["file"]) for line in journal for b in line["broken"] if not b["known"]]
     if a.results:
-        listed = [{"file": line["file"], **b} for line in journal for b in line["broken"]]
+        listed = [
+            {"file": line["file"], **{k: v for k, v in b.items() if k != "shown"}} for line in journal for b in line["broken"]
+        ]
         result = {
             "files": len(journal),
             "seed": a.seed,
