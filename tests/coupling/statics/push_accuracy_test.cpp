@@ -196,5 +196,23 @@ TEST(PushAccuracy, NoPointIsOutOfBalance) {
   for (const PushPoint& p : curve.points) EXPECT_LE(p.imbalance, 1e-3 * std::max(std::abs(p.reaction_across_left), std::abs(p.force)) + 1e-6);
 }
 
+// With hardly any friction the way back is the way there; the supports let the wire slide before the pusher is said to leave it.
+TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
+  PushProblem test = declared_wire(39.0 * mm, 0.0);
+  test.wire.length = 80.0 * mm;
+  test.wire.diameter = 0.2 * mm;
+  test.wire.bending_stiffness_override = 1.0;
+  test.wire.axial_stiffness_override = 1.6e7;
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.span = 79.0 * mm;
+  test.mount.support_radius = 0.0;
+  test.pusher.friction = 1e-9;
+  test.travel = test::there_and_back(1.0 * mm, 4);
+  const PushCurve curve = solve_push(test, mesh(64));
+  ASSERT_TRUE(curve.report.usable()) << curve.report.message;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(curve.points[8 - i].force, curve.points[i].force, 1e-6 * curve.points[4].force) << "after " << i << " steps";
+}
+
 }  // namespace
 }  // namespace snare::coupling
