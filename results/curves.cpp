@@ -99,7 +99,8 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
       // Branch switching adds points between the readings.
       const bool asked = reading < displacement.size() && p.travel == displacement[reading] - offset;
       const double error = prediction.curve.discretisation_error[i];
-      write(asked ? displacement[reading] : p.travel + offset, &p, std::isfinite(error) ? CsvCell(error) : CsvCell(), reading, asked);
+      write(asked ? displacement[reading] : p.travel + offset, &p, std::isfinite(error) ? CsvCell(error) : CsvCell(),
+            reading, asked);
       if (asked) ++reading;
     }
   }

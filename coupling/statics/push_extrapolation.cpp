@@ -16,7 +16,8 @@ namespace {
 constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them, and are
-/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh.
+/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh. The energy goes with them, the
+/// place of the contact by itself.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,
@@ -110,7 +111,8 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
   const Refinement& force = values.front();
   static_assert(extrapolated_values.front() == &PushPoint::force);
   if (!are_of_one_branch(values)) return force.largest_change();
-  for (std::size_t v = 0; v <= extrapolated_forces; ++v) p.*extrapolated_values[v] = values[v].extrapolated();  // forces and energy
+  for (std::size_t v = 0; v <= extrapolated_forces; ++v)
+    p.*extrapolated_values[v] = values[v].extrapolated();  // forces and energy
   for (std::size_t v = 0; v < p.force_by.size(); ++v)
     p.force_by[v] = Refinement{p.force_by[v], half.force_by[v], quarter.force_by[v]}.extrapolated();
   const double third_order = (32.0 * force.fine - 12.0 * force.half + force.quarter) / 21.0;

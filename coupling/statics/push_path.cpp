@@ -41,7 +41,8 @@ bool is_finite(const PushPoint& p) {
 /// Of a point the largest force on the wire [N].
 double largest_force(const PushPoint& p) {
   double largest = 0.0;
-  for (const double force : {p.force, p.transverse_force, p.reaction_along_left, p.reaction_across_left, p.reaction_along_right, p.reaction_across_right})
+  for (const double force : {p.force, p.transverse_force, p.reaction_along_left, p.reaction_across_left,
+                             p.reaction_along_right, p.reaction_across_right})
     largest = std::max(largest, std::abs(force));
   return largest;
 }

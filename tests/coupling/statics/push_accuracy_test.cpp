@@ -165,7 +165,8 @@ TEST(PushAccuracy, NoErrorIsNoErrorOfZero) {
   for (std::size_t i = 0; i < coarse.curve.points.size(); ++i) {
     const double error = coarse.discretisation_error[i];
     if (std::isnan(error)) continue;
-    EXPECT_LE(std::abs(coarse.curve.points[i].force - fine.curve.points[i].force), 3.0 * error + 1e-6 * fine.curve.points[i].force);
+    EXPECT_LE(std::abs(coarse.curve.points[i].force - fine.curve.points[i].force),
+              3.0 * error + 1e-6 * fine.curve.points[i].force);
   }
 }
 
@@ -193,7 +194,8 @@ TEST(PushAccuracy, NoPointIsOutOfBalance) {
   test.pusher.friction = 1.0;
   test.travel = test::travel_to(1.0 * mm, 4);
   const PushCurve curve = solve_push(test, mesh(256));
-  for (const PushPoint& p : curve.points) EXPECT_LE(p.imbalance, 1e-3 * std::max(std::abs(p.reaction_across_left), std::abs(p.force)) + 1e-6);
+  for (const PushPoint& p : curve.points)
+    EXPECT_LE(p.imbalance, 1e-3 * std::max(std::abs(p.reaction_across_left), std::abs(p.force)) + 1e-6);
 }
 
 // With hardly any friction the way back is the way there; the supports let the wire slide before the pusher is said to leave it.
@@ -211,7 +213,8 @@ TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
   const PushCurve curve = solve_push(test, mesh(64));
   ASSERT_TRUE(curve.report.usable()) << curve.report.message;
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(curve.points[8 - i].force, curve.points[i].force, 1e-6 * curve.points[4].force) << "after " << i << " steps";
+    EXPECT_NEAR(curve.points[8 - i].force, curve.points[i].force, 1e-6 * curve.points[4].force)
+        << "after " << i << " steps";
 }
 
 }  // namespace
