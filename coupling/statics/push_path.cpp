@@ -38,15 +38,6 @@ bool is_finite(const PushPoint& p) {
   return std::all_of(p.force_by.begin(), p.force_by.end(), finite);
 }
 
-/// Of a point the largest force on the wire [N].
-double largest_force(const PushPoint& p) {
-  double largest = 0.0;
-  for (const double force : {p.force, p.transverse_force, p.reaction_along_left, p.reaction_across_left,
-                             p.reaction_along_right, p.reaction_across_right})
-    largest = std::max(largest, std::abs(force));
-  return largest;
-}
-
 }  // namespace
 
 bool remembers(const PushProblem& test) {
@@ -68,12 +59,7 @@ numerics::SolveReport PushPath::interrupted() const {
 
 void PushPath::add(PushPoint point) {
   not_finite_ = not_finite_ || !is_finite(point);
-  // A force that is none of the mounts', the pusher's and the weight holds the wire: the condition that keeps a loose wire from sliding along
-  // itself, where its supports do not. Of the first touch the shape alone is known.
-  constexpr double share = 0.01, rounding = 1e-6;  // [N] the latter
-  largest_force_ = std::max(largest_force_, largest_force(point));
-  unbalanced_ = unbalanced_ || (!curve_.points.empty() && point.imbalance > share * largest_force_ + rounding);
-  if (not_finite_ || unbalanced_) return;
+  if (not_finite_) return;
   point.iterations = iterations_;
   curve_.newton_iterations += iterations_;
   iterations_ = 0;
@@ -108,7 +94,6 @@ PushCurve PushPath::run(const std::vector<double>& travel) {
 numerics::SolveReport PushPath::record_here(double travel) {
   record(travel);
   if (not_finite_) return ended(numerics::Termination::not_finite, "a result is not finite");
-  if (unbalanced_) return ended(numerics::Termination::step_too_small, "the forces on the wire do not balance");
   if (options_.progress && !options_.progress(travel)) return interrupted();
   return {};
 }

@@ -51,10 +51,8 @@ class PushPath : public RememberingPath {
   const bool own_steps_;       // an equilibrium depends on the steps that led to it
   numerics::PathPoint point_;  // last accepted
   PushCurve curve_;
-  int iterations_ = 0;          // since the last point of the curve
-  bool not_finite_ = false;     // a point was not added
-  bool unbalanced_ = false;     // the same
-  double largest_force_ = 0.0;  // so far [N]
+  int iterations_ = 0;       // since the last point of the curve
+  bool not_finite_ = false;  // a point was not added
 
  private:
   [[nodiscard]] numerics::SolveReport through_points(const std::vector<double>& travel);
