@@ -6,6 +6,7 @@
 #include "results/in_mm.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -97,8 +98,9 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
       const PushPoint& p = prediction.curve.curve.points[i];
       // Branch switching adds points between the readings.
       const bool asked = reading < displacement.size() && p.travel == displacement[reading] - offset;
-      write(asked ? displacement[reading] : p.travel + offset, &p, prediction.curve.discretisation_error[i], reading,
-            asked);
+      const double error = prediction.curve.discretisation_error[i];
+      write(asked ? displacement[reading] : p.travel + offset, &p, std::isfinite(error) ? CsvCell(error) : CsvCell(),
+            reading, asked);
       if (asked) ++reading;
     }
   }

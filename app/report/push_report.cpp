@@ -59,12 +59,14 @@ void series_plots(ReportPage& page, const std::vector<Series>& series, const std
     }
     int colour = 1;
     for (const Model& model : models)
-      force.curves.push_back(make_curve(model.name, travel, model.predictions[k].force, model.style, colour++));
+      if (k < model.predictions.size())  // else it has none: its path did not come to an end
+        force.curves.push_back(make_curve(model.name, travel, model.predictions[k].force, model.style, colour++));
     page.line_plot(force);
     if (readings.empty()) continue;
     PlotSpecification remainder{"What is left: " + series[k].name, {"travel", "mm"}, {"measured less computed", "N"}};
     colour = 1;
     for (const Model& model : models) {
+      if (k >= model.predictions.size()) continue;
       Values rest;
       const Values& computed = model.predictions[k].force;
       for (std::size_t i = 0; i < std::min(readings.size(), computed.size()); ++i)

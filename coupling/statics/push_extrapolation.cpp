@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -15,7 +16,8 @@ namespace {
 constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them, and are
-/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh.
+/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh. The energy goes with them, the
+/// place of the contact by itself.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,
@@ -27,8 +29,9 @@ constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::reaction_along_right,
                                          &PushPoint::reaction_across_right,
                                          &PushPoint::reaction_z_right,
+                                         &PushPoint::energy,
                                          &PushPoint::contact_coordinate};
-constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 1;
+constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 2;
 
 /// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
 struct CoarsePoint {
@@ -108,7 +111,8 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
   const Refinement& force = values.front();
   static_assert(extrapolated_values.front() == &PushPoint::force);
   if (!are_of_one_branch(values)) return force.largest_change();
-  for (std::size_t v = 0; v < extrapolated_forces; ++v) p.*extrapolated_values[v] = values[v].extrapolated();
+  for (std::size_t v = 0; v <= extrapolated_forces; ++v)
+    p.*extrapolated_values[v] = values[v].extrapolated();  // forces and energy
   for (std::size_t v = 0; v < p.force_by.size(); ++v)
     p.force_by[v] = Refinement{p.force_by[v], half.force_by[v], quarter.force_by[v]}.extrapolated();
   const double third_order = (32.0 * force.fine - 12.0 * force.half + force.quarter) / 21.0;
@@ -142,6 +146,14 @@ CoarseCurve with_longer_steps(const PushProblem& test, PushOptions options) {
 std::size_t find(const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
   while (from < points.size() && points[from].travel != travel) ++from;
   return from;
+}
+
+// The point at a travel, and the index from which the next one is searched; null where there is none.
+const CoarsePoint* next(const std::vector<CoarsePoint>& points, std::size_t& from, double travel) {
+  const std::size_t found = find(points, from, travel);
+  if (found == points.size()) return nullptr;
+  from = found + 1;
+  return &points[found];
 }
 
 // The path is of first order in its steps: the change of its force in steps twice as long estimates its error. Errors are
@@ -205,15 +217,18 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   std::size_t in_quarter = 0;
   for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
     PushPoint& p = result.curve.points[i];
-    const std::size_t j = find(half.points, in_half, p.travel);
-    const std::size_t k = find(quarter.points, in_quarter, p.travel);
-    if (j == half.points.size() || k == quarter.points.size()) continue;
-    in_half = j + 1;
-    in_quarter = k + 1;
-    const CoarsePoint& h = half.points[j];
-    const CoarsePoint& q = quarter.points[k];
-    p.iterations += h.iterations + q.iterations;
-    if (h.same_state(p) && q.same_state(p)) result.discretisation_error[i] = extrapolate(p, h, q);
+    const CoarsePoint* h = next(half.points, in_half, p.travel);
+    const CoarsePoint* q = next(quarter.points, in_quarter, p.travel);
+    double& error = result.discretisation_error[i];
+    if (h) p.iterations += h->iterations;
+    if (q) p.iterations += q->iterations;
+    if (h && q && h->same_state(p) && q->same_state(p)) {
+      error = extrapolate(p, *h, *q);
+    } else {  // in other states of contact, or a mesh has not come here: they differ by what they err
+      for (const CoarsePoint* other : {h, q})
+        if (other) error = std::max(error, std::abs(p.force - other->values.front()));
+      if (!h && !q) error = std::numeric_limits<double>::quiet_NaN();
+    }
   }
   if (!result.curve.steps.empty()) {
     const CoarseCurve longer = with_longer_steps(test, on_coarse);

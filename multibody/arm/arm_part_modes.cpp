@@ -159,6 +159,9 @@ void ElasticArmPart::write_state(const ArmState& state, Eigen::Ref<Eigen::Vector
   y.segment(v_, arm_.tree.velocities()) = state.v;
   y.segment(motor_, arm_.motors()) = state.motor;
   y.segment(rate_, arm_.motors()) = state.motor_rate;
+  for (int k = 0; k < arm_.motors(); ++k) {
+    if (drives_[at(k)].mode == DriveMode::locked) y[rate_ + k] = 0.0;  // its brake is on
+  }
   y.segment(work_, 3).setZero();
   if (base_ == BaseEquations::momentum) {
     Kinematics kinematics(arm_.tree);

@@ -158,4 +158,15 @@ TEST(ArmScenarios, FreeBaseAnswersTheArmAndKeepsTheMomentum) {
   EXPECT_LT(history.energy_error, 1e-4);
 }
 
+// A link that begins with a speed swings on its spring; the motor behind it does not go along, and no energy comes in.
+TEST(ArmScenarios, ABrakeHoldsItsMotorFromTheStart) {
+  const auto arm = shipped("bench_arm.toml");
+  auto run = scenario::joint_step(arm, arm.poses[0].angles, 0, 0.0, 0.5);
+  run.initial.v[0] = run.initial.motor_rate[0] = 0.1;
+  const auto history = multibody::simulate(run);
+  ASSERT_TRUE(history.report.usable()) << history.report.message;
+  for (const multibody::ArmSample& s : history.samples) EXPECT_EQ(s.state.motor[0], run.initial.motor[0]);
+  EXPECT_LT(history.energy_error, 1e-4);
+}
+
 }  // namespace snare

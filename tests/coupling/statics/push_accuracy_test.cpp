@@ -149,5 +149,73 @@ TEST(PushAccuracy, NaturalCurvatureDoesNothingBetweenRigidClamps) {
               6e-5 * straight);
 }
 
+// A thick pusher with hardly any friction on a soft wire: the path on the coarser meshes stops at once, and the finest mesh is not extrapolated.
+TEST(PushAccuracy, NoErrorIsNoErrorOfZero) {
+  PushProblem test = declared_wire(128.6 * mm, 5.0 * mm);
+  test.wire.length = 200.0 * mm;
+  test.wire.bending_stiffness_override = 6.434e-5;
+  test.wire.axial_stiffness_override = 899.0;
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.support_radius = 0.0;
+  test.travel = {0.5 * mm, 1.0 * mm, 2.0 * mm, 3.2 * mm};
+  const ExtrapolatedCurve fine = solve_push_extrapolated(test, mesh(512));
+  test.pusher.friction = 1e-9;
+  const ExtrapolatedCurve coarse = solve_push_extrapolated(test, mesh(64));
+  ASSERT_EQ(coarse.curve.points.size(), fine.curve.points.size());
+  for (std::size_t i = 0; i < coarse.curve.points.size(); ++i) {
+    const double error = coarse.discretisation_error[i];
+    if (std::isnan(error)) continue;
+    EXPECT_LE(std::abs(coarse.curve.points[i].force - fine.curve.points[i].force),
+              3.0 * error + 1e-6 * fine.curve.points[i].force);
+  }
+}
+
+// Work of the pusher: what the wire gains, by forces and energies that are both extrapolated.
+TEST(PushAccuracy, EnergyIsTheWorkOfTheForce) {
+  PushProblem test = declared_wire(60.0 * mm, 0.0);
+  test.travel = test::travel_to(1.0 * mm, 32);
+  const PushCurve curve = solve_push_extrapolated(test, mesh(128)).curve;
+  ASSERT_EQ(curve.points.size(), 33U);
+  double work = 0.0;
+  for (std::size_t i = 2; i < 33; i += 2)
+    work += (curve.points[i - 2].force + 4.0 * curve.points[i - 1].force + curve.points[i].force) * 1.0 * mm / 96.0;
+  EXPECT_NEAR((curve.points.back().energy - curve.points.front().energy) / work, 1.0, 1e-4);
+}
+
+// Nothing but friction holds a wire on supports along itself: a point at which something else does is none.
+TEST(PushAccuracy, NoPointIsOutOfBalance) {
+  PushProblem test = declared_wire(136.1 * mm, 1.5 * mm);
+  test.wire.length = 200.0 * mm;
+  test.wire.diameter = 1.0 * mm;
+  test.wire.bending_stiffness_override = 1.0;
+  test.wire.axial_stiffness_override = 1.6e7;
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.support_radius = 0.0;
+  test.pusher.friction = 1.0;
+  test.travel = test::travel_to(1.0 * mm, 4);
+  const PushCurve curve = solve_push(test, mesh(256));
+  for (const PushPoint& p : curve.points)
+    EXPECT_LE(p.imbalance, 1e-3 * std::max(std::abs(p.reaction_across_left), std::abs(p.force)) + 1e-6);
+}
+
+// With hardly any friction the way back is the way there; the supports let the wire slide before the pusher is said to leave it.
+TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
+  PushProblem test = declared_wire(39.0 * mm, 0.0);
+  test.wire.length = 80.0 * mm;
+  test.wire.diameter = 0.2 * mm;
+  test.wire.bending_stiffness_override = 1.0;
+  test.wire.axial_stiffness_override = 1.6e7;
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.span = 79.0 * mm;
+  test.mount.support_radius = 0.0;
+  test.pusher.friction = 1e-9;
+  test.travel = test::there_and_back(1.0 * mm, 4);
+  const PushCurve curve = solve_push(test, mesh(64));
+  ASSERT_TRUE(curve.report.usable()) << curve.report.message;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(curve.points[8 - i].force, curve.points[i].force, 1e-6 * curve.points[4].force)
+        << "after " << i << " steps";
+}
+
 }  // namespace
 }  // namespace snare::coupling
