@@ -241,7 +241,7 @@ FigureResult figure_21(Runs& runs) {
 constexpr const char* on_the_table =
     "scenario `data/scenarios/air_table.toml`: by the printed quadratic law, by the wire that the tracing of Table 4 "
     "ends with, and by the wire as "
-    "declared. Assumed: approach at 0.1 m/s, probe 50 mm beside the centre of mass. Time is counted from the first "
+    "declared. Assumed: approach at 0.1 m/s, probe 50 mm off the centre of mass. Time is counted from the first "
     "touch.";
 constexpr const char* on_the_arm =
     "scenario `data/scenarios/jemrms_capture.toml`: an arm with the joints of Table 2 and one wire in its end "

@@ -34,18 +34,19 @@ struct NamedCase {
 enum class Origin {
   published,  ///< the paper's printed numbers
   computed,
-  record  ///< synthetic readings that stand for unpublished ones
+  record  ///< synthetic readings in place of unpublished ones
 };
 
 /// One curve of a figure, in the units of its panel.
 struct FigureCurve {
   std::string name;
   Origin origin = Origin::computed;
-  std::vector<double> x = {}, y = {};
+  std::vector<double> x = {}, y = {};  ///< [unit of the panel's axis]
   std::size_t panel = 0;
   double scatter = 0.0;  ///< standard deviation of a reading about the curve, in the unit of y; 0: unknown
 };
 
+/// Numbers of a figure that are no curve, as texts.
 struct FigureTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as columns
@@ -69,7 +70,7 @@ struct HistoryCurve {
   std::size_t panel = 0;
   double factor = 1.0;                                     ///< from the unit of the column to that of the panel
   const char* x = "time_s";                                ///< column of the same table
-  double (*zero)(const Run&) = nullptr;                    ///< what is subtracted from x; null: nothing
+  double (*zero)(const Run&) = nullptr;                    ///< offset that is subtracted from x; null: 0
   double from = -std::numeric_limits<double>::infinity();  ///< range of time shown [s]
   double to = std::numeric_limits<double>::infinity();
 };
@@ -78,8 +79,8 @@ struct HistoryCurve {
 struct Figure {
   const char* number;  ///< "Fig. 11", "Table 4"
   const char* title;
-  const char* text;    ///< what the paper's text says about it
-  const char* method;  ///< what is computed, and what is assumed
+  const char* text;    ///< statement of the paper
+  const char* method;  ///< computation and assumptions
   std::vector<Panel> panels = {};
   std::vector<HistoryCurve> curves = {};
   FigureResult (*compute)(Runs& runs) = nullptr;  ///< everything else; null: there is nothing else
@@ -102,7 +103,8 @@ struct Paper {
   std::vector<Lost> lost;
 };
 
-/// Computes a figure. Its rows get the paper and the figure as group, name and source. Throws `Stopped` where somebody wants the work to end.
+/// Computes a figure. Its rows get the paper and the figure as group, name and source. Throws `Stopped` where somebody
+/// wants the work to end.
 [[nodiscard]] FigureResult made(const Paper& paper, const Figure& figure, Runs& runs);
 
 /// A statement of a paper that holds or does not.
@@ -119,7 +121,7 @@ struct Input {
 /// A table of inputs with a row each, which may differ by half of the last printed digit.
 [[nodiscard]] FigureResult inputs(const std::vector<Input>& all, validation::Kind kind);
 
-/// A number with that many significant digits; whole numbers below a million keep all of theirs.
+/// A number, in whatever unit, with that many significant digits; whole numbers below a million keep all of theirs.
 [[nodiscard]] std::string digits(double value, int significant = 4);
 
 }  // namespace snare::papers

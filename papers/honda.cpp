@@ -432,7 +432,7 @@ Paper make() {
        group},
   };
   paper.lost = {{"Figs. 1 to 4", "photographs and sketches; nothing is computed for them"},
-                {"Fig. 7", "flowchart of the optimisation; `snare fit` does what it shows"},
+                {"Fig. 7", "flowchart of the optimisation; `snare fit` follows it"},
                 {"Table 2, the SSRMS",
                  "17.6 m and 1.8 t are printed; the shipped arm follows another published set of link data (1641 kg), "
                  "`data/arms/ssrms_like_1800kg.toml` has the printed mass"},

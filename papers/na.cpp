@@ -313,7 +313,7 @@ Paper make() {
       {"curves of Figs. 10 to 12", "drawn only; their values and axes are not in the text"},
       {"readings of Figs. 16 to 19",
        "drawn only; forces and torques are not in the text, so that shapes alone can be compared"},
-      {"mass of the visitor", "1.3 t is printed beside \"similar to HTV\", which has 16 t; 13 t is computed too"},
+      {"mass of the visitor", "printed as 1.3 t and as \"similar to HTV\", which has 16 t; 13 t is computed too"},
       {"sizes and stiffnesses of the end effector, joints of the arm", "not printed: assumed"}};
   return paper;
 }

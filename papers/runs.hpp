@@ -28,12 +28,13 @@ struct Run {
   coupling::MotionResult result;
   results::History history, telemetry;  ///< history.csv and telemetry.csv of this run
 
-  /// Two columns of the table that has `y`, in the units of their names. Throws std::out_of_range, naming the column, where there is none.
+  /// Two columns of the table that has `y`, in the units of their names. Throws std::out_of_range, naming both,
+  /// if no table has them.
   [[nodiscard]] std::pair<const std::vector<double>&, const std::vector<double>&> columns(const std::string& x,
                                                                                           const std::string& y) const;
   /// Time of the first touch of a contact [s]; NaN where it never touched.
   [[nodiscard]] double first_touch(std::size_t contact) const;
-  /// 0, or NaN where the run ended early: added to a number of the run, it spoils the comparison.
+  /// 0, or NaN where the run ended early: added to a number of the run, it spoils the comparison. [-]
   [[nodiscard]] double usable() const;
 };
 
@@ -50,8 +51,10 @@ class Runs {
   explicit Runs(std::filesystem::path data, results::Watch watch = {})
       : data_(std::move(data)), watch_(std::move(watch)) {}
 
+  /// The run of a case. Throws base::InputError for a wrong key.
   [[nodiscard]] const Run& of(const Case& asked);
-  /// The result of `make`, which is called when the name is first asked for. The first line of the name is told as a stage.
+  /// The result of `make`, which is called when the name is first asked for. Reports the
+  /// first line of the name as a stage.
   template <class Value>
   [[nodiscard]] const Value& once(const std::string& name, const std::function<Value()>& make) {
     std::shared_ptr<const void>& kept = kept_[name];
@@ -62,9 +65,9 @@ class Runs {
     return *static_cast<const Value*>(kept.get());
   }
 
-  [[nodiscard]] const std::filesystem::path& data() const { return data_; }
-  [[nodiscard]] const results::Watch& watch() const { return watch_; }
-  /// Text that precedes every stage from here on: what the work is for.
+  [[nodiscard]] const std::filesystem::path& data() const { return data_; }  ///< folder of the shipped files
+  [[nodiscard]] const results::Watch& watch() const { return watch_; }       ///< observer of the work
+  /// Text before the name of every later stage.
   void set_stage(std::string stage) { stage_ = std::move(stage); }
   /// Throws `Stopped` where somebody wants the work to end.
   void go_on() const {

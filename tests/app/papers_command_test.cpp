@@ -1,4 +1,4 @@
-// `snare reproduce` with a paper: what it takes and refuses, and what its pages hold.
+// `snare reproduce` with a paper: arguments, interruption, pages.
 
 #include "papers/papers.hpp"
 #include "tests/app/command_fixture.hpp"

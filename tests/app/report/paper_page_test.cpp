@@ -47,7 +47,7 @@ TEST(PaperPage, ShowsTextMethodCurvesComparisonAndWhatIsLost) {
   EXPECT_FALSE(contains(html, "was interrupted"));
 }
 
-// The computed curve goes to 100 N, the printed one to 4 N: the plot shows first what the printed one needs.
+// The computed curve goes to 100 N, the printed one to 4 N: the plot opens on the range of the printed one.
 TEST(PaperPage, APrintedCurveIsNotDwarfed) {
   const nlohmann::json plot = plot_of(paper_page(small_paper(), {curves()}, "0"), "Force");
   ASSERT_FALSE(plot.is_null());
