@@ -248,7 +248,6 @@ constexpr const char* on_the_arm =
     "effector; by the printed quadratic law at "
     "90 mm and by the traced wire. Assumed: 10 mm/s for the printed 10 m/s, links, pose, servos, the place of the "
     "probe.";
-const Panel force_panel{"Reaction force", {"time", "s"}, {"force", "N"}};
 
 Paper make() {
   Paper paper{"abiko",

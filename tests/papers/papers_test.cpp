@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -99,7 +100,7 @@ TEST(Papers, WhoeverStopsTheWorkIsObeyed) {
 
 TEST(Papers, AColumnThatIsMissingIsNamed) {
   Runs runs(data);
-  const Run& run = runs.of({"scenarios/jemrms_step.toml", {"duration_s=0.1"}});
+  const auto& run = runs.of({"scenarios/jemrms_step.toml", {"duration_s=0.1"}});
   try {
     (void)run.columns("time_s", "no such column");
     FAIL();
