@@ -233,8 +233,8 @@ FigureResult figure_19(Runs& runs) {
 
 Paper make() {
   Paper paper{"na",
-              "The paper on spacecraft capture by a large manipulator with an end effector of three wires (its title "
-              "and authors are not in the extracted text)",
+              "The paper on spacecraft capture by a large manipulator with an end effector of three wires (title "
+              "and authors are not known here)",
               "the paper on an end effector of three wires",
               {},
               {}};
