@@ -22,6 +22,11 @@ using namespace results;
 [[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
                                        Console& console);
 
+/// `snare reproduce WORD`: "abiko", "na", "honda" or "all" makes the figures and tables of these papers: a page a paper, figures.json. Anything
+/// else is an experiment file.
+[[nodiscard]] ExitStatus run_reproduce_word(const std::filesystem::path& what, const CommonOptions& options,
+                                            Console& console);
+
 /// Calibrates the declared model's free numbers: fit.json, curves.csv.
 [[nodiscard]] ExitStatus run_fit(const std::filesystem::path& experiment, const CommonOptions& options,
                                  Console& console);

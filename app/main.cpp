@@ -65,10 +65,9 @@ struct Verb {
 };
 
 const Verb verbs[] = {
-    {"reproduce", "the published static wire tests beside the computed curves", "EXPERIMENT.toml",
-     "experiment file; the published tests when left out", false,
-     "snare reproduce --out out/reproduce --set series[s40].law.to_mm=5", snare::app::run_reproduce,
-     "snare-reproduce/1"},
+    {"reproduce", "the published static wire tests with the computed curves, or all figures of a paper", "WHAT",
+     "experiment file, or a paper: abiko, na, honda or all; the published tests when left out", false,
+     "snare reproduce abiko --out out/abiko", snare::app::run_reproduce_word, "snare-reproduce/1"},
     {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml", "experiment file", true,
      "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2", snare::app::run_push,
      "snare-push/1"},

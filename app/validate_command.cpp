@@ -5,6 +5,8 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "base/parallel.hpp"
+#include "papers/papers.hpp"
+#include "results/validation_json.hpp"
 #include "validation/air_table_checks.hpp"
 #include "validation/arm_checks.hpp"
 #include "validation/capture_checks.hpp"
@@ -35,21 +37,6 @@
 namespace snare::app {
 
 namespace {
-
-nlohmann::json row_json(const validation::Row& row) {
-  return {{"group", row.group},
-          {"name", row.name},
-          {"unit", row.unit},
-          {"source", row.source},
-          {"kind", validation::key_of(row.kind)},
-          {"reference", row.reference},
-          {"value", row.value},
-          {"error", row.error()},
-          {"error_kind", row.limit.error_kind() == validation::ErrorKind::relative ? "relative" : "absolute"},
-          {"limit", row.limit.value()},
-          {"limit_reason", row.limit.reason()},
-          {"verdict", row.within() ? "within" : "out"}};
-}
 
 /// What was checked, and why the rest was not.
 struct Validation {
@@ -156,7 +143,8 @@ std::vector<validation::Check> all_checks() {
         validation::air_table_checks(data_directory()), validation::arm_checks(data_directory() / "arms"),
         validation::linked_motion_checks(), validation::capture_checks(data_directory()),
         validation::snare_checks(data_directory()), validation::frequency_checks(data_directory()),
-        validation::tracing_checks(measured), validation::record_checks(data_directory(), measured)}) {
+        validation::tracing_checks(measured), papers::paper_checks(data_directory()),
+        validation::record_checks(data_directory(), measured)}) {
     checks.insert(checks.end(), some.begin(), some.end());
   }
   return checks;

@@ -15,6 +15,7 @@ PAGE = ROOT / "docs/result_fields.md"
 # Schemas, in the order of the page, with what they are.
 RESULTS = [("push", "what `snare push --json` prints", "curves_csv"), ("fit", "fit.json of `snare fit`", "trace_json"),
            ("trace", "trace.json of `snare trace`", "trace_json"), ("reproduce", "reproduce.json of `snare reproduce`", "reproduce_json"),
+           ("figures", "figures.json of `snare reproduce PAPER`", "papers"),
            ("law", "law.json of `snare distil`", "law_json"), ("comparison", "compare.json of `snare compare`", "law_json"),
            ("summary", "summary.json of `snare simulate`", "summary_json"), ("sweep-summary", "summary.json of `snare sweep`", "sweep_file"),
            ("ringdown-result", "ringdown.json of `snare ringdown`", "ringdown_file"),

@@ -32,11 +32,10 @@ struct PublishedLaw {
   double position;   ///< [m]
   double a, b, c;    ///< [N/m^2], [N/m], [N]
   double r_squared;  ///< [-]
-  double zero;       ///< travel at first touch by the tracing of these fits [m]
   [[nodiscard]] double force(double d) const { return (a * d + b) * d + c; }
 };
-inline constexpr std::array<PublishedLaw, 3> published_laws{{{0.040, 719880.0, -13.578, 0.0533, 0.9976, 0.44e-3},
-                                                             {0.065, 878089.0, -1086.0, 0.2115, 0.998, 1.03e-3},
-                                                             {0.090, 890183.0, -1297.6, 0.3457, 0.9975, 1.46e-3}}};
+inline constexpr std::array<PublishedLaw, 3> published_laws{{{0.040, 719880.0, -13.578, 0.0533, 0.9976},
+                                                             {0.065, 878089.0, -1086.0, 0.2115, 0.998},
+                                                             {0.090, 890183.0, -1297.6, 0.3457, 0.9975}}};
 
 }  // namespace snare::validation

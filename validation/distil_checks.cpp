@@ -1,8 +1,8 @@
 #include "validation/distil_checks.hpp"
 
+#include "coupling/contact/law_form.hpp"
 #include "coupling/contact/tensioned_wire.hpp"
 #include "coupling/statics/push_solver.hpp"
-#include "reduction/law_fit.hpp"
 #include "reduction/snare_joint.hpp"
 #include "reduction/table_builder.hpp"
 #include "validation/closed_forms.hpp"
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <stdexcept>
 
@@ -22,7 +21,6 @@ namespace snare::validation {
 namespace {
 
 constexpr double recorded_range = 4e-3;  // [m], assumed: the papers do not print it
-constexpr int recorded_points = 41;
 
 /// The one wire that the tracing of the published tests ends with.
 coupling::PushProblem traced_wire() {
@@ -31,70 +29,6 @@ coupling::PushProblem traced_wire() {
   test.wire.axial_stiffness_override = 19300.0;
   test.wire.length = 175.49e-3;
   return test;
-}
-
-/// Force of the traced wire at the recorded displacements.
-std::vector<double> recorded(const PublishedLaw& law, std::vector<double>& displacement) {
-  coupling::PushProblem test = traced_wire();
-  test.contact_position = law.position;
-  std::vector<double> force;
-  for (int i = 0; i < recorded_points; ++i) {
-    displacement.push_back(recorded_range * i / (recorded_points - 1));
-    if (displacement.back() >= law.zero)
-      test.travel.push_back(displacement.back() - law.zero);
-    else
-      force.push_back(0.0);
-  }
-  for (const coupling::PushPoint& p : coupling::solve_push_extrapolated(test, {}).curve.points)
-    force.push_back(p.force);
-  if (force.size() != displacement.size()) throw std::runtime_error("the push on the traced wire ended early");
-  return force;
-}
-
-std::vector<Row> published_rows() {
-  std::vector<Row> rows;
-  const std::string group = "distilled laws";
-  std::vector<double> stiffness;
-  for (const PublishedLaw& law : published_laws) {
-    std::vector<double> d;
-    const std::vector<double> force = recorded(law, d);
-    std::vector<std::size_t> all(d.size());
-    std::iota(all.begin(), all.end(), 0);
-    const reduction::FittedLaw fit =
-        reduction::fit_law(coupling::quadratic_law(), numerics::HermiteCurve(d, force), all);
-    // Scatter of the lost readings about the published law, from its R^2 and its variance over the range.
-    double mean = 0.0;
-    for (const double x : d) mean += law.force(x) / recorded_points;
-    double variance = 0.0;
-    double apart = 0.0;
-    for (const double x : d) {
-      variance += std::pow(law.force(x) - mean, 2) / recorded_points;
-      apart += std::pow(fit.form->force(fit.values, x) - law.force(x), 2) / recorded_points;
-    }
-    const double scatter = std::sqrt((1.0 - law.r_squared) / law.r_squared * variance);
-    rows.push_back(
-        {group,
-         fmt::format("quadratic of the traced wire at s = {:g} mm: rms to the published one over its scatter, "
-                     "at most 1",
-                     1e3 * law.position),
-         "", "Abiko et al., Table 4", Kind::published_measurement, 0.0, std::sqrt(apart) / scatter,
-         Limit::absolute(1.0, "an upper bound; the value is a multiple of the scatter of the published readings")});
-    stiffness.push_back(force.back() / recorded_range);
-    double falls = 0.0;
-    for (std::size_t i = 1; i < d.size(); ++i) {
-      if (d[i] > law.zero + 1e-4 && force[i] / d[i] < force[i - 1] / d[i - 1]) falls += 1.0;
-    }
-    rows.push_back(
-        {group,
-         fmt::format("larger penetration, larger stiffness at s = {:g} mm: points that fall", 1e3 * law.position), "",
-         "Abiko et al., section 4", Kind::published_measurement, 0.0, falls,
-         Limit::absolute(0.5, "a number of points, of which there should be none")});
-  }
-  const bool ordered = stiffness[0] > stiffness[1] && stiffness[1] > stiffness[2];
-  rows.push_back({group, "stiffness falls from s = 40 over 65 to 90 mm at 4 mm (1: yes)", "",
-                  "Abiko et al., Table 4 and Fig. 11", Kind::published_measurement, 1.0, ordered ? 1.0 : 0.0,
-                  Limit::relative(0.5)});
-  return rows;
 }
 
 std::vector<Row> table_rows() {
@@ -157,21 +91,6 @@ std::vector<Row> closed_form_rows() {
   return rows;
 }
 
-/// Half the traced wire in every length, so that stresses stay: EI by 1/16, EA by 1/4. Seat and friction are assumed.
-coupling::SnareSpecification half_scale_snare() {
-  coupling::SnareSpecification snare;
-  snare.wire = traced_wire();
-  snare.wire.wire.diameter *= 0.5;
-  snare.wire.wire.length *= 0.5;
-  snare.wire.mount.span *= 0.5;
-  snare.wire.pusher.radius *= 0.5;
-  *snare.wire.wire.bending_stiffness_override /= 16.0;
-  *snare.wire.wire.axial_stiffness_override /= 4.0;
-  snare.wire.pusher.friction = 0.1;  // Honda et al., Table 3, dynamic
-  snare.seat = 5e-3;                 // beyond the 3 mm by which the shaft is moved
-  return snare;
-}
-
 std::vector<Row> snare_rows() {
   std::vector<Row> rows;
   const std::string group = "shaft in a closed snare";
@@ -217,9 +136,22 @@ std::vector<Row> snare_rows() {
 
 }  // namespace
 
+coupling::SnareSpecification half_scale_snare() {
+  coupling::SnareSpecification snare;
+  snare.wire = traced_wire();
+  snare.wire.wire.diameter *= 0.5;
+  snare.wire.wire.length *= 0.5;
+  snare.wire.mount.span *= 0.5;
+  snare.wire.pusher.radius *= 0.5;
+  *snare.wire.wire.bending_stiffness_override /= 16.0;
+  *snare.wire.wire.axial_stiffness_override /= 4.0;
+  snare.wire.pusher.friction = 0.1;  // Honda et al., Table 3, dynamic
+  snare.seat = 5e-3;                 // beyond the 3 mm by which the shaft is moved
+  return snare;
+}
+
 std::vector<Check> distil_checks() {
-  return {{"published quadratics from the traced wire", published_rows},
-          {"table at random places", table_rows},
+  return {{"table at random places", table_rows},
           {"closed forms of stretched and tensioned wires", closed_form_rows},
           {"shaft in a closed snare", snare_rows}};
 }

@@ -20,7 +20,7 @@ import sys
 PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "benchmarks/README.md"]
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
 MATHJAX_PARTS = ["MathJax.js", "config/TeX-AMS_SVG.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG"]
-HEADERS = ["base", "numerics", "study", "wire", "multibody", "coupling", "scenario", "reduction", "identification", "validation", "results"]
+HEADERS = ["base", "numerics", "study", "wire", "multibody", "coupling", "scenario", "reduction", "identification", "validation", "results", "papers"]
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s#]+)(#[^)\s]*)?\)")
 INDEX = """# snare
 

@@ -167,6 +167,7 @@ const LongWork long_work[] = {
     {"trace", {"trace", "readings.toml"}},
     {"trace_records", {"trace", "record.toml"}},
     {"reproduce", {"reproduce"}},
+    {"reproduce_paper", {"reproduce", "honda"}},
     {"distil", {"distil", data + "/wires/traced_published.toml"}},
     {"compare_pushes", {"compare", "readings.toml"}},
     {"compare_motions", {"compare", data + "/scenarios/ssrms_htv_capture.toml"}},

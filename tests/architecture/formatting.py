@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 FOLDERS = ("base", "numerics", "wire", "multibody", "coupling", "scenario", "reduction", "identification", "validation",
-           "results", "study", "app", "python", "benchmarks", "examples", "tests", "cmake")
+           "results", "papers", "study", "app", "python", "benchmarks", "examples", "tests", "cmake")
 PLACE = re.compile(r"^(.*?):(\d+):\d+: error: code should be clang-formatted")
 
 

@@ -18,7 +18,7 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["base", "numerics", "study", "wire", "multibody", "coupling", "scenario", "reduction", "identification", "validation", "results"]
+ROOMS = ["base", "numerics", "study", "wire", "multibody", "coupling", "scenario", "reduction", "identification", "validation", "results", "papers"]
 # Of a structure's number: a unit in brackets, or words for one that has none.
 UNIT = re.compile(r"\[[^\]]*\]|\b(share|ratio|factor|relative|coefficient|probability|dimensionless|number|degrees? of freedom|weight|exponent|in its unit|"
                   r"in the unit|SI units?|in SI|unit of|statistic|P of|radian|seconds?|significance|correlation|restitution|share of|quantile|score|"

@@ -26,6 +26,7 @@ VERBS = [
     ["fit", DATA / "experiments/published_static.toml", *SMALL],
     ["trace", DATA / "experiments/published_static.toml", *SMALL],
     ["reproduce", DATA / "experiments/published_static.toml", *SMALL],
+    ["reproduce", None, "abiko"],
     ["distil", ROOT / "tests/ranges/wire.toml"],
     ["compare", DATA / "experiments/published_static.toml", *SMALL],
     ["ringdown", DATA / "experiments/ringdown.toml"],

@@ -89,7 +89,7 @@ free = ["bodies[block].mass_kg", "bushings[spring].translational_stiffness_N_m"]
 most_effects = 0
 """
 # Schemas of results that take longer: the test of the fields does not ask for them.
-LONG = {"snare-reproduce/1", "snare-validation/1"}
+LONG = {"snare-reproduce/1", "snare-figures/1", "snare-validation/1"}
 # What a wire file says of losses and of a record's offset.
 LOSSES = """displacement_offsets_mm = [0.1]
 

@@ -29,6 +29,7 @@ PAGES = {
     "fit": (["fit", "examples/push.toml", *SMALL], 4),
     "trace": (["trace", "examples/push.toml", *SMALL], 4),
     "reproduce": (["reproduce", *SMALL], 4),
+    "reproduce_paper": (["reproduce", "abiko"], 8),
     "distil": (["distil", "WIRE"], 3),
     "compare": (["compare", "examples/push.toml", *SMALL], 4),
     "compare_motions": (["compare", "data/scenarios/snare_on_pin.toml"], 0),
