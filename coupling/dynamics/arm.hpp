@@ -52,6 +52,7 @@ struct MountGive {
   double damping = 0.0;                                         ///< [N s/m], >= 0
   double slip_force = std::numeric_limits<double>::infinity();  ///< of the spring, beyond which it slips [N], > 0
 
+  /// Whether there is a spring, and whether it slips.
   [[nodiscard]] bool gives() const { return !std::isinf(stiffness); }
   [[nodiscard]] bool slips() const { return !std::isinf(slip_force); }
 };
