@@ -92,8 +92,8 @@ TEST(CentreLine, BendsAWireWithoutTwist) {
 // Four points a circle: the spline is far from the circle, and yet the wire is evenly stretched along it.
 TEST(CentreLine, IsEvenlyStretchedHoweverFewItsPoints) {
   const CentreLine line = line_through(helix_points(5, 2.0 * pi));
-  for (int i = 0; i <= 100; ++i)
-    EXPECT_LT(std::abs(line.stretch(0.01 * i * line.length())), 1e-5);  // 90 degrees in 16 parts
+  // The curvature jumps at the points, where pieces of 90 degrees in 64 parts turn by 0.025 a part: some 1/20 of the square.
+  for (int i = 0; i <= 100; ++i) EXPECT_LT(std::abs(line.stretch(0.01 * i * line.length())), 3e-5);
 }
 
 TEST(CentreLine, OfAStraightWireIsStraightToRoundOff) {
