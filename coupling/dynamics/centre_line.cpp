@@ -82,8 +82,10 @@ LinePoints measured_points(const LinePoints& points) {
     const double width = (chords.coordinates[i] - from) / static_cast<double>(parts);
     for (Eigen::Index k = 0; k < parts; ++k) {
       const double at = from + static_cast<double>(k) * width;
-      finer.coordinates.push_back(finer.coordinates.back() + length_between(curve, at, at + width));
-      put(at + width);
+      const double next_at =
+          k + 1 == parts ? chords.coordinates[i] : at + width;  // the points themselves, without round-off
+      finer.coordinates.push_back(finer.coordinates.back() + length_between(curve, at, next_at));
+      put(next_at);
     }
   }
   return finer;
