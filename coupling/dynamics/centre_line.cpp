@@ -64,7 +64,7 @@ double CentreLine::curvature(double s) const {
 // Between the new points the curve turns so little that a spline over its length has the speed one.
 LinePoints measured_points(const LinePoints& points) {
   const Eigen::Index n = points.places.cols();
-  constexpr Eigen::Index most_parts = 16, enough = 4000;
+  constexpr Eigen::Index most_parts = 64, enough = 4000;
   const Eigen::Index parts = std::clamp<Eigen::Index>(enough / n, 1, most_parts), count = (n - 1) * parts + 1;
   LinePoints chords{points.places, points.velocities, {0.0}};
   for (Eigen::Index i = 1; i < n; ++i)
@@ -82,8 +82,10 @@ LinePoints measured_points(const LinePoints& points) {
     const double width = (chords.coordinates[i] - from) / static_cast<double>(parts);
     for (Eigen::Index k = 0; k < parts; ++k) {
       const double at = from + static_cast<double>(k) * width;
-      finer.coordinates.push_back(finer.coordinates.back() + length_between(curve, at, at + width));
-      put(at + width);
+      const double next_at =
+          k + 1 == parts ? chords.coordinates[i] : at + width;  // the points themselves, without round-off
+      finer.coordinates.push_back(finer.coordinates.back() + length_between(curve, at, next_at));
+      put(next_at);
     }
   }
   return finer;

@@ -226,7 +226,9 @@ TEST_F(WireStarts, RefuseWhatContradictsTheWire) {
   write("back.csv", "s_mm,x_mm,y_mm,z_mm\n0,0,0,0\n50,50,0,0\n50,100,0,0\n");
   write("late.csv", "s_mm,x_mm,y_mm,z_mm\n1,0,0,0\n50,50,0,0\n");
   write("long.csv", "s_mm,x_mm,y_mm,z_mm\n0,0,0,0\n50,60,0,0\n100,120,0,0\n");
-  write("kink.csv", "x_mm,y_mm,z_mm\n0,0,0\n99.5,0,0\n100,0,0\n100,0.5,0\n100,100,0\n");
+  std::string kink = "x_mm,y_mm,z_mm\n";  // a right angle of points half a millimetre apart
+  for (int i = 0; i <= 20; ++i) kink += fmt::format("{},{},0\n", 0.5 * std::min(i, 10), 0.5 * std::max(i - 10, 0));
+  write("kink.csv", kink);
   write("moving.csv", "x_mm,y_mm,z_mm,vy_m_s\n0,0,0,1\n100,0,0,0\n");
   write("one.csv", "x_mm,y_mm,z_mm\n0,0,0\n");
   write("text.csv", "x_mm,y_mm,z_mm\n0,0,0\n50,a,0\n");
@@ -234,7 +236,7 @@ TEST_F(WireStarts, RefuseWhatContradictsTheWire) {
   const auto refused = [&](const std::string& wire) { return test::refusal([&] { return read(keys, wire); }); };
   const std::pair<const char*, const char*> wrong[] = {
       {"length_mm = 90\nshape_file = \"arc.csv\"\n", "length_mm = 90, must be >= "},
-      {"length_mm = 90\nshape_file = \"arc.csv\"\n", "the wire begins on a line of 110."},
+      {"length_mm = 90\nshape_file = \"arc.csv\"\n", "the wire begins on a line of 109.823 mm"},
       {"shape_file = \"twice.csv\"\n", "must have points apart from each other; nos 2 and 3 are not"},
       {"shape_file = \"back.csv\"\n", "apart from each other, with s_mm that ascends; nos 2 and 3 are not"},
       {"shape_file = \"late.csv\"\n", "must have s_mm that begins with 0"},
@@ -252,7 +254,7 @@ TEST_F(WireStarts, RefuseWhatContradictsTheWire) {
       {"shape_file = \"arc.csv\"\nmodel = \"stretched\"\n",
        "must be \"full\" or \"quasi_static\" of a wire with shape_file"},
       {"shape_file = \"arc.csv\"\nmount = \"pinned\"\nends = { left = \"free\", right = \"free\" }\n",
-       "mount = pinned, cannot stand beside ends"},
+       "mount = \"pinned\", cannot stand beside ends"},
       {"shape_file = \"arc.csv\"\nends = { left = \"free\" }\n", "ends.right"},
       {"shape_file = \"arc.csv\"\nmodel = \"quasi_static\"\nends = { left = \"pinned\", right = \"free\" }\n",
        "a free end that no clamp holds"},
