@@ -41,6 +41,10 @@ def between_samples(case):
     return any("0.013," in text for name, text in case.files.items() if name.endswith("csv"))
 
 
+def with_a_zero(case):
+    return "reading.displacement_offset_mm" in case.main["fit"]["free"]
+
+
 def tilted(case):
     return "tilt_deg" in case.main["pusher"]
 
@@ -53,6 +57,12 @@ KNOWN = [
         ("weak_natural_curvature_1_m",),
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
+    ),
+    (
+        "fit",
+        ("start_values",),
+        with_a_zero,
+        "a fit that ends where a reading is just before the touch has the standard error of one side of that kink",
     ),
     (
         "records",

@@ -626,6 +626,7 @@ def momentum_closes(case, run):
     run.asked = run.asked[:1]
     bodies = [b for b in case.main.get("bodies", []) if not b.get("driven")]
     scale = sum(b["mass_kg"] * max(size(one, f"{b['name']} vx_m_s"), 1e-3) for b in bodies) or 1e-3
+    scale += 1.0 * ("arms" in case.main)  # some ten kilograms at 0.1 m/s
     for name, arm in (("momentum_error_Ns", 1.0), ("angular_momentum_error_Nms", 0.3)):
         gap, less = (max(map(abs, r.answer[name])) for r in (one, fine))
         if gap > 1e-3 * scale * arm and less > 0.3 * gap:

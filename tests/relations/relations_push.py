@@ -334,7 +334,7 @@ def there_and_back(case, run):
             size = (
                 allowed
                 if name != "energy_J"
-                else 1e-5 * numpy.nanmax(numpy.abs(there[name][rows])) + allowed * 1e-3 * max(s["path_mm"])
+                else 2e-3 * numpy.nanmax(numpy.abs(there[name][rows])) + allowed * 1e-3 * max(s["path_mm"])
             )
             different(name, there[name][rows], there[name][rows][::-1], size)
 

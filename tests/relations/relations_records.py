@@ -38,9 +38,9 @@ def duplicated(case, run):
 def start_values(case, run):
     other = case.changed()
     spring = other.files["scenario__toml"]["bushings"][0]
-    spring["translational_damping_Ns_m"] *= 1.5
-    spring["translational_stiffness_N_m"] *= 1.05
-    same_fit(run(case), run(other))
+    for name, factor in (("translational_damping_Ns_m", 1.5), ("translational_stiffness_N_m", 1.05)):
+        spring[name] *= factor if f"bushings[spring].{name}" in case.main["fit"]["free"] else 1.0
+    same_fit(run(case), run(other), share=0.1)
 
 
 def in_metres(case, run):
