@@ -46,7 +46,7 @@ struct MotionWeld {
   int body = 0;  ///< index
 };
 
-/// How a mount gives along its axis: a spring that may slip, and a dashpot beside it.                   theory.md (M.38)
+/// How a mount gives along its axis: a spring that may slip, and a parallel dashpot.                   theory.md (M.38)
 struct MountGive {
   double stiffness = std::numeric_limits<double>::infinity();   ///< [N/m], > 0; infinite: it does not give
   double damping = 0.0;                                         ///< [N s/m], >= 0
