@@ -45,6 +45,10 @@ def with_a_zero(case):
     return "reading.displacement_offset_mm" in case.main["fit"]["free"]
 
 
+def rubs(case):
+    return case.main["pusher"].get("friction", 0.0) > 0.0
+
+
 def tilted(case):
     return "tilt_deg" in case.main["pusher"]
 
@@ -57,6 +61,12 @@ KNOWN = [
         ("weak_natural_curvature_1_m",),
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
+    ),
+    (
+        "push",
+        ("work_is_energy",),
+        rubs,
+        "with friction energy and dissipation exceed the work by up to 1 % on every mesh; perhaps friction lacks its moment about the axis of the wire",
     ),
     (
         "fit",
