@@ -2,10 +2,10 @@
 #include "app/interruption.hpp"
 #include "app/report/paper_page.hpp"
 #include "app/result_folder.hpp"
+#include "app/row_json.hpp"
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "papers/papers.hpp"
-#include "results/validation_json.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
-#include "results/validation_json.hpp"
+#include "app/row_json.hpp"
 
 #include <nlohmann/json.hpp>
 
-namespace snare::results {
+namespace snare::app {
 
 nlohmann::json row_json(const validation::Row& row) {
   return {{"group", row.group},
@@ -19,4 +19,4 @@ nlohmann::json row_json(const validation::Row& row) {
           {"verdict", row.within() ? "within" : "out"}};
 }
 
-}  // namespace snare::results
+}  // namespace snare::app

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace snare::results {
+namespace snare::app {
 
 /// A row of validation.json, and of the figures of a paper.
 [[nodiscard]] nlohmann::json row_json(const validation::Row& row);
 
-}  // namespace snare::results
+}  // namespace snare::app
