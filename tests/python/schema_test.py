@@ -155,8 +155,9 @@ def elements_of(document, schema, root, address=""):
         inner = resolve(schema.get("properties", {}).get(key, schema["additionalProperties"]), root) if schema["additionalProperties"] else \
             resolve(schema["properties"][key], root)
         here = f"{address}.{key}" if address else key
-        if isinstance(value, dict):
-            yield from elements_of(value, table_form(inner), root, here)
+        inner = table_form(inner)
+        if isinstance(value, dict) and "anyOf" not in inner:
+            yield from elements_of(value, inner, root, here)
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             for k, element in enumerate(value):
                 yield from elements_of(element, inner["items"], root, f"{here}[{element.get('name', k + 1)}]")

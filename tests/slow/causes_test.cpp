@@ -116,7 +116,9 @@ TEST(SlowCauses, ADiameterIsOneCause) {
   const Trace t = trace(e);
   EXPECT_TRUE(names(t, "wire_diameter"));
   for (const FittedNumber& n : t.final.numbers) {
-    if (n.key == "wire.diameter_mm") EXPECT_NEAR(n.value, 1.6, 0.005);
+    if (n.key == "wire.diameter_mm") {
+      EXPECT_NEAR(n.value, 1.6, 0.005);
+    }
   }
 }
 
