@@ -147,13 +147,14 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
 }
 
 void Identifiability::add_direction(std::size_t k, const VectorXd& change, const MatrixXd& jacobian) {
-  constexpr double least_share = 0.1;  // of the largest effect on the readings: what moves less stays as known as it is
-  const VectorXd effect = jacobian.colwise().norm().transpose().cwiseProduct(change).cwiseAbs();
+  constexpr double least_correlation = 0.3;  // with k: five standard errors of k move such a number by 1.5 of its own
+  const auto held_row = static_cast<Index>(k);
   NullDirection direction{k, {}, VectorXd::Zero(change.size())};
   std::vector<bool> held(known.size(), false);
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto row = static_cast<Index>(i);
-    if (i != k && !(effect[row] > least_share * effect.maxCoeff())) continue;
+    const double deviations = std::sqrt(covariance(row, row) * covariance(held_row, held_row));
+    if (i != k && !(std::abs(covariance(row, held_row)) > least_correlation * deviations)) continue;
     direction.change[row] = change[row];
     if (i != k) direction.others.push_back(i);
     known[i] = false;
