@@ -35,9 +35,9 @@ constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 2;
 
 /// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
 struct CoarsePoint {
-  explicit CoarsePoint(PushPoint& p)
+  CoarsePoint(const PushPoint& p, const double* derivatives)
       : travel(p.travel),
-        force_by(std::move(p.force_by)),
+        force_by(derivatives),
         iterations(p.iterations),
         unstable_modes(p.unstable_modes),
         in_contact(p.in_contact),
@@ -50,7 +50,7 @@ struct CoarsePoint {
 
   double travel;
   std::array<double, extrapolated_values.size()> values{};
-  std::vector<double> force_by;
+  const double* force_by;  ///< in `CoarseCurve::derivatives`, as many as the finest mesh has
   int iterations, unstable_modes;
   bool in_contact, slipping;
 };
@@ -61,13 +61,22 @@ struct CoarseCurve {
         touch_height(curve.touch_height),
         newton_iterations(curve.newton_iterations),
         report(std::move(curve.report)) {
+    std::size_t count = 0;
+    for (const PushPoint& p : curve.points) count += p.force_by.size();
+    derivatives.reserve(count);  // points refer to it: it does not grow
     points.reserve(curve.points.size());
-    for (PushPoint& p : curve.points) points.emplace_back(p);
+    for (const PushPoint& p : curve.points) {
+      points.emplace_back(p, derivatives.data() + derivatives.size());
+      derivatives.insert(derivatives.end(), p.force_by.begin(), p.force_by.end());
+    }
   }
+  CoarseCurve(CoarseCurve&&) = default;
+  CoarseCurve(const CoarseCurve&) = delete;
 
   double natural_height, touch_height;
   int newton_iterations;
   numerics::SolveReport report;
+  std::vector<double> derivatives;  ///< of the forces of all points, one point behind another
   std::vector<CoarsePoint> points;
 };
 
