@@ -101,7 +101,7 @@ json paper_json(const MadePaper& made) {
           {"lost", std::move(lost)}};
 }
 
-/// The papers that are asked for, figure by figure; what is finished may be kept from another thread at any time.
+/// The papers that are asked for, figure by figure; another thread may keep the finished ones at any time.
 class Work {
  public:
   Work(const CommonOptions& options, const std::vector<const Paper*>& asked) : options_(options) {
@@ -141,7 +141,7 @@ class Work {
   }
 
  private:
-  /// A figure, or why there is none: one that fails does not cost the others.
+  /// A figure, or the reason for its absence. The others are made even if one fails.
   static FigureResult attempt(const Paper& paper, const Figure& figure, papers::Runs& runs) {
     try {
       return papers::made(paper, figure, runs);
@@ -174,7 +174,7 @@ class Work {
                        made.paper->name, made.figures.size(), rows, out, (options_.out / made.page()).string());
   }
 
-  /// Writes what is finished; says what that is.
+  /// Writes the finished figures and names them.
   std::string keep() {
     const std::scoped_lock lock(mutex_);
     std::size_t figures = 0;

@@ -69,7 +69,7 @@ void add_table(ReportPage& page, const papers::FigureTable& table) {
   page.table(shown);
 }
 
-/// What the text says in numbers or statements, and what was computed for it.
+/// Numbers and statements of the text, each with the computed value.
 void add_comparison(ReportPage& page, const Figure& figure, const FigureResult& result) {
   if (!std::string_view(figure.compared_in).empty())
     page.paragraph(fmt::format("snare validate compares this in its group \"{}\".", figure.compared_in));

@@ -338,14 +338,15 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
 }
 
 VectorXd MountPart::velocity_error(const VectorView& y, const VectorXd& dv) const {
+  const Hold h = hold(y);
   Vector3d change = dv.segment<3>(speed());
   if (carrier().moves_freely()) {
     const Matrix6X J = carrier().jacobian(y);
     const std::vector<int> v = carrier().velocities();
     change -= linear_change(J, v, dv);
-    if (give_.gives()) change -= angular_change(J, v, dv).cross(hold(y).r);
+    if (give_.gives()) change -= angular_change(J, v, dv).cross(h.r);
   }
-  return hold(y).axes.transpose() * change;
+  return h.axes.transpose() * change;
 }
 
 // d(B^T w)/dt = B^T (-v_M' - omega' x r - omega x r') + (turn x B)^T w, with the velocities as they are.
