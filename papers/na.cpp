@@ -231,28 +231,23 @@ FigureResult figure_19(Runs& runs) {
   return result;
 }
 
-Paper make() {
-  Paper paper{"na",
-              "The paper on spacecraft capture by a large manipulator with an end effector of three wires (title "
-              "and authors are not known here)",
-              "the paper on an end effector of three wires",
-              {},
-              {}};
-  const Axis time{"time", "s"}, velocity{"velocity", "m/s"}, rate{"rate", "deg/s"}, force{"force", "N"},
-      torque{"torque", "N m"}, deflection{"deflection", "mm"};
-  constexpr const char* contact_method =
-      "scenario `data/scenarios/ssrms_rigidize.toml` without ball joint and pull: the visitor of 1.3 t drifts against "
-      "the end effector of the arm from 5 mm. "
-      "The four conditions are assumed.";
-  constexpr const char* test_method =
-      "scenario `data/scenarios/constraint_test.toml`: three wires close on the pin, a robot moves it, a force/torque "
-      "sensor reads. Sizes, wires and friction are assumed.";
-  const auto panels = [&](const char* x, const char* y, const char* z, const Axis& axis) {
-    return std::vector<Panel>{{x, time, axis}, {y, time, axis}, {z, time, axis}};
-  };
-  const std::vector<Panel> readings{
-      {"Force on the pin", time, force}, {"Torque on the pin", time, torque}, {"Deflection", time, deflection}};
-  paper.figures = {
+const Axis time{"time", "s"}, velocity{"velocity", "m/s"}, rate{"rate", "deg/s"}, force{"force", "N"},
+    torque{"torque", "N m"}, deflection{"deflection", "mm"};
+constexpr const char* contact_method =
+    "scenario `data/scenarios/ssrms_rigidize.toml` without ball joint and pull: the visitor of 1.3 t drifts against "
+    "the end effector of the arm from 5 mm. "
+    "The four conditions are assumed.";
+constexpr const char* test_method =
+    "scenario `data/scenarios/constraint_test.toml`: three wires close on the pin, a robot moves it, a force/torque "
+    "sensor reads. Sizes, wires and friction are assumed.";
+const auto panels = [](const char* x, const char* y, const char* z, const Axis& axis) {
+  return std::vector<Panel>{{x, time, axis}, {y, time, axis}, {z, time, axis}};
+};
+const std::vector<Panel> readings{
+    {"Force on the pin", time, force}, {"Torque on the pin", time, torque}, {"Deflection", time, deflection}};
+
+std::vector<Figure> contact_figures() {
+  return {
       {"Table 1",
        "Conditions of contact",
        "Four pairs of stiffness and damping; condition 02 was adopted.",
@@ -291,7 +286,11 @@ Paper make() {
         {"ball joint, 1.3 t", by_ball_joint, "plate on face normal_N", 1},
         {"three wires, 1.3 t", by_wires, "plate on face normal_N", 1},
         {"ball joint, 13 t", heavy, "plate on face normal_N", 1}},
-       figure_12},
+       figure_12}};
+}
+
+std::vector<Figure> constraint_figures() {
+  return {
       {"Fig. 16", "Translation along x", "The pin is moved by 3 mm to either side.", test_method, readings,
        translation(legs[0])},
       {"Fig. 17", "Translation along y", "The pin is moved by 3 mm to either side.", test_method, readings,
@@ -305,19 +304,31 @@ Paper make() {
        {{"Along x", deflection, force}, {"Along y", deflection, force}, {"Along z", deflection, force}},
        {},
        figure_19,
-       "shaft in a closed snare"},
-  };
-  paper.lost = {
-      {"Figs. 1 to 5, 7, 13 to 15", "photographs and sketches; nothing is computed for them"},
-      {"Fig. 6, stiffness of a joint with backlash", "drawn only, no value is printed; the arm has assumed joints"},
-      {"Table 1, conditions of contact", "its values are missing in the text; four pairs are assumed"},
-      {"Table 3, start of the rigidizing",
-       "garbled in the text; a misalignment of -0.12 m can be read, the rest as zero"},
-      {"curves of Figs. 10 to 12", "drawn only; their values and axes are not in the text"},
-      {"readings of Figs. 16 to 19",
-       "drawn only; forces and torques are not in the text, so that shapes alone can be compared"},
-      {"mass of the visitor", "printed as 1.3 t and as \"similar to HTV\", which has 16 t; 13 t is computed too"},
-      {"sizes and stiffnesses of the end effector, joints of the arm", "not printed: assumed"}};
+       "shaft in a closed snare"}};
+}
+
+std::vector<Lost> lost() {
+  return {{"Figs. 1 to 5, 7, 13 to 15", "photographs and sketches; nothing is computed for them"},
+          {"Fig. 6, stiffness of a joint with backlash", "drawn only, no value is printed; the arm has assumed joints"},
+          {"Table 1, conditions of contact", "its values are missing in the text; four pairs are assumed"},
+          {"Table 3, start of the rigidizing",
+           "garbled in the text; a misalignment of -0.12 m can be read, the rest as zero"},
+          {"curves of Figs. 10 to 12", "drawn only; their values and axes are not in the text"},
+          {"readings of Figs. 16 to 19",
+           "drawn only; forces and torques are not in the text, so that shapes alone can be compared"},
+          {"mass of the visitor", "printed as 1.3 t and as \"similar to HTV\", which has 16 t; 13 t is computed too"},
+          {"sizes and stiffnesses of the end effector, joints of the arm", "not printed: assumed"}};
+}
+
+Paper make() {
+  Paper paper{"na",
+              "The paper on spacecraft capture by a large manipulator with an end effector of three wires (title "
+              "and authors are not known here)",
+              "the paper on an end effector of three wires",
+              {},
+              lost()};
+  for (const std::vector<Figure>& part : {contact_figures(), constraint_figures()})
+    paper.figures.insert(paper.figures.end(), part.begin(), part.end());
   return paper;
 }
 
