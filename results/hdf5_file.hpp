@@ -16,7 +16,7 @@ namespace snare::results {
 using Hdf5Value = std::variant<std::string, std::int64_t, double, std::vector<std::string>>;
 using Hdf5Attributes = std::vector<std::pair<std::string, Hdf5Value>>;
 
-/// Opens the HDF5 library, which is not loaded before (docs/decisions/0040-histories-of-sweeps.md). Throws std::runtime_error that says
+/// Opens the HDF5 library, which is not loaded before (docs/decisions/sweeps.md#histories-in-one-file). Throws std::runtime_error that says
 /// what to install where there is none.
 void require_hdf5();
 

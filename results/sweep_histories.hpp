@@ -12,7 +12,7 @@
 namespace snare::results {
 
 /// The histories of the cases of a sweep in its folder: a file a case in `histories/` while it runs, which appears when it is whole, and one
-/// HDF5 file `histories.h5` at its end.                                    docs/sweep_file.md, docs/decisions/0040-histories-of-sweeps.md
+/// HDF5 file `histories.h5` at its end.                                    docs/sweep_file.md, docs/decisions/sweeps.md#histories-in-one-file
 ///
 /// A case has a history when it is done, or when its solver could not finish: then as far as it came. Of a case that the journal has,
 /// but whose history is not there, damaged or of another study, the history is made again by running it.

@@ -15,7 +15,7 @@ namespace snare::scenario {
 
 inline constexpr base::Range durations{0.0, 1e6, false};  ///< of whatever lasts [s]
 inline constexpr double most_outputs = 1e6;               ///< lines of a history, checkpoints of a run
-/// What a window of work must bring a motion on by [s]: see docs/decisions/0038.
+/// What a window of work must bring a motion on by [s]: see docs/decisions/interruption-and-faults.md#runs-that-stall.
 inline constexpr double least_advance = 0.002;
 /// Its key: when to give up makes no difference to what a run that goes on computes.
 inline constexpr std::string_view least_advance_key = "solver.least_advance_s";

@@ -10,7 +10,7 @@
 
 namespace snare::study {
 
-/// What is finished of a study, in a file to which one line a case is appended.                docs/decisions/0028-sweeps.md
+/// What is finished of a study, in a file to which one line a case is appended.                docs/decisions/sweeps.md#cases-journal-and-ranks
 ///
 /// A line has the case's number, its result, and a checksum. After a kill at any moment the lines that are whole count; a torn or
 /// damaged one is taken out or passed over, and its case is run again. 8 bytes a case are held in memory.

@@ -13,7 +13,7 @@ namespace snare::study {
 /// Runs a case of which the values may be given: those of a design are known from its number.
 using RunWithValues = std::function<std::string(std::uint64_t index, const std::vector<double>& values)>;
 
-/// The leader of some ranks: hands cases to the others, and runs some itself.               docs/decisions/0028-sweeps.md
+/// The leader of some ranks: hands cases to the others, and runs some itself.               docs/decisions/sweeps.md#cases-journal-and-ranks
 ///
 /// A rank that says nothing for `silence_s` is lost; what it had is given to others. Every rank says a word a second.
 class RankLeader {

@@ -60,7 +60,7 @@ struct KeyFigure {
 /// A report of one self-contained HTML page: no request leaves it, so it opens offline and can be mailed.
 ///
 /// Every text is plain text and is escaped. Plots are drawn in the reader's browser by D3, which is inlined,
-/// see docs/decisions/0003-report-plots.md; half plots added one after the other share rows.
+/// see docs/decisions/license-and-libraries.md#plots-of-report-pages; half plots added one after the other share rows.
 class ReportPage {
  public:
   ReportPage(std::string title, std::string subtitle);

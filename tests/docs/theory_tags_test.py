@@ -13,13 +13,13 @@ class TheoryTags(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        self.write("README.md", "[theory](docs/theory.md) [why](docs/decisions/0001-x.md)\n"
+        self.write("README.md", "[theory](docs/theory.md) [why](docs/decisions/x.md)\n"
                                 "[map](CONTRIBUTING.md#the-map)\n")
         self.write("CONTRIBUTING.md", "# The map\nRooms: `wire/`, `rod.hpp`.\n")
         self.write("docs/theory.md", "# Theory\n\n[Wire](theory/wire.md)\n")
         self.write("docs/theory/wire.md", "**(W.1)** Tension $T = EA e$.\n\n$$\nM_i = k_i \\phi_i ,\n$$\n\n"
                                           "**(W.2)** More, as (W.1).\n")
-        self.write("docs/decisions/0001-x.md", "# Because\n")
+        self.write("docs/decisions/x.md", "# Because\n")
         self.write("wire/rod.hpp", "/// Bends.  theory.md (W.1)-(W.2)\n")
 
     def write(self, file, text):
