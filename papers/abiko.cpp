@@ -308,6 +308,13 @@ std::vector<Figure> bench_figures() {
        stiffness_at_three_positions}};
 }
 
+/// A column of history.csv by every model of the wire on the air table.
+std::vector<HistoryCurve> on_the_table_by_model(const char* column, double factor) {
+  return {{"quadratic law", air_table_law, column, 0, factor, "time_s", touch},
+          {"traced wire", air_table_traced, column, 0, factor, "time_s", touch},
+          {"declared wire", air_table_declared, column, 0, factor, "time_s", touch}};
+}
+
 std::vector<Figure> air_table_figures() {
   return {{"Table 5",
            "Conditions of the dynamic experiment",
@@ -328,27 +335,21 @@ std::vector<Figure> air_table_figures() {
            "The target slows down and ends at a constant velocity; it oscillates during the contact.",
            on_the_table,
            {{"Velocity of the centre of mass along the approach", time, {"velocity", "m/s"}}},
-           {{"quadratic law", air_table_law, "target vy_m_s", 0, 1.0, "time_s", touch},
-            {"traced wire", air_table_traced, "target vy_m_s", 0, 1.0, "time_s", touch},
-            {"declared wire", air_table_declared, "target vy_m_s", 0, 1.0, "time_s", touch}},
+           on_the_table_by_model("target vy_m_s", 1.0),
            figure_14},
           {"Fig. 15",
            "Angular velocity of the target",
            "The target starts rotating with the contact.",
            on_the_table,
            {{"Angular velocity", time, {"angular velocity", "deg/s"}}},
-           {{"quadratic law", air_table_law, "target wz_rad_s", 0, 1.0 / degree, "time_s", touch},
-            {"traced wire", air_table_traced, "target wz_rad_s", 0, 1.0 / degree, "time_s", touch},
-            {"declared wire", air_table_declared, "target wz_rad_s", 0, 1.0 / degree, "time_s", touch}},
+           on_the_table_by_model("target wz_rad_s", 1.0 / degree),
            figure_15},
           {"Fig. 16",
            "Reaction force on the air table",
            "Measured and simulated peaks differ, their impulses are almost the same.",
            on_the_table,
            {{"Reaction force", time, {"force", "N"}}},
-           {{"quadratic law", air_table_law, "probe on wire normal_N", 0, 1.0, "time_s", touch},
-            {"traced wire", air_table_traced, "probe on wire normal_N", 0, 1.0, "time_s", touch},
-            {"declared wire", air_table_declared, "probe on wire normal_N", 0, 1.0, "time_s", touch}},
+           on_the_table_by_model("probe on wire normal_N", 1.0),
            figure_16}};
 }
 
@@ -401,22 +402,14 @@ std::vector<Lost> lost() {
            "different from the one on the bench, by the paper's word; its numbers are not printed"}};
 }
 
-Paper make() {
-  Paper paper{"abiko",
-              "Abiko, Uyama, Ikuta, Nagaoka, Yoshida, Nakanishi, Oda: Contact dynamics simulation for capture "
-              "operation by snare wire type of end effector",
-              "Abiko et al.",
-              {},
-              lost()};
-  for (const std::vector<Figure>& part : {bench_figures(), air_table_figures(), arm_figures()})
-    paper.figures.insert(paper.figures.end(), part.begin(), part.end());
-  return paper;
-}
-
 }  // namespace
 
 const Paper& abiko() {
-  static const Paper paper = make();
+  static const Paper paper{
+      "abiko",
+      "Abiko, Uyama, Ikuta, Nagaoka, Yoshida, Nakanishi, Oda: Contact dynamics simulation for capture "
+      "operation by snare wire type of end effector",
+      "Abiko et al.", joined({bench_figures(), air_table_figures(), arm_figures()}), lost()};
   return paper;
 }
 

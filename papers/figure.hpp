@@ -4,6 +4,7 @@
 #include "validation/suite.hpp"
 
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
@@ -93,6 +94,14 @@ struct Lost {
   const char* what;
   const char* why;
 };
+
+/// Lists of figures or of curves, one after the other.
+template <class T>
+[[nodiscard]] std::vector<T> joined(std::initializer_list<std::vector<T>> parts) {
+  std::vector<T> all;
+  for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
 
 /// A paper with all that is made of it.
 struct Paper {

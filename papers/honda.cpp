@@ -447,22 +447,14 @@ std::vector<Lost> lost() {
           {"l and L of eq. (1), sizes of end effector and fixture, offset of the shaft", "not printed: assumed"}};
 }
 
-Paper make() {
-  Paper paper{"honda",
-              "Honda, Oda, Nakanishi, Suzuki: Contact dynamics analysis for HTV capturing by SSRMS, Trans. JSASS "
-              "Aerospace Tech. Japan 12, ists29, 2014",
-              "Honda et al.",
-              {},
-              lost()};
-  for (const std::vector<Figure>& part : {declared_figures(), flight_figures()})
-    paper.figures.insert(paper.figures.end(), part.begin(), part.end());
-  return paper;
-}
-
 }  // namespace
 
 const Paper& honda() {
-  static const Paper paper = make();
+  static const Paper paper{
+      "honda",
+      "Honda, Oda, Nakanishi, Suzuki: Contact dynamics analysis for HTV capturing by SSRMS, Trans. JSASS "
+      "Aerospace Tech. Japan 12, ists29, 2014",
+      "Honda et al.", joined({declared_figures(), flight_figures()}), lost()};
   return paper;
 }
 

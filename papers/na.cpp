@@ -52,12 +52,6 @@ std::vector<HistoryCurve> by_condition(const char* column, std::size_t panel, do
           {"condition 04", condition<3>, column, panel, factor}};
 }
 
-std::vector<HistoryCurve> joined(const std::vector<std::vector<HistoryCurve>>& parts) {
-  std::vector<HistoryCurve> all;
-  for (const std::vector<HistoryCurve>& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 FigureResult table_1(Runs&) {
   FigureResult result;
   result.table.columns = {"condition", "Kc [N/m]", "Dc [N s/m]"};
@@ -320,22 +314,14 @@ std::vector<Lost> lost() {
           {"sizes and stiffnesses of the end effector, joints of the arm", "not printed: assumed"}};
 }
 
-Paper make() {
-  Paper paper{"na",
-              "The paper on spacecraft capture by a large manipulator with an end effector of three wires (title "
-              "and authors are not known here)",
-              "the paper on an end effector of three wires",
-              {},
-              lost()};
-  for (const std::vector<Figure>& part : {contact_figures(), constraint_figures()})
-    paper.figures.insert(paper.figures.end(), part.begin(), part.end());
-  return paper;
-}
-
 }  // namespace
 
 const Paper& na() {
-  static const Paper paper = make();
+  static const Paper paper{
+      "na",
+      "The paper on spacecraft capture by a large manipulator with an end effector of three wires (title "
+      "and authors are not known here)",
+      "the paper on an end effector of three wires", joined({contact_figures(), constraint_figures()}), lost()};
   return paper;
 }
 

@@ -43,7 +43,7 @@ def fit(snare, readings):
                 d = 3.0 * i / (readings - 1)
                 noise = ((i * 7919) % 1009) / 1009.0 - 0.5
                 file.write(f"{d:.7f},{0.9 * d * d + 0.05 * d + 0.02 * noise:.5f}\n")
-        # How two threads meet changes the peak by some megabytes: what the fit needs is the less of two tries.
+        # The timing of two threads changes the peak by some megabytes, so the smaller peak of two runs counts.
         return min((measured(snare, "fit", folder) for _ in range(2 if readings <= 100_000 else 1)), key=lambda run: run[2])
 
 
