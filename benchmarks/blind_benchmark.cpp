@@ -77,6 +77,9 @@ struct Outcome {
   double made_size = 0.0;
   bool decided = false;
   bool partial = false;  // of several effects some are named and none that is not inside, or none at all as unexplained
+  double probability = 0.0;                      // of the hypotheses that hold what is inside; 0 without hypotheses
+  std::string leading;                           // hypothesis, with its variable where an unknown function leads
+  std::vector<std::pair<double, bool>> weighed;  // probabilities from 0.01 to 0.99, and which are of what is inside
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
 };
@@ -85,8 +88,27 @@ bool is_slip(const std::string& effect) {
   return effect.starts_with("mount_slip") || effect.starts_with("clamp_slide");
 }
 
+/// What the hypotheses say of what is inside: effects, an unknown function of the right variable, or nothing.
+void weigh(const validation::BlindSet& set, const identification::Trace& t, Outcome& o) {
+  const std::vector<std::string> inside = validation::effects_in(set.effect);
+  const std::map<std::string, std::string> outside{{"damage", "place"}};
+  for (const identification::CauseHypothesis& h : t.hypotheses) {
+    bool right = std::ranges::is_permutation(h.effects, inside) && h.discrepancy.empty();
+    if (set.effect == "none") right = h.effects.empty() && h.discrepancy.empty();
+    if (const auto at = outside.find(set.effect); at != outside.end())
+      right = h.effects.empty() && h.discrepancy == at->second;
+    if (right) o.probability += h.probability;
+    if (h.probability >= 0.01 && h.probability <= 0.99) o.weighed.emplace_back(h.probability, right);
+  }
+  if (t.hypotheses.empty()) return;
+  const identification::CauseHypothesis& first = t.hypotheses.front();
+  o.leading =
+      fmt::format("{}{}{}", fmt::join(first.effects, "+"), first.discrepancy.empty() ? "" : "~", first.discrepancy);
+}
+
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   Outcome o;
+  weigh(set, t, o);
   o.alarm = !t.selected.empty();
   o.decided = t.decided;
   o.made_size = set.size;
@@ -168,6 +190,9 @@ nlohmann::json line_of(const Case& c, const Outcome& o) {
           {"reached", o.reached},
           {"partial", o.partial},
           {"design", c.design},
+          {"probability", o.probability},
+          {"leading", o.leading},
+          {"weighed", o.weighed},
           {"effect_covered", o.effect_covered}};
 }
 
@@ -190,6 +215,9 @@ Outcome outcome_of(const nlohmann::json& line) {
   o.reached = line["reached"];
   o.partial = line.value("partial", false);
   o.effect_covered = line.value("effect_covered", -1);
+  o.probability = line.value("probability", 0.0);
+  o.leading = line.value("leading", "");
+  o.weighed = line.value("weighed", o.weighed);
   o.finished = true;
   return o;
 }
@@ -406,9 +434,11 @@ int main(int argc, char** argv) try {
     o.finished = true;
     outcomes[static_cast<std::size_t>(i)] = o;
     journal << line_of(c, o).dump() << std::endl;
-    fmt::print("{} {} seed {} size {:g} ({:.3g}): {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} s)\n",
-               o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.chi2_dof, o.class_size,
-               fmt::join(o.deviates, " "), o.covered, o.seconds);
+    fmt::print(
+        "{} {} seed {} size {:g} ({:.3g}): {} P {:.3f} {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} "
+        "s)\n",
+        o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.probability, o.leading,
+        o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
     if (!out.empty()) base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }

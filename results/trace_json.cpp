@@ -193,6 +193,23 @@ json places_json(const Trace& trace) {
   return result;
 }
 
+json hypotheses_json(const Trace& trace) {
+  json result = json::array();
+  for (const identification::CauseHypothesis& h : trace.hypotheses) {
+    result.push_back({{"effects", h.effects},
+                      {"discrepancy", h.discrepancy.empty() ? json() : json(h.discrepancy)},
+                      {"probability", h.probability}});
+  }
+  return result;
+}
+
+/// The unknown function that leads where nothing of the catalogue is named.
+json outside_json(const Trace& trace) {
+  const identification::OutsideCause cause = identification::outside_cause(trace.hypotheses);
+  if (trace.kind != identification::VerdictKind::not_explained || cause.variable.empty()) return {};
+  return {{"variable", cause.variable}, {"probability", cause.probability}};
+}
+
 }  // namespace
 
 json numbers_json(const std::vector<FittedNumber>& numbers) {
@@ -270,6 +287,8 @@ json findings_document(const identification::Experiment& experiment, const Trace
               {"explained", trace.explained},
               {"decided", trace.decided},
               {"channel", trace.channel.empty() ? json() : json(trace.channel)},
+              {"hypotheses", hypotheses_json(trace)},
+              {"outside", outside_json(trace)},
               {"functions", functions},
               {"alternatives", alternatives},
               {"mesh_error_N", finite(trace.mesh_error)},

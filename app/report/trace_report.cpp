@@ -7,6 +7,7 @@
 #include "results/trace_findings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -431,6 +432,45 @@ void add_alternatives(ReportPage& page, const Trace& trace) {
   page.table(table);
 }
 
+/// What a hypothesis says, for a test engineer.
+std::string hypothesis_words(const identification::CauseHypothesis& h) {
+  static const std::map<std::string, std::string> functions{
+      {"force", "something unknown that hangs on the force"},
+      {"travel", "something unknown that hangs on the travel"},
+      {"time", "something unknown that hangs on the time"},
+      {"place", "a wire that differs from place to place"},
+      {"leg", "something unknown that loading and unloading differ in"},
+      {"series", "a factor that differs from series to series"},
+      {"other", "something unknown that differs from series to series"}};
+  Words parts;
+  for (const std::string& effect : h.effects) parts.push_back(spaced(effect));
+  if (!h.discrepancy.empty()) parts.push_back(functions.at(h.discrepancy));
+  return parts.empty() ? "nothing is missing" : joined(parts, " and ");
+}
+
+/// The likeliest hypotheses as bars.
+void add_hypotheses(ReportPage& page, const Trace& trace) {
+  constexpr double least = 0.005;
+  constexpr std::size_t most = 8;
+  constexpr double width = 24.0;  // characters of a bar
+  if (trace.hypotheses.empty()) return;
+  page.heading("Probabilities of causes");
+  page.paragraph(
+      "Each cause was fitted and weighed by how well it predicts the readings, with what is assumed before any "
+      "reading: one in "
+      "five that nothing is missing, and one in three that the cause is in no catalogue. They do not say that the "
+      "right cause "
+      "is among them.");
+  Table table{"", {"Cause"_text, "Probability"_number, ""_text}};
+  for (const identification::CauseHypothesis& h : trace.hypotheses) {
+    if (table.rows.size() >= most || h.probability < least) break;
+    std::string bar;
+    for (int k = 0; k < static_cast<int>(std::lround(width * h.probability)); ++k) bar += "\u2588";
+    table.rows.push_back({hypothesis_words(h), percent(h.probability), bar});
+  }
+  page.table(table);
+}
+
 void add_next(ReportPage& page, const Trace& trace) {
   if (!trace.next || trace.next->what.empty()) return;
   const identification::NextExperiment& next = *trace.next;
@@ -479,6 +519,7 @@ std::string trace_report_html(const identification::Experiment& experiment, cons
   add_places(page, trace);
   add_functions(page, trace);
   add_alternatives(page, trace);
+  add_hypotheses(page, trace);
   add_next(page, trace);
   page.footer(small_print(trace, version));
   return page.html();

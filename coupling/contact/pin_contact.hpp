@@ -8,6 +8,8 @@ namespace snare::coupling {
 
 /// Signed angle from a to b [rad].
 [[nodiscard]] double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+/// A vector of any unit turned left by a right angle: of a radial, the direction of increasing angle about the pin's centre.
+[[nodiscard]] Eigen::Vector2d left_of(const Eigen::Vector2d& v);
 
 /// The wire's tangent at a vertex of the curve of contact, in the plane: t = u/|u|.         theory.md (C.1)
 struct VertexTangent {
@@ -28,6 +30,16 @@ enum class ContactStatus {
   stick,     ///< pressed, the material point does not move over the pusher
   slip,      ///< pressed, sliding; frictionless contact always slips
   wrapped    ///< the wire lies on the pusher over an arc: see WrappedContact
+};
+
+/// Work of a friction over the slips of one step after the other.                    theory.md (C.5)
+struct SlipWork {
+  double slip = 0.0;   ///< of the step before [m], its sign the direction
+  double begin = 0.0;  ///< friction at the beginning of that step [N], >= 0
+
+  /// Of the next step [J], >= 0: by the parabola through the friction at its ends and at `begin`; by a straight line where the slip has
+  /// turned round or the step before was short. next: slip [m]; from, to: friction at its ends [N], >= 0.
+  [[nodiscard]] double over(double next, double from, double to) const;
 };
 
 /// A round, rigid pin that the wire slides over at a mesh-carrying vertex.          theory.md (C.2)-(C.6)
@@ -54,6 +66,7 @@ struct SlidingContact {
   /// On the wire at the last accepted state [N]
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();
   double last_gap = 0.0;  ///< at the last accepted state [m]
+  SlipWork slip_work{};
 
   /// Unit vector from the pin towards the wire, normal to the chord: how it comes to the first touch.
   [[nodiscard]] Eigen::Vector2d approach() const { return side * Eigen::Vector2d::UnitY(); }
@@ -69,6 +82,7 @@ struct WrappedContact {
   Eigen::Vector2d last_radial = Eigen::Vector2d::UnitY();  ///< unit vector from the pin's centre
   /// On the wire at the last accepted state [N]
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();
+  SlipWork slip_work{};
 };
 
 }  // namespace snare::coupling

@@ -66,6 +66,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   seen_.resize(body_contacts_.size());
   for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
+  if (system_->size() == 0)
+    throw base::InputError({"", 0, "", "", "nothing can move: no wire with mass, no body, no arm"});
   y_ = VectorXd::Zero(system_->size());
   rate_ = y_;
   for (std::size_t i = 0; i < rods_.size(); ++i)

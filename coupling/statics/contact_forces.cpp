@@ -5,17 +5,8 @@
 
 namespace snare::coupling {
 
-namespace {
-
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// Turned left by a right angle: of a radial, the direction of increasing angle about the pin's centre.
-Vector2d left_of(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-}  // namespace
 
 PinForce resolve(const Vector2d& force, const Vector2d& tangent, double side) {
   return {side * (-force.x() * tangent.y() + force.y() * tangent.x()), force.dot(tangent)};
@@ -34,10 +25,9 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
     if (contact.friction == 0.0 || contact.status != ContactStatus::slip || contact.holds_material) continue;
     const VertexTangent v = system.tangent_at(contact, state);
     const SlidingRows rows = system.sliding_rows(k);
-    const double last = contact.last_force.dot(contact.last_tangent);
-    const double force = now.border.segment<2>(rows.force).dot(v.t);
-    // The pin drags the wire along +t while material passes it towards larger S.
-    work += 0.5 * std::abs(last + force) * std::abs(slip_of(contact, v, now.border[rows.coordinate]));
+    const double last = std::abs(contact.last_force.dot(contact.last_tangent));
+    const double force = std::abs(now.border.segment<2>(rows.force).dot(v.t));
+    work += contact.slip_work.over(slip_of(contact, v, now.border[rows.coordinate]), last, force);
   }
   const Vector2d centre = system.pusher_centre(now);
   for (std::size_t k = 0; k < system.wrapped.size(); ++k) {
@@ -45,9 +35,9 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
     if (contact.friction == 0.0 || contact.status != ContactStatus::slip) continue;
     const Vector2d n = (wire::vertex(state, contact.node) - centre).normalized();
     const Vector2d& r = contact.last_radial;
-    const double last = contact.last_force.dot(left_of(r));
-    const double force = now.border.segment<2>(system.wrapped_rows(k).force).dot(left_of(n));
-    work += 0.5 * std::abs(last + force) * system.sliding[0].radius * std::abs(angle_between(r, n));
+    const double last = std::abs(contact.last_force.dot(left_of(r)));
+    const double force = std::abs(now.border.segment<2>(system.wrapped_rows(k).force).dot(left_of(n)));
+    work += contact.slip_work.over(system.sliding[0].radius * angle_between(r, n), last, force);
   }
   if (before.border.size() != now.border.size()) return work;
   for (std::size_t k = 0; k < system.mounts.size(); ++k) {

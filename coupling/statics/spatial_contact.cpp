@@ -98,11 +98,11 @@ void SpatialContact::accept(const numerics::PathPoint& point) {
     const double fed = point.border[Rows::coordinate] - pin.last_coordinate;
     slip -= (system_.slope(state).u.norm() - 1.0) * fed * Vector2d(g.tangent.dot(g.across), g.tangent.dot(pin.axis));
   }
-  // Trapezoidal in the force; where the slip has turned round, the force it ends with.
+  // Where the friction has turned round, that at the end of the slip.
   const bool turned = g.friction.dot(last_friction_) <= 0.0;
-  if (slides_) {
-    dissipated_ += (turned ? g.friction : Vector2d(0.5 * (g.friction + last_friction_))).norm() * slip.norm();
-  }
+  const double from = turned ? g.friction.norm() : last_friction_.norm();
+  if (slides_) dissipated_ += slip_work_.over(slip.norm(), from, g.friction.norm());
+  slip_work_ = {turned ? 0.0 : slip.norm(), from};
   last_friction_ = g.friction;
   system_.accept(point);
   pin.last_coordinate = point.border[Rows::coordinate];
@@ -115,6 +115,7 @@ void SpatialContact::restore(const Memory& memory) {
   system_.restore(memory.accepted);
   dissipated_ = memory.dissipated;
   last_friction_ = memory.last_friction;
+  slip_work_ = memory.slip_work;
   slides_ = memory.slides;
 }
 

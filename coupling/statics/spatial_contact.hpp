@@ -60,10 +60,11 @@ class SpatialContact {
     wire::SpatialState accepted;
     double dissipated = 0.0;                                  ///< [J]
     Eigen::Vector2d last_friction = Eigen::Vector2d::Zero();  ///< on the wire in (c, a) [N]
+    SlipWork slip_work{};
     bool slides = false;
   };
   [[nodiscard]] Memory memory() const {
-    return {system_.pin, system_.accepted(), dissipated_, last_friction_, slides_};
+    return {system_.pin, system_.accepted(), dissipated_, last_friction_, slip_work_, slides_};
   }
   void restore(const Memory& memory);
   /// Assembles and factorises at a point, where reactions and pivots are wanted and the last solution was elsewhere.
@@ -90,6 +91,7 @@ class SpatialContact {
   numerics::PathWorkspace workspace_;
   double dissipated_ = 0.0;
   Eigen::Vector2d last_friction_ = Eigen::Vector2d::Zero();  // on the wire in (c, a) [N]
+  SlipWork slip_work_;
   bool slides_ = false;
 };
 

@@ -146,7 +146,8 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
   return result;
 }
 
-void Identifiability::add_direction(std::size_t k, const VectorXd& change, const MatrixXd& jacobian) {
+void Identifiability::add_direction(std::size_t k, const std::vector<std::size_t>& others, const VectorXd& change,
+                                    const MatrixXd& jacobian) {
   constexpr double least_correlation = 0.3;  // with k: five standard errors of k move such a number by 1.5 of its own
   const auto held_row = static_cast<Index>(k);
   NullDirection direction{k, {}, VectorXd::Zero(change.size())};
@@ -154,7 +155,8 @@ void Identifiability::add_direction(std::size_t k, const VectorXd& change, const
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto row = static_cast<Index>(i);
     const double deviations = std::sqrt(covariance(row, row) * covariance(held_row, held_row));
-    if (i != k && !(std::abs(covariance(row, held_row)) > least_correlation * deviations)) continue;
+    const bool correlated = std::abs(covariance(row, held_row)) > least_correlation * deviations;
+    if (i != k && !correlated && std::ranges::find(others, i) == others.end()) continue;
     direction.change[row] = change[row];
     if (i != k) direction.others.push_back(i);
     known[i] = false;

@@ -25,9 +25,10 @@ struct Identifiability {
 
   /// Whether number k is determined; true where the rank was not asked.
   [[nodiscard]] bool is_known(std::size_t k) const { return k >= known.size() || known[k]; }
-  /// Makes number k the held one of another null direction, in which the others move by `change` over it, all in the units of the columns.
-  /// jacobian: the one that was asked.
-  void add_direction(std::size_t k, const Eigen::VectorXd& change, const Eigen::MatrixXd& jacobian);
+  /// Makes number k the held one of another null direction: `others` move with it, and what is correlated with it by 0.3 and more, by
+  /// `change` over it, in the units of the columns. jacobian: the one that was asked.
+  void add_direction(std::size_t k, const std::vector<std::size_t>& others, const Eigen::VectorXd& change,
+                     const Eigen::MatrixXd& jacobian);
 };
 
 /// Decides about a direction d (in the units of the Jacobian's columns) that the errors of the derivatives leave in doubt: whether

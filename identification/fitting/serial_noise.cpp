@@ -34,6 +34,19 @@ std::vector<Noise::Step> serial_filter(const Series& series, double smooth, doub
   return noise_filter(at, sigma * std::sqrt(1.0 - smooth), length, height);
 }
 
+}  // namespace
+
+WhitenedRows without_correlation(const Series& series, double smooth, double length, const Eigen::MatrixXd& rows) {
+  Noise one;
+  one.filter.push_back(serial_filter(series, smooth, length, 1.0));
+  WhitenedRows white;
+  for (const Noise::Step& step : one.filter.front()) white.log_determinant -= 2.0 * std::log(step.inverse);
+  white.rows = one.whiten(0, rows);
+  return white;
+}
+
+namespace {
+
 /// Residuals and derivatives of the data's series in units of sigma, one below the other.
 struct SerialRows {
   std::vector<Eigen::MatrixXd> of_series;  // the residual, then the derivatives
@@ -76,10 +89,9 @@ GridPoint likelihood_at(const SerialRows& rows, double smooth, double length, Se
   double logarithms = 0.0;
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < rows.of_series.size(); ++k) {
-    Noise one;
-    one.filter.push_back(serial_filter(*rows.series[k], smooth, length, 1.0));
-    for (const Noise::Step& step : one.filter.front()) logarithms -= 2.0 * std::log(step.inverse);
-    all.middleRows(row, rows.of_series[k].rows()) = one.whiten(0, rows.of_series[k]);
+    const WhitenedRows white = without_correlation(*rows.series[k], smooth, length, rows.of_series[k]);
+    logarithms += white.log_determinant;
+    all.middleRows(row, rows.of_series[k].rows()) = white.rows;
     row += rows.of_series[k].rows();
   }
   double squares = all.col(0).squaredNorm();

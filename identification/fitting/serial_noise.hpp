@@ -17,6 +17,15 @@ struct SerialNoise {
   double evidence = 0.0;   ///< by which -2 log of the restricted likelihood falls against independent noise
 };
 
+/// Rows of one series in units of sigma, made independent where the noise has this correlation: `smooth` in [0, 1), `length` > 0 in
+/// readings, as in SerialNoise.
+struct WhitenedRows {
+  Eigen::MatrixXd rows;          ///< [-]
+  double log_determinant = 0.0;  ///< of the covariance, in units of sigma^2
+};
+[[nodiscard]] WhitenedRows without_correlation(const Series& series, double smooth, double length,
+                                               const Eigen::MatrixXd& rows);
+
 /// The autocorrelated noise of a fit's residual, by restricted maximum likelihood over a grid of shares and lengths, one
 /// for all series; sigma is estimated unless it is declared. None where -2 log of the likelihood falls by less than two
 /// more numbers are worth, and where there are published fits, replicates or places with a tolerance.

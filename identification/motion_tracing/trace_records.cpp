@@ -504,7 +504,19 @@ class Tracer {
     if (!more_than_noise(trace_.final, current_.residual, nullptr, nullptr, nullptr))
       trace_.kind = VerdictKind::explained;
     else
-      trace_.kind = trace_.share_left <= most_share_left ? VerdictKind::partly_explained : VerdictKind::not_explained;
+      trace_.kind = leaves_little() ? VerdictKind::partly_explained : VerdictKind::not_explained;
+  }
+
+  /// Whether little of the error is left, of all channels together and of each by itself: one that is followed well cannot hide another.
+  [[nodiscard]] bool leaves_little() const {
+    if (trace_.share_left > most_share_left) return false;
+    for (std::size_t k = 0; k < trace_.final.errors.size(); ++k) {
+      const ChannelError& e = trace_.final.errors[k];
+      const double noise = e.sigma * e.sigma, left = e.rmse * e.rmse - noise;
+      const double before = trace_.base.errors[k].rmse * trace_.base.errors[k].rmse - noise;
+      if (e.fitted && left > noise && left > most_share_left * before) return false;
+    }
+    return true;
   }
 
   /// What to measure next: what settles the members of the class of the effect that was named last among those that are not alone.

@@ -207,7 +207,7 @@ MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vect
 
 namespace {
 
-/// A step along a direction from the answer: the number that moves most is held there.
+/// A step along a direction from the answer: one number is held there.
 struct Move {
   Eigen::Index held = 0;
   std::vector<MotionSetting> settings;
@@ -221,11 +221,12 @@ double noise_of(const MotionData& data, const MotionFit& optimum) {
   return std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
 }
 
-/// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side.
-Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::VectorXd& direction, double share) {
+/// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side. `held` moves, at most that far.
+Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::VectorXd& direction, Eigen::Index held,
+                double share) {
   constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
   Move move;
-  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&move.held);
+  move.held = held;
   const double by_scale =
       (optimum.jacobian * direction).norm() / std::abs(direction[move.held]) / noise_of(data, optimum);
   const double size = share * std::min(far, doubtful_change / std::max(by_scale, 1e-300));
@@ -241,62 +242,133 @@ Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::V
   return move;
 }
 
-/// Whether chi2 stays where it is when the held number is there and the others are fitted anew; none where nothing can be simulated.
-std::optional<bool> stays(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
-                          const Move& move) {
+/// The fit with the held number where the move has it; none where nothing can be simulated.
+std::optional<MotionFit> refitted(const MotionModel& model, const MotionData& data, const Move& move) {
   MotionFitOptions options;
   std::vector<MotionSetting> others = move.settings;
   options.fixed = {others[static_cast<std::size_t>(move.held)]};
   others.erase(others.begin() + move.held);
   options.max_iterations = 15;
   options.derivatives = FitDerivatives::last;
-  const MotionFit moved = fit_motion(model, data, others, options);
+  MotionFit moved = fit_motion(model, data, others, options);
   if (!std::ranges::all_of(moved.predictions, &RecordPrediction::usable)) return std::nullopt;
+  return moved;
+}
+
+double rise_of(const MotionData& data, const MotionFit& optimum, double chi2) {
   const double noise = noise_of(data, optimum);
-  return is_no_rise((moved.chi2 - optimum.chi2) / (noise * noise), move.promised);
+  return (chi2 - optimum.chi2) / (noise * noise);
 }
 
 /// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or on the other where the first has a
 /// bound or cannot be simulated.
 bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
                  const Eigen::VectorXd& direction) {
+  Eigen::Index held = 0;  // what moves most
+  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&held);
   for (const double side : {1.0, -1.0}) {
-    const Move move = move_along(data, optimum, direction, side);
+    const Move move = move_along(data, optimum, direction, held, side);
     if (move.clipped) continue;
-    if (const std::optional<bool> answer = stays(model, data, optimum, move)) return *answer;
+    if (const std::optional<MotionFit> moved = refitted(model, data, move))
+      return is_no_rise(rise_of(data, optimum, moved->chi2), move.promised);
   }
   return false;
 }
 
-/// Whether chi2 rises on both sides of the answer as the interval of a number promises. Where half the way it rises along a straight line as
-/// in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives miss by a little rises, too. A side that ends at a bound, or on which nothing can be simulated, counts as a rise.
-bool rises_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
-                 const Eigen::VectorXd& direction) {
-  const double noise = noise_of(data, optimum);
+/// Where a number is held at a share of its way, the others refitted.
+struct ValleyPoint {
+  double share = 0.0;                   ///< of the way that should change the residual by `doubtful_change`
+  double rise = 0.0;                    ///< of chi2 [-]
+  std::vector<MotionSetting> settings;  ///< of all numbers
+};
+
+/// The move to `share`, the others on the polynomial through the last points, of which there may be three.
+Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points) {
+  if (points.size() < 2) return move;
+  const std::size_t first = points.size() - std::min<std::size_t>(3, points.size());
+  for (std::size_t k = 0; k < move.settings.size(); ++k) {
+    if (static_cast<Eigen::Index>(k) == move.held) continue;
+    double value = 0.0;
+    for (std::size_t i = first; i < points.size(); ++i) {
+      double weight = 1.0;
+      for (std::size_t j = first; j < points.size(); ++j)
+        if (j != i) weight *= (share - points[j].share) / (points[i].share - points[j].share);
+      value += weight * points[i].settings[k].value;
+    }
+    move.settings[k].value = std::clamp(value, move.settings[k].number.lower, move.settings[k].number.upper);
+  }
+  return move;
+}
+
+/// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along `direction`, the others are
+/// fitted anew. Steps are shorter where nothing can be simulated. Returns the last point: the end of the way, or where it ends before.
+ValleyPoint follow_valley(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                          const Eigen::VectorXd& direction, Eigen::Index k, double side) {
+  constexpr double first_step = 0.25, least_step = 0.005;
+  constexpr int most_fits = 24;
+  std::vector<ValleyPoint> points{{0.0, 0.0, optimum.settings}};
+  double step = first_step;
+  for (int fits = 0; fits < most_fits && points.back().share < 1.0 && !model.stopped(); ++fits) {
+    const double share = std::min(1.0, points.back().share + step);
+    const Move move = carried_on(move_along(data, optimum, direction, k, side * share), share, points);
+    const std::optional<MotionFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
+    if (!there && step < least_step) break;
+    step *= there ? 2.0 : 0.5;
+    if (!there) continue;
+    std::vector<MotionSetting> settings = there->settings;
+    settings.insert(settings.begin() + k, move.settings[static_cast<std::size_t>(k)]);
+    points.push_back({share, rise_of(data, optimum, there->chi2), std::move(settings)});
+  }
+  return points.back();
+}
+
+/// A point to one side of the answer at which chi2 has not risen as the interval of number k promises; none where it has, or where
+/// the way ends, at a bound or where nothing can be simulated, before that could be told. Where half the way chi2 rises
+/// along a straight line as in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives
+/// miss by a little rises, too.
+std::optional<ValleyPoint> valley_beside(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+                                         const Eigen::VectorXd& direction, Eigen::Index k, double side) {
+  constexpr double can_tell = 2.0;  // change of the residual: a rise by its square, 4, is told from none, below 1.8
   const Eigen::VectorXd effect = optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
   const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
-  for (const double side : {1.0, -1.0}) {
-    const Move half = move_along(data, optimum, direction, 0.5 * side);
-    const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
-    if (model.stopped() || half.clipped || !std::ranges::all_of(there, &RecordPrediction::usable)) continue;
-    const double rise = (data.residual(there).squaredNorm() - optimum.chi2) / (noise * noise);
-    const double share = rise / (half.promised * half.promised);
-    if (!go_together && share > 0.5 && share < 2.0) continue;
-    const Move whole = move_along(data, optimum, direction, side);
-    if (!whole.clipped && stays(model, data, optimum, whole).value_or(false)) return false;
+  const Move half = move_along(data, optimum, direction, k, 0.5 * side);
+  const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
+  if (!go_together && !half.clipped && std::ranges::all_of(there, &RecordPrediction::usable)) {
+    const double share = rise_of(data, optimum, data.residual(there).squaredNorm()) / (half.promised * half.promised);
+    if (share > 0.5 && share < 2.0) return std::nullopt;
   }
-  return true;
+  const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side);
+  const double promised = 2.0 * half.promised * end.share;
+  if (model.stopped() || (promised < can_tell && end.share < 1.0) || !is_no_rise(end.rise, promised))
+    return std::nullopt;
+  return end;
 }
 
 /// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a number by its square, as on
-/// the height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane has none.
+/// the height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane has none. What has moved
+/// by more than its standard error on the way belongs to the direction.
 void test_intervals(const MotionModel& model, const MotionData& data, MotionFit& fit) {
   const Eigen::Index count = fit.rank.covariance.rows();
   for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
-    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(fit.rank.covariance(k, k) > 0.0)) continue;
-    const Eigen::VectorXd direction = fit.rank.covariance.col(k) / fit.rank.covariance(k, k);
-    if (rises_along(model, data, fit, direction)) continue;
-    fit.rank.add_direction(static_cast<std::size_t>(k), direction, fit.jacobian);
+    const Eigen::MatrixXd& covariance = fit.rank.covariance;
+    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(covariance(k, k) > 0.0)) continue;
+    Eigen::VectorXd direction = covariance.col(k) / covariance(k, k);
+    std::optional<ValleyPoint> valley = valley_beside(model, data, fit, direction, k, 1.0);
+    if (!valley) valley = valley_beside(model, data, fit, direction, k, -1.0);
+    if (!valley) continue;
+    const auto moved = [&](Eigen::Index i) {
+      const auto at = static_cast<std::size_t>(i);
+      return (valley->settings[at].value - fit.settings[at].value) / fit.settings[at].number.scale;
+    };
+    std::vector<std::size_t> others;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (i == k) continue;
+      const double deviation = std::sqrt(covariance(i, i)) * noise_of(data, fit);
+      const bool goes_along = fit.rank.is_known(static_cast<std::size_t>(i)) && std::abs(moved(i)) > deviation;
+      if (goes_along) others.push_back(static_cast<std::size_t>(i));
+      direction[i] = moved(i) / moved(k);
+    }
+    fit.rank.add_direction(static_cast<std::size_t>(k), others, direction, fit.jacobian);
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double most_at_end = 0.5;  ///< share of the readings that may stand at the largest or the smallest value
 constexpr std::size_t longest_chance_run = 4;  ///< readings at an end of the range that noise never makes the same
-constexpr double least_distinct = 0.4;         ///< share of the readings: half of them may be at the end
+constexpr double most_beyond = 4.0;            ///< steps of the sensor: a turn that its steps hide is one at most
 constexpr double usual_gaps = 20.0;            ///< times the median interval
 
 double median(std::vector<double> values) {
@@ -23,18 +23,38 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Readings one after the other that are exactly `value`, at most.
-std::size_t longest_run(const std::vector<double>& values, double value) {
-  std::size_t longest = 0, run = 0;
-  for (const double v : values) longest = std::max(longest, run = v == value ? run + 1 : 0);
-  return longest;
+/// Where the longest run of readings that are exactly `value` begins, and how many there are.
+std::pair<std::size_t, std::size_t> longest_run(const std::vector<double>& values, double value) {
+  std::size_t first = 0, longest = 0, run = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    run = values[k] == value ? run + 1 : 0;
+    if (run <= longest) continue;
+    longest = run;
+    first = k + 1 - run;
+  }
+  return {first, longest};
 }
 
-/// Whether readings hardly ever are the same, as those with noise and fine steps: then a run of the same ones is no rest.
-bool is_fine(std::vector<double> values) {
+/// Smallest difference of two readings, but for rounding: the step of an encoder, or the last digit of the file.
+double resolution(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const auto distinct = std::unique(values.begin(), values.end()) - values.begin();
-  return static_cast<double>(distinct) > least_distinct * static_cast<double>(values.size());
+  const double rounding = 1e-9 * (values.back() - values.front());
+  double least = values.back() - values.front();
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (const double step = values[k] - values[k - 1]; step > rounding) least = std::min(least, step);
+  return least;
+}
+
+/// How far a signal would have gone beyond a run of the same readings, had it gone on as it came and as it left: a parabola with both slopes,
+/// or at the end of the record with the first. 0 for a run at the start, where a system is at rest.
+double beyond(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  constexpr std::size_t few = 3;  // readings, for a slope
+  if (first < few) return 0.0;
+  const double end = values[first];
+  const double came = std::abs(end - values[first - few]);
+  const bool stays = first + count + few > values.size();
+  const double left = stays ? came : std::abs(values[first + count + few - 1] - end);
+  return 0.25 * static_cast<double>(count) * 0.5 * (came + left) / static_cast<double>(few);
 }
 
 /// Problems of the times, a few of each kind.
@@ -81,10 +101,10 @@ void check_values(const RecordCsv& csv, const std::string& column, const std::ve
     if (static_cast<double>(count) > most_at_end * static_cast<double>(values.size()))
       tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
                             count, values.size()));
-    else if (const std::size_t run = longest_run(values, end); run >= longest_chance_run && is_fine(values))
-      tell(end, fmt::format("{} readings one after the other stand at this end of the range, and others hardly ever "
-                            "are the same: the sensor was "
-                            "saturated, leave these out by from_s and to_s",
+    else if (const auto [first, run] = longest_run(values, end);
+             run >= longest_chance_run && beyond(values, first, run) > most_beyond * resolution(values))
+      tell(end, fmt::format("{} readings one after the other stand at this end of the range, at which the signal came "
+                            "at full rate: the sensor was saturated, leave these out by from_s and to_s",
                             run));
   }
 }

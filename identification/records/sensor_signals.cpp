@@ -22,12 +22,22 @@ std::vector<double> lagged(const std::vector<double>& times, const std::vector<d
   return filtered;
 }
 
+/// On the cubic through the four samples about a time, of which two are before it; of fewer samples the polynomial through all.
 double value_at(const std::vector<double>& times, const std::vector<double>& values, double time) {
   if (time <= times.front()) return values.front();
   if (time >= times.back()) return values.back();
   const auto after = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
-  const double share = (time - times[after - 1]) / (times[after] - times[after - 1]);
-  return values[after - 1] + share * (values[after] - values[after - 1]);
+  if (time == times[after - 1]) return values[after - 1];
+  const std::size_t count = std::min<std::size_t>(4, times.size());
+  const std::size_t first = std::min(after < 2 ? 0 : after - 2, times.size() - count);
+  double value = 0.0;
+  for (std::size_t i = first; i < first + count; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = first; j < first + count; ++j)
+      if (j != i) weight *= (time - times[j]) / (times[i] - times[j]);
+    value += weight * values[i];
+  }
+  return value;
 }
 
 }  // namespace

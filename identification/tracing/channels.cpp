@@ -16,18 +16,19 @@ namespace {
 
 constexpr int stations = ChannelColumns::stations;
 
-/// Hat functions over evenly spread stations at one argument.
-void add_hats(double u, double weight, Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index row) {
-  const double at = std::clamp(u, 0.0, 1.0) * (stations - 1);
-  const auto j = std::min(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(stations - 2));
+}  // namespace
+
+void add_hats(double share, double weight, Eigen::Index count, Eigen::Index first,
+              Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(count - 1);
+  const auto j = std::min(static_cast<Eigen::Index>(at), count - 2);
   const double part = at - static_cast<double>(j);
-  out(row, j) += weight * (1.0 - part);
-  out(row, j + 1) += weight * part;
+  row[first + j] += weight * (1.0 - part);
+  row[first + j + 1] += weight * part;
 }
 
-/// argument(series, reading) and weight(series, reading) -> whitened columns; stations over the range of the argument.
-ChannelColumns function_of(const Data& data, const std::function<double(std::size_t, Eigen::Index)>& argument,
-                           const std::function<double(std::size_t, Eigen::Index)>& weight, double argument_unit) {
+ChannelColumns function_columns(const Data& data, const OfReading& argument, const OfReading& weight,
+                                double argument_unit) {
   double low = std::numeric_limits<double>::max();
   double high = std::numeric_limits<double>::lowest();
   for (const std::size_t k : data.series) {
@@ -41,7 +42,7 @@ ChannelColumns function_of(const Data& data, const std::function<double(std::siz
     const Eigen::Index n = data.measured[k].size();
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, stations);
     for (Eigen::Index i = 0; i < n; ++i) {
-      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), own, i);
+      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), stations, 0, own.row(i));
     }
     return own;
   };
@@ -49,8 +50,6 @@ ChannelColumns function_of(const Data& data, const std::function<double(std::siz
   for (int s = 0; s < stations; ++s) result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
   return result;
 }
-
-}  // namespace
 
 std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data, const Fit& current) {
   std::vector<ChannelColumns> channels;
@@ -69,7 +68,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
   };
   const auto one = [](std::size_t, Eigen::Index) { return 1.0; };
 
-  add(function_of(data, displacement, one, 1e-3), Channel::sensor, "recorded travel [mm]",
+  add(function_columns(data, displacement, one, 1e-3), Channel::sensor, "recorded travel [mm]",
       "adds to the recorded force [N]", 1.0, "reading.force_offset_N");
   bool timed = true;
   for (const std::size_t k : data.series)
@@ -79,7 +78,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     if (!timed) return static_cast<double>(i);
     return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
   };
-  add(function_of(data, time, one, 1.0), Channel::sensor,
+  add(function_columns(data, time, one, 1.0), Channel::sensor,
       timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]", 1.0,
       "reading.force_offset_N");
 
@@ -92,11 +91,11 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
       const auto pull = [&](std::size_t k, Eigen::Index i) {
         return current.evaluation.predictions[k].mount_pull[static_cast<std::size_t>(i)];
       };
-      add(function_of(
+      add(function_columns(
               data, pull, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
           Channel::mount, "pull on the mount along the chord [N]", "moves the mounts apart [mm]", 1e-3, span.key);
     }
-    add(function_of(
+    add(function_columns(
             data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0),
         Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3, zero.key);
   }
@@ -105,7 +104,7 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     const double move = displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
     return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
   };
-  add(function_of(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
+  add(function_columns(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",
       "resists the pusher's motion, either way [N]", 1.0, "");
   if (!supports) {
     const Evaluation windows = model.evaluate_windows(current.settings, stations);

@@ -2,6 +2,7 @@
 
 #include "identification/effects/effect.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,18 @@ struct ChannelColumns {
   double unit = 1.0;        ///< SI of a value in the unit of `effect`
   std::string constant;     ///< key of the number that a function without slope is: "mount.span_mm"
 };
+
+/// A number for each reading of a series.
+using OfReading = std::function<double(std::size_t series, Eigen::Index reading)>;
+
+/// Columns of a function of `argument` whose value times `weight` [N] is added to the recorded force; stations over the range of the
+/// argument. argument_unit: SI of the unit in which `at` is.
+[[nodiscard]] ChannelColumns function_columns(const Data& data, const OfReading& argument, const OfReading& weight,
+                                              double argument_unit);
+
+/// Adds to `row`, from column `first` on, `weight` times the values of `count` hats over even stations at a share [0, 1] of their range.
+void add_hats(double share, double weight, Eigen::Index count, Eigen::Index first,
+              Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row);
 
 /// One function in every channel that these series have: the reading against travel and against time, the
 /// mounts against tension, the pusher's lag against force, what resists the pusher either way, the bending

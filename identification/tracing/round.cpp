@@ -360,7 +360,7 @@ void rank(std::vector<Candidate>& candidates, std::vector<Fit>& fits, double sig
   fits = std::move(ranked_fits);
 }
 
-/// Adds the first candidate: its refit to the bottom, and its rivals for a next experiment.
+/// Adds the first candidate: its refit to the bottom.
 void add_first(const Model& model, const Data& data, const std::vector<Fit>& fits, RoundFits& result) {
   Round& round = result.round;
   const Candidate& first = round.candidates.front();
@@ -372,10 +372,16 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   result.better = fits.front();
   const Fit polished = fit(model, data, result.better.fitted());
   if (polished.report.usable() && polished.chi2 <= result.better.chi2) result.better = polished;
-  const auto in_class = [&first](const Candidate& c) { return c.class_index == first.class_index; };
+}
+
+/// The refits that make sense: those of the first one's class, then all others.
+void keep_rivals(const std::vector<Fit>& fits, RoundFits& result) {
+  const std::vector<Candidate>& candidates = result.round.candidates;
+  if (candidates.empty()) return;
+  const auto in_class = [&](const Candidate& c) { return c.class_index == candidates.front().class_index; };
   for (const bool members : {true, false}) {
-    for (std::size_t i = 0; i < round.candidates.size(); ++i) {
-      const Candidate& c = round.candidates[i];
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& c = candidates[i];
       if (in_class(c) != members || !c.refitted || !c.plausible) continue;
       result.rivals.push_back(fits[i]);
       result.rivals.back().evaluation = {};
@@ -431,6 +437,7 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   progress.clock(name + ": refits");
   classify(current.fit, inflation, round, fits);
   round.curves = best_curves(data, round.candidates, fits);
+  keep_rivals(fits, result);
   if (!round.candidates.empty() && eligible(round.candidates.front(), significance)) {
     add_first(model, data, fits, result);
     return result;

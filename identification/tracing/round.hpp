@@ -48,7 +48,7 @@ struct RoundFits {
   Round round;
   Fit better;                  ///< the model with the added effect
   std::vector<Setting> begun;  ///< the added effect's numbers as first tried, of one that has only finite trials
-  std::vector<Fit> rivals;     ///< refits of the added effect's class, then all others that make sense, best first;
+  std::vector<Fit> rivals;     ///< refits of the first effect's class, then all others that make sense, best first;
                                ///< without their curves
   std::vector<std::string> rival_names;  ///< of their effects
 };

@@ -53,6 +53,7 @@ class Tracer {
   void widen_for_serial_noise();
   [[nodiscard]] bool serial_noise_does() const;
   void compare_models();
+  void weigh();
   void average_intervals();
   void find_intervals();
   void propose();
@@ -80,6 +81,7 @@ class Tracer {
   std::vector<std::vector<std::string>> classes_;
   std::vector<ChannelFunction> functions_;  // of the base model's residual, once asked for
   std::vector<RoundFits> rounds_;           // in which an effect was added
+  std::vector<FittedModel> models_;         // base model and refits with effects that make sense
 };
 
 Tracer::Tracer(const Experiment& experiment, const TraceOptions& options, Division series)
@@ -201,6 +203,10 @@ void Tracer::add_effects() {
         number, {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
+    for (std::size_t k = 0; k < found.rivals.size(); ++k) {
+      models_.push_back({added_, k == 0 && !round.added.empty() ? found.better : found.rivals[k]});
+      models_.back().effects.push_back(found.rival_names[k]);
+    }
     if (round.added.empty()) break;
     added_.push_back(round.added);
     classes_.push_back(round.classes[round.candidates.front().class_index]);
@@ -488,6 +494,14 @@ void Tracer::compare_models() {
   progress_.clock("errors of the final model");
 }
 
+// The hypotheses that were fitted, with unknown functions beside them.
+void Tracer::weigh() {
+  if (only_fitted() || result_.few_readings || !progress_.go_on("hypotheses")) return;
+  models_.insert(models_.begin(), FittedModel{{}, base_});
+  result_.hypotheses = weigh_hypotheses(model_, data_, models_);
+  progress_.clock("hypotheses");
+}
+
 // Intervals of the base model's numbers that hold whichever effect is the right one, and whether one is missing.
 void Tracer::average_intervals() {
   if (result_.kind == VerdictKind::not_explained || result_.serial) return;
@@ -571,6 +585,7 @@ Trace Tracer::run() {
   look_for_effects();
   conclude();
   current_ = {};  // what is selected is in final_
+  weigh();
   if (!has_finding(result_.findings, FindingKind::series_of_another_specimen) &&
       progress_.go_on("zero of the travel")) {
     result_.zero = check_zero(model_, data_, final_);  // before its residual counts as autocorrelated noise

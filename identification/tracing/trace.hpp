@@ -2,6 +2,7 @@
 
 #include "identification/fitting/serial_noise.hpp"
 #include "identification/tracing/attribution.hpp"
+#include "identification/tracing/hypotheses.hpp"
 #include "identification/tracing/next_experiment.hpp"
 #include "identification/tracing/residual_tests.hpp"
 #include "identification/tracing/round.hpp"
@@ -54,7 +55,8 @@ struct Trace {
   std::string channel;  ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
   std::vector<ChannelFunction>
-      alternatives;  ///< when it does: causes outside it, in other channels, that would as well
+      alternatives;                         ///< when it does: causes outside it, in other channels, that would as well
+  std::vector<CauseHypothesis> hypotheses;  ///< weighed, best first; none for published fits
   std::optional<std::pair<double, double>> heldout_rmse;  ///< base, final [N]
   std::optional<std::pair<double, double>>
       left_out_rmse;  ///< likewise of every condition predicted from the others, to first order

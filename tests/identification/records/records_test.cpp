@@ -201,6 +201,19 @@ TEST_F(Records, BadRecordsAreRefusedWithEverything) {
   EXPECT_THAT(complaint(), HasSubstr("all readings are the same"));
   rows(saturated);
   EXPECT_THAT(complaint(), HasSubstr("saturated"));
+  // A turn between two steps of an encoder, all of whose other readings differ; the same cut off beyond an end of its range.
+  const auto turn = [](double range) {
+    std::string text;
+    for (int i = 0; i < 400; ++i) {
+      const double s = 0.01 * (i - 250);
+      text += fmt::format("{:.2f},{:.2f}\n", 0.01 * i, 0.05 * std::floor(std::min(range, 40.0 - 6.0 * s * s) / 0.05));
+    }
+    return text;
+  };
+  rows(turn(50.0));
+  EXPECT_EQ(complaint(), "");
+  rows(turn(39.0));
+  EXPECT_THAT(complaint(), HasSubstr("saturated"));
   rows(ramp(0, 30) + "0.31,nan\n");
   EXPECT_THAT(complaint(), HasSubstr("angle_deg"));
   std::ofstream(folder_ / "a.csv") << "time_s,other\n0,1\n";
