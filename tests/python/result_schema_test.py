@@ -112,6 +112,7 @@ NOT_HERE = {
     "snare-ringdown-result/1": {f"series[].friction_mm_s.{k}" for k in ("value", "stderr", "lower", "upper")},  # no friction in the record
     "snare-trace/1": {"next_experiment.difference_N", "next_experiment.difference_sigma", "remaining.hangs_on[].sensor",
                       "remaining.hangs_on[].on", "remaining.hangs_on[].share",  # nothing to tell apart, nothing left
+                      "outside.variable", "outside.probability",  # the cause is in the catalogue
                       "partial.model", "partial.heldout"},  # of records: nothing that helps without explaining
     "snare-benchmark-result/1": {f"cases[].models[].outcome.*.{k}" for k in ("value", "reference", "same")},  # a push that has none
     "snare-comparison/1": {"models[].from_full.first_touch_s", "models[].from_full.tight_s"},  # too short to touch
