@@ -40,6 +40,15 @@ Series with_travel(Series series, double factor) {
   return series;
 }
 
+/// Whether a travel in another unit is longer than the wire, which no push is.
+bool beyond_wire(const std::vector<Series>& series, double factor) {
+  return std::ranges::any_of(series, [&](const Series& s) {
+    if (!s.readings) return false;
+    const auto beyond = [&](double d) { return std::abs(d * factor) > s.test.wire.length; };
+    return std::ranges::any_of(s.readings->displacement, beyond);
+  });
+}
+
 bool is_stiffness(const Parameter& p) {
   return p.key.ends_with("wire.axial_stiffness_N") || p.key.ends_with("wire.bending_stiffness_Nm2") ||
          p.key.ends_with("wire.youngs_modulus_GPa");
@@ -117,6 +126,7 @@ std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fi
   constexpr double plausible = 3.0;                         // between the largest forces
   constexpr double much_better = 0.2;                       // of chi2
   const double near = std::log(travel == 1.0 ? 1.3 : 2.0);  // of the stiffnesses to the declared ones
+  if (beyond_wire(model.series(), travel)) return std::nullopt;
   const Rescaled now = rescaled(model, data, force, travel);
   const Evaluation declared = now.model.evaluate({});
   const double measured = peak_of(now.data.measured), computed = peak_of(declared.force);

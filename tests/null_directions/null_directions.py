@@ -160,9 +160,12 @@ rate_Hz = 1000
 
 
 def run(snare, *arguments, cwd):
-    """Status, what is said, and JSON of a run."""
-    done = subprocess.run([snare, *arguments, "--json", "--quiet", "--threads", "1", "--out", "o"], cwd=cwd, capture_output=True,
-                          text=True, timeout=300)
+    """Status (that of timeout(1) where a run takes longer than five minutes), what is said, and JSON of a run."""
+    try:
+        done = subprocess.run([snare, *arguments, "--json", "--quiet", "--threads", "1", "--out", "o"], cwd=cwd,
+                              capture_output=True, text=True, timeout=300)
+    except subprocess.TimeoutExpired:
+        return 124, "took longer than five minutes", None
     try:
         return done.returncode, done.stderr, json.loads(done.stdout)
     except json.JSONDecodeError:
