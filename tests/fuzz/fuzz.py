@@ -7,8 +7,8 @@ laws, the bytes of checkpoints, the journal of a sweep.
 Builds two programs with Debian's clang (packages clang, libclang-rt-dev) under the address and undefined-behaviour sanitizers, which
 share the seconds: small readers by themselves, and those that need the whole product, linked with the libraries of build/release (only
 the readers themselves are watched there). Begins with the shipped files and tests/fuzz/corpus; the first byte of an input chooses the
-reader. `--keep` writes what found something new, made as small as it goes, into tests/fuzz/corpus. Prints libFuzzer's last words; exits
-1 where an input breaks a reader, which is then in DIR, and 77 where there is no clang.
+reader. tests/fuzz/corpus has an archive of inputs for each reader; `--keep` adds what found something new, made as small as it goes.
+Prints libFuzzer's last words; exits 1 where an input breaks a reader, which is then in DIR, and 77 where there is no clang.
 """
 
 import argparse
@@ -20,8 +20,12 @@ import shutil
 import struct
 import subprocess
 import sys
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+CORPUS = ROOT / "tests/fuzz/corpus"
+READERS = {"c": "csv", "e": "experiment", "u": "urdf", "s": "stl", "b": "obj", "f": "off", "a": "archive", "S": "scenario", "R": "record",
+           "A": "arm", "W": "sweep", "D": "ringdown", "I": "wire", "J": "journal", "L": "law", "K": "checkpoint"}
 SOURCES = ["tests/fuzz/readers_libfuzzer.cpp", *(str(p.relative_to(ROOT)) for p in sorted((ROOT / "base").glob("*.cpp"))), "wire/specification.cpp",
            "scenario/push_reader.cpp", "coupling/contact/mesh_file.cpp", "multibody/urdf.cpp", "multibody/urdf_checks.cpp",
            "multibody/tree.cpp", "multibody/spatial.cpp", "identification/fitting/experiment.cpp",
@@ -113,6 +117,26 @@ def seeds():
     yield b"a" + struct.pack("<Q2sQQQ3sQQQ3dQQ2d", 2, b"ab", 1, 1, 3, b"abc", 1, 3, 1, 1.0, 2.0, 3.0, 2, 1, 1.0, 2.0)
 
 
+def unpack(folder):
+    """Writes the inputs of every archive of the corpus into an empty folder."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for archive in sorted(CORPUS.glob("*.zip")):
+        with zipfile.ZipFile(archive) as packed:
+            packed.extractall(folder)
+
+
+def pack(folder):
+    """Writes an archive for each reader from the inputs of a folder. The same inputs give the same bytes."""
+    inputs = {}
+    for file in sorted(folder.iterdir()):
+        inputs.setdefault(READERS[chr(file.read_bytes()[0])], []).append(file)
+    for reader, files in inputs.items():
+        with zipfile.ZipFile(CORPUS / f"{reader}.zip", "w", zipfile.ZIP_DEFLATED, compresslevel=9) as packed:
+            for file in files:
+                packed.writestr(zipfile.ZipInfo(file.name), file.read_bytes(), zipfile.ZIP_DEFLATED)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=int, default=3600)
@@ -134,8 +158,8 @@ def main():
     given.mkdir()
     for number, seed in enumerate(seeds()):
         (given / str(number)).write_bytes(seed)
-    kept = ROOT / "tests/fuzz/corpus"
-    kept.mkdir(exist_ok=True)
+    kept = folder / "corpus"
+    unpack(kept)
     # Libraries that are not watched hand over containers of which the sanitizer knows nothing; what glog keeps is no leak.
     environment = {**os.environ, "ASAN_OPTIONS": "detect_container_overflow=0:detect_leaks=0"}
     failed = 0
@@ -150,6 +174,7 @@ def main():
         if options.keep and run.returncode == 0:
             subprocess.run([str(program), "-merge=1", "-max_len=2000", str(kept), str(found)], check=True,
                            stderr=subprocess.DEVNULL, env=environment)
+            pack(kept)
             print(len(list(kept.iterdir())), "inputs are kept")
     return 1 if failed else 0
 
