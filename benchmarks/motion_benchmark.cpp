@@ -5,11 +5,11 @@
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
 #include "coupling/contact/mesh_shape.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <benchmark/benchmark.h>
 

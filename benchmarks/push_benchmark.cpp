@@ -6,7 +6,7 @@
 #include "benchmarks/peers/bordered_pattern.hpp"
 #include "benchmarks/peers/kinsol.hpp"
 #include "coupling/statics/push_solver.hpp"
-#include "wire/equilibrium.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -47,21 +47,24 @@ function(snare_compile_module target)
   endif()
 endfunction()
 
-# snare_add_module(<name> [LIGHT] [PUBLIC <targets>...] [PRIVATE <targets>...] [EXCLUDE <files>...] [ALONE <files>...]
-#                  [FIRST <files>...|ALL] [DEFINITIONS <definitions>...])
+# snare_add_module(<name> [LIGHT] [ROOMS <folders>...] [PUBLIC <targets>...] [PRIVATE <targets>...] [EXCLUDE <files>...]
+#                  [ALONE <files>...] [FIRST <files>...|ALL] [DEFINITIONS <definitions>...])
 #
-# Makes the target snare_<name> (alias snare::<name>) of the *.cpp in the folder of the calling CMakeLists.txt. New
-# files are found by the next build; a module that has no source yet is an INTERFACE library.
+# Makes the target snare_<name> (alias snare::<name>) of the *.cpp in the folder of the calling CMakeLists.txt and in ROOMS
+# below it. New files are found by the next build; a module that has no source yet is an INTERFACE library.
 # LIGHT: the module reads and writes; no computation spends its time there, so that it is optimised less.
 # ALONE: files with names of their own that others have too; they are not joined with others where a build joins sources
 # (CMAKE_UNITY_BUILD).
 # FIRST: files that the main job needs (snare_first in app/CMakeLists.txt); their target is snare_<name>_first.
 function(snare_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LIGHT" "" "PUBLIC;PRIVATE;EXCLUDE;ALONE;FIRST;DEFINITIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LIGHT" "" "ROOMS;PUBLIC;PRIVATE;EXCLUDE;ALONE;FIRST;DEFINITIONS")
 
   set(target snare_${name})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
-  file(GLOB headers CONFIGURE_DEPENDS *.hpp)
+  set(places . ${arg_ROOMS})
+  list(TRANSFORM places APPEND "/*.cpp" OUTPUT_VARIABLE patterns)
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+  list(TRANSFORM places APPEND "/*.hpp" OUTPUT_VARIABLE patterns)
+  file(GLOB headers CONFIGURE_DEPENDS ${patterns})
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   foreach(file IN LISTS arg_EXCLUDE)
     list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/${file}")

@@ -4,9 +4,9 @@
 // clamped wire under tension, the contact lasts pi sqrt(m/k), m being the body's mass and a third of the wire's, and the
 // speed is reversed.
 #include <snare/coupling/contact/tensioned_wire.hpp>
-#include <snare/coupling/dynamics/simulate.hpp>
-#include <snare/coupling/dynamics/start.hpp>
-#include <snare/wire/rod_constants.hpp>
+#include <snare/coupling/dynamics/model/start.hpp>
+#include <snare/coupling/dynamics/run/simulate.hpp>
+#include <snare/wire/motion/rod_in_motion.hpp>
 
 #include <cmath>
 #include <iostream>

@@ -1,9 +1,9 @@
 #include "reduction/impact_damping.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "scenario/push_law.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "coupling/statics/push_problem.hpp"
 #include "numerics/cubic_spline.hpp"
 #include "numerics/report.hpp"
-#include "wire/rod_in_motion.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <functional>
 #include <optional>

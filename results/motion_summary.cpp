@@ -2,7 +2,7 @@
 #include "results/in_mm.hpp"
 
 #include "base/index.hpp"
-#include "coupling/dynamics/modes.hpp"
+#include "coupling/dynamics/model/modes.hpp"
 #include "results/finite_json.hpp"
 #include "results/version.hpp"
 

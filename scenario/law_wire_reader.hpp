@@ -1,9 +1,9 @@
 #pragma once
 
 #include "base/toml_reader.hpp"
-#include "coupling/dynamics/law_wire.hpp"
+#include "coupling/dynamics/model/law_wire.hpp"
 #include "scenario/push_law.hpp"
-#include "wire/rod_damping.hpp"
+#include "wire/motion/rod_damping.hpp"
 #include "wire/specification.hpp"
 
 #include <optional>

@@ -2,12 +2,12 @@
 
 #include "base/index.hpp"
 #include "base/units.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
 #include "scenario/law_wire_reader.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/push_reader.hpp"
 #include "scenario/shape_reader.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>

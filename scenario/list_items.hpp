@@ -1,9 +1,9 @@
 #pragma once
 
 #include "base/toml_reader.hpp"
-#include "coupling/dynamics/centre_line.hpp"
-#include "coupling/dynamics/model.hpp"
-#include "coupling/dynamics/pressed_start.hpp"
+#include "coupling/dynamics/model/centre_line.hpp"
+#include "coupling/dynamics/model/model.hpp"
+#include "coupling/dynamics/run/pressed_start.hpp"
 #include "scenario/mount_reader.hpp"
 #include "scenario/names.hpp"
 #include "scenario/placement.hpp"

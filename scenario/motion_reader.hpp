@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/toml_reader.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/model.hpp"
-#include "coupling/dynamics/result.hpp"
+#include "coupling/dynamics/model/model.hpp"
+#include "coupling/dynamics/model/result.hpp"
 #include "scenario/placement.hpp"
 
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/toml_reader.hpp"
-#include "coupling/dynamics/arm.hpp"
+#include "coupling/dynamics/model/arm.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/spatial.hpp"
 

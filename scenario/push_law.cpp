@@ -5,7 +5,7 @@
 #include "base/files.hpp"
 #include "base/units.hpp"
 #include "coupling/contact/push_energy.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
 #include "scenario/contact_law_reader.hpp"
 #include "scenario/push_reader.hpp"
 

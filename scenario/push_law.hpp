@@ -2,10 +2,10 @@
 
 #include "base/toml_reader.hpp"
 #include "coupling/contact/contact_law.hpp"
-#include "coupling/dynamics/law_wire.hpp"
+#include "coupling/dynamics/model/law_wire.hpp"
 #include "numerics/cubic_spline.hpp"
 #include "scenario/distilled_law.hpp"
-#include "wire/rod_in_motion.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <filesystem>
 #include <memory>

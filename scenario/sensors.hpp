@@ -1,8 +1,8 @@
 #pragma once
 
-#include "coupling/dynamics/model.hpp"
-#include "coupling/dynamics/result.hpp"
-#include "coupling/dynamics/sensed.hpp"
+#include "coupling/dynamics/model/model.hpp"
+#include "coupling/dynamics/model/result.hpp"
+#include "coupling/dynamics/model/sensed.hpp"
 #include "scenario/placement.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "scenario/motion_reader.hpp"
 #include "scenario/outcome.hpp"
 #include "scenario/sensors.hpp"

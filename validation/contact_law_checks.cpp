@@ -1,6 +1,6 @@
 #include "validation/contact_law_checks.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "validation/frequency_checks.hpp"
 
 #include "base/index.hpp"
-#include "coupling/dynamics/modes.hpp"
+#include "coupling/dynamics/model/modes.hpp"
 #include "numerics/dense_solvers.hpp"
 #include "validation/scenario_run.hpp"
 

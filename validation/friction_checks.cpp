@@ -1,11 +1,11 @@
 #include "validation/friction_checks.hpp"
 
 #include "base/units.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <fmt/format.h>
 

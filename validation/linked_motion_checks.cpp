@@ -1,7 +1,7 @@
 #include "validation/linked_motion_checks.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 
 #include <cmath>
 

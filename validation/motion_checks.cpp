@@ -1,12 +1,12 @@
 #include "validation/motion_checks.hpp"
 
 #include "base/units.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "numerics/dense_solvers.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <fmt/format.h>
 

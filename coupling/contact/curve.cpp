@@ -1,6 +1,6 @@
 #include "coupling/contact/curve.hpp"
 
-#include "wire/rod_part.hpp"
+#include "wire/motion/rod_part.hpp"
 
 #include <algorithm>
 

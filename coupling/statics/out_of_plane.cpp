@@ -1,7 +1,7 @@
 #include "coupling/statics/out_of_plane.hpp"
 
 #include "numerics/band_matrix.hpp"
-#include "wire/loose_wire.hpp"
+#include "wire/statics/loose_wire.hpp"
 
 #include <algorithm>
 

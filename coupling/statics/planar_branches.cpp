@@ -1,7 +1,7 @@
 #include "coupling/statics/contact_vertex.hpp"
 #include "coupling/statics/planar_push.hpp"
 #include "numerics/band_matrix.hpp"
-#include "wire/equilibrium.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "coupling/statics/push_setup.hpp"
 
-#include "wire/loose_wire.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/statics/loose_wire.hpp"
+#include "wire/statics/planar_properties.hpp"
 
 #include <algorithm>
 #include <cmath>

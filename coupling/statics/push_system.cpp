@@ -1,7 +1,7 @@
 #include "coupling/statics/push_system.hpp"
 
-#include "wire/equilibrium.hpp"
 #include "wire/planar_gradient.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "coupling/statics/spatial_contact.hpp"
 
-#include "wire/loose_wire.hpp"
+#include "wire/statics/loose_wire.hpp"
 
 namespace snare::coupling {
 

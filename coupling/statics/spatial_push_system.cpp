@@ -1,7 +1,7 @@
 #include "coupling/statics/spatial_push_system.hpp"
 
 #include "multibody/spatial.hpp"
-#include "wire/equilibrium.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/dynamics/model.hpp"
+#include "coupling/dynamics/model/model.hpp"
 
 #include <optional>
 #include <string>

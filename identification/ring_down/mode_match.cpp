@@ -1,9 +1,9 @@
 #include "identification/ring_down/mode_match.hpp"
 
-#include "coupling/dynamics/modes.hpp"
-#include "coupling/dynamics/start.hpp"
-#include "wire/rod_constants.hpp"
-#include "wire/rod_modes.hpp"
+#include "coupling/dynamics/model/modes.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "wire/motion/rod_in_motion.hpp"
+#include "wire/motion/rod_modes.hpp"
 
 #include <fmt/format.h>
 

@@ -35,8 +35,8 @@ class IncludeDirections(unittest.TestCase):
         self.assertEqual(len(self.found("multibody/body.cpp", '#include "wire/rod.hpp"\n')), 1)
 
     def test_statics_and_dynamics_do_not_know_each_other(self):
-        self.assertEqual(len(self.found("coupling/statics/push.cpp", '#include "coupling/dynamics/run.hpp"\n')), 1)
-        self.assertEqual(len(self.found("coupling/dynamics/simulate.cpp", '#include "coupling/statics/push.hpp"\n')), 2)
+        self.assertEqual(len(self.found("coupling/statics/push.cpp", '#include "coupling/dynamics/run/run.hpp"\n')), 1)
+        self.assertEqual(len(self.found("coupling/dynamics/run/simulate.cpp", '#include "coupling/statics/push.hpp"\n')), 2)
 
     def test_a_folder_of_rooms_has_no_files_of_its_own(self):
         found = self.found("coupling/push.cpp", "")

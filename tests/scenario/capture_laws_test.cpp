@@ -1,6 +1,6 @@
 // Scenarios in which laws stand for wires, bodies touch and loads act.
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "scenario/outcome.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/support/folder_fixture.hpp"

@@ -1,6 +1,6 @@
 #include "scenario/scenario.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/refusal.hpp"
 

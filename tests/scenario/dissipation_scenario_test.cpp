@@ -1,6 +1,6 @@
 // What is dissipated never falls, in scenarios that are written down and drawn at random.
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/support/folder_fixture.hpp"
 

@@ -1,7 +1,7 @@
 #include "scenario/include.hpp"
 
 #include "base/errors.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/support/folder_fixture.hpp"
 

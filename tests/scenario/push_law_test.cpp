@@ -1,10 +1,9 @@
 #include "scenario/push_law.hpp"
 
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "wire/rod_constants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/slow/referee_draws.hpp"
 #include "tests/slow/referee_wire.hpp"
 

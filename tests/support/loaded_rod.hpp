@@ -1,6 +1,6 @@
 #pragma once
 
-#include "wire/equilibrium.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <Eigen/Core>
 

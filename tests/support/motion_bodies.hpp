@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/model.hpp"
-#include "coupling/dynamics/options.hpp"
+#include "coupling/dynamics/model/model.hpp"
+#include "coupling/dynamics/model/options.hpp"
 #include "multibody/arm/elastic_arm.hpp"
 
 namespace snare::test {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 
 #include <Eigen/Core>
 

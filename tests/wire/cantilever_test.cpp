@@ -2,8 +2,8 @@
 
 #include "tests/support/loaded_rod.hpp"
 #include "validation/elastica.hpp"
-#include "wire/equilibrium.hpp"
 #include "wire/spatial_rod.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "wire/curved_rod.hpp"
+#include "wire/motion/curved_rod.hpp"
 
 #include "numerics/dae.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/random_rods.hpp"
 #include "tests/support/sparse_product.hpp"
-#include "wire/edge_beam.hpp"
-#include "wire/rod_part.hpp"
+#include "wire/motion/edge_beam.hpp"
+#include "wire/motion/rod_part.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "tests/support/loaded_rod.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/rod_instability.hpp"
-#include "wire/equilibrium.hpp"
 #include "wire/spatial_rod.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

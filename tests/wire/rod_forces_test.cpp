@@ -1,9 +1,9 @@
-#include "wire/rod_forces.hpp"
+#include "wire/motion/rod_forces.hpp"
 
 #include "numerics/dae.hpp"
 #include "tests/support/random_rods.hpp"
-#include "wire/rod_part.hpp"
-#include "wire/rod_stiffness.hpp"
+#include "wire/motion/rod_part.hpp"
+#include "wire/motion/rod_stiffness.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "wire/rod_modes.hpp"
+#include "wire/motion/rod_modes.hpp"
 
 #include <gtest/gtest.h>
 

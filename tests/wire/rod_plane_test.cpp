@@ -1,8 +1,8 @@
 // A rod that is its own mirror image in a plane: what of it stays there.
 
 #include "numerics/dense_solvers.hpp"
-#include "wire/rod_part.hpp"
-#include "wire/rod_rest.hpp"
+#include "wire/motion/rod_part.hpp"
+#include "wire/motion/rod_rest.hpp"
 
 #include <gtest/gtest.h>
 

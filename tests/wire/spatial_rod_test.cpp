@@ -2,7 +2,7 @@
 
 #include "tests/support/random_rods.hpp"
 #include "tests/support/rod_derivatives.hpp"
-#include "wire/equilibrium.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Balances of energy, momentum and angular momentum along a motion, and going on from a state.
 
 #include "base/errors.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/soft_wire.hpp"

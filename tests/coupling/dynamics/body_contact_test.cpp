@@ -1,7 +1,7 @@
-#include "coupling/dynamics/body_contact_part.hpp"
+#include "coupling/dynamics/contact/body_contact_part.hpp"
 
 #include "coupling/contact/revolved_solids.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/motion_bodies.hpp"
 #include "tests/support/refusal.hpp"

@@ -1,6 +1,6 @@
-#include "coupling/dynamics/bushing_part.hpp"
+#include "coupling/dynamics/joints/bushing_part.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/motion_bodies.hpp"

@@ -1,7 +1,7 @@
 // Wires start with the motion of their carriers: forces at the start and everything after it depend on relative motion alone.
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/motion_bodies.hpp"
 #include "tests/support/soft_wire.hpp"
 

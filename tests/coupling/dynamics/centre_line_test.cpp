@@ -1,7 +1,7 @@
-#include "coupling/dynamics/centre_line.hpp"
+#include "coupling/dynamics/model/centre_line.hpp"
 
 #include "base/units.hpp"
-#include "wire/rod_part.hpp"
+#include "wire/motion/rod_part.hpp"
 
 #include <gtest/gtest.h>
 

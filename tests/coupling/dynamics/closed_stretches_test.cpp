@@ -1,6 +1,6 @@
-#include "coupling/dynamics/closed_stretches.hpp"
+#include "coupling/dynamics/contact/closed_stretches.hpp"
 
-#include "coupling/dynamics/contact_integral.hpp"
+#include "coupling/dynamics/contact/contact_integral.hpp"
 
 #include <gtest/gtest.h>
 

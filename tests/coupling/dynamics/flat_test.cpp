@@ -1,7 +1,7 @@
 // Wires that lie on flat faces and over their edges.
 
 #include "coupling/contact/mesh_shape.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/mesh_files.hpp"
 #include "tests/support/soft_wire.hpp"
 

@@ -1,4 +1,4 @@
-#include "coupling/dynamics/force_record.hpp"
+#include "coupling/dynamics/run/force_record.hpp"
 
 #include <gtest/gtest.h>
 

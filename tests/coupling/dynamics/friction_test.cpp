@@ -1,14 +1,14 @@
 // Stick and slip: derivatives, frames, energy, directions. Closed forms: validation/friction_checks.
 
 #include "base/errors.hpp"
-#include "coupling/dynamics/body_part.hpp"
-#include "coupling/dynamics/contact_part.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/contact/contact_part.hpp"
+#include "coupling/dynamics/joints/body_part.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/soft_wire.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,16 +1,16 @@
 // The rod of higher order under a load on a vertex against the static push of the planar rod, and in motion.
 
 #include "base/units.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "numerics/klu.hpp"
 #include "tests/support/soft_wire.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/equilibrium.hpp"
-#include "wire/rod_constants.hpp"
-#include "wire/rod_part.hpp"
-#include "wire/rod_rest.hpp"
+#include "wire/motion/rod_in_motion.hpp"
+#include "wire/motion/rod_part.hpp"
+#include "wire/motion/rod_rest.hpp"
+#include "wire/statics/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

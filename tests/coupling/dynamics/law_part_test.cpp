@@ -1,4 +1,4 @@
-#include "coupling/dynamics/law_part.hpp"
+#include "coupling/dynamics/laws/law_part.hpp"
 
 #include "tests/support/sparse_product.hpp"
 

@@ -1,6 +1,6 @@
-#include "coupling/dynamics/law_wire_part.hpp"
+#include "coupling/dynamics/laws/law_wire_part.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "multibody/arm/arm_part.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/motion_bodies.hpp"

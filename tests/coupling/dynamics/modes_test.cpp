@@ -1,6 +1,6 @@
-#include "coupling/dynamics/modes.hpp"
+#include "coupling/dynamics/model/modes.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/crossed_wires.hpp"
 #include "tests/support/motion_bodies.hpp"
 

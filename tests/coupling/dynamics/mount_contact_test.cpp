@@ -1,9 +1,9 @@
 // Mounts of wires stop what strikes them.                                                       theory.md (M.35)
 
 #include "coupling/contact/foundation.hpp"
-#include "coupling/dynamics/body_part.hpp"
-#include "coupling/dynamics/contact_part.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/contact/contact_part.hpp"
+#include "coupling/dynamics/joints/body_part.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/soft_wire.hpp"
 

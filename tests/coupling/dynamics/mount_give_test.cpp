@@ -1,7 +1,7 @@
 // Mounts that give along the wire: springs, dashpots and slip between the wire's end and its mount, theory.md (M.38).
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/motion_bodies.hpp"
 #include "tests/support/soft_wire.hpp"
 

@@ -1,6 +1,6 @@
-#include "coupling/dynamics/phase.hpp"
+#include "coupling/dynamics/model/phase.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/same_bits.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "coupling/dynamics/point_tree.hpp"
+#include "coupling/dynamics/contact/point_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Where Newton's method begins with a contact: the start of a touch, the accepted state, or the predicted one.
 
-#include "coupling/dynamics/press.hpp"
-#include "coupling/dynamics/input_memo.hpp"
+#include "coupling/dynamics/model/press.hpp"
+#include "coupling/dynamics/model/input_memo.hpp"
 
 #include <gtest/gtest.h>
 

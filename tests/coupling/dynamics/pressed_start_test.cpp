@@ -1,6 +1,6 @@
-#include "coupling/dynamics/pressed_start.hpp"
+#include "coupling/dynamics/run/pressed_start.hpp"
 
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
 #include "wire/specification.hpp"
 
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // Wires whose inertia is left out: against the static push, the full wire, and the balances.
 
 #include "base/units.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/soft_wire.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/rod_constants.hpp"
-#include "wire/rod_model.hpp"
+#include "wire/motion/rod_in_motion.hpp"
+#include "wire/motion/rod_model.hpp"
 
 #include <gtest/gtest.h>
 

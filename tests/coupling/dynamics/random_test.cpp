@@ -3,10 +3,10 @@
 #include "base/units.hpp"
 #include "coupling/contact/mesh_shape.hpp"
 #include "coupling/contact/revolved_solids.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/mesh_files.hpp"
-#include "wire/rod_constants.hpp"
+#include "wire/motion/rod_in_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "coupling/dynamics/robot.hpp"
+#include "coupling/dynamics/model/robot.hpp"
 
 #include "coupling/contact/shape.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/motion_bodies.hpp"
 #include "tests/support/same_bits.hpp"
 

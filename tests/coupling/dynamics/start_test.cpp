@@ -1,9 +1,9 @@
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
 
 #include "base/units.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/rod_constants.hpp"
-#include "wire/rod_rest.hpp"
+#include "wire/motion/rod_in_motion.hpp"
+#include "wire/motion/rod_rest.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Friction between the strands of a wire in motion: derivatives, energy, decay.
 
 #include "base/errors.hpp"
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/dae_jacobian.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/soft_wire.hpp"

@@ -1,6 +1,6 @@
-#include "coupling/dynamics/strength.hpp"
+#include "coupling/dynamics/model/strength.hpp"
 #include "base/errors.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/soft_wire.hpp"
 

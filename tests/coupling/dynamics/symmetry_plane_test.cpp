@@ -1,11 +1,11 @@
 // Motions that stay in a plane: which they are, and that they are those of space.
 
-#include "coupling/dynamics/symmetry_plane.hpp"
+#include "coupling/dynamics/run/symmetry_plane.hpp"
 
 #include "coupling/contact/revolved_solids.hpp"
 #include "coupling/contact/union_shape.hpp"
-#include "coupling/dynamics/modes.hpp"
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/model/modes.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The contact of two wires at one state: forces, derivatives, what is near.
 
-#include "coupling/dynamics/wire_pair_part.hpp"
+#include "coupling/dynamics/contact/wire_pair_part.hpp"
 #include "tests/support/crossed_wires.hpp"
 #include "tests/support/dae_jacobian.hpp"
 

@@ -1,6 +1,6 @@
 // Wires that heavy balls drag along until they wrap them.
 
-#include "coupling/dynamics/simulate.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/soft_wire.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
 #include "validation/declared_wire.hpp"
-#include "wire/loose_wire.hpp"
+#include "wire/statics/loose_wire.hpp"
 
 #include <gtest/gtest.h>
 

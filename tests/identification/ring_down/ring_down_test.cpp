@@ -2,12 +2,12 @@
 
 #include "identification/ring_down/mode_match.hpp"
 
-#include "coupling/dynamics/simulate.hpp"
-#include "coupling/dynamics/start.hpp"
+#include "coupling/dynamics/model/start.hpp"
+#include "coupling/dynamics/run/simulate.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "wire/rod_constants.hpp"
-#include "wire/rod_modes.hpp"
+#include "wire/motion/rod_in_motion.hpp"
+#include "wire/motion/rod_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

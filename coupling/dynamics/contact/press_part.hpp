@@ -1,0 +1,47 @@
+#pragma once
+
+#include "coupling/contact/contact_law.hpp"
+#include "coupling/dynamics/joints/frame_forces.hpp"
+#include "coupling/dynamics/model/result.hpp"
+
+#include <span>
+
+namespace snare::coupling {
+
+/// Forces between frames that press: an event where they begin and end.
+class PressPart : public FrameForces {
+ public:
+  using FrameForces::FrameForces;
+
+  /// DaePart: one event, the zero of `depth`.
+  [[nodiscard]] int event_count() const final { return 1; }
+  void events(const numerics::DaePoint& at, std::span<double> values) final { values[0] = touches(at.y); }
+  /// How deep they press on each other [m]; grows through zero where it begins. y in SI units.
+  [[nodiscard]] virtual double depth(const numerics::VectorView& y) const = 0;
+  /// A number with the sign of the depth [m].
+  [[nodiscard]] virtual double touches(const numerics::VectorView& y) const { return depth(y); }
+  /// Whether the force jumps there, as a dashpot's does: the integration begins anew.
+  [[nodiscard]] virtual bool jumps() const = 0;
+  /// What can be said of it at one place, from y in SI units.
+  struct Pressing {
+    ContactSample sample;  ///< but for the gap; its force is that on the first of those that press on each other
+    Work work;
+    double tension = 0.0;  ///< of a wire [N]
+  };
+  [[nodiscard]] virtual Pressing pressing(const numerics::VectorView& y) const = 0;
+  /// With the gap, y in SI units.
+  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const {
+    ContactSample s = pressing(y).sample;
+    s.gap = -depth(y);
+    return s;
+  }
+  [[nodiscard]] Work work(const numerics::VectorView& y) const final { return pressing(y).work; }
+};
+
+/// Whether a law's force jumps at a touch: at 1e-12 m of depth a rate of one [m/s] more than doubles it.
+[[nodiscard]] inline bool jumps_at_touch(const ContactLaw& law) {
+  constexpr double shallow = 1e-12, speed = 1.0;  // [m], [m/s]
+  return law(shallow, speed).x() > 2.0 * law(shallow, 0.0).x() + 1e-9;
+}
+
+}  // namespace snare::coupling
