@@ -263,7 +263,7 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   if (m.starting) check(IDASetInitStep(m.ida.get(), m.first_step(stop)), "IDASetInitStep");
   double reached = m.time;
   const IdaStatistics before = m.callbacks.statistics;
-  m.callbacks.stubborn = -1;
+  m.callbacks.limiting_unknown = -1;
   const int code = IDASolve(m.ida.get(), stop, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
   m.update_counts();
   if (code < 0) {
@@ -328,7 +328,7 @@ LimitOfStep Ida::what_limited() const {
     const auto behind = std::ranges::find_if(blocks, [unknown](const DaeBlock& b) { return b.first > unknown; });
     return unknown < 0 ? -1 : static_cast<int>(behind - blocks.begin()) - 1;
   };
-  if (m.limited_by == StepLimit::newton) return {m.limited_by, block_of(m.callbacks.stubborn)};
+  if (m.limited_by == StepLimit::newton) return {m.limited_by, block_of(m.callbacks.limiting_unknown)};
   if (m.limited_by == StepLimit::start || m.limited_by == StepLimit::longest) return {m.limited_by, -1};
   // The local errors, over their tolerances, of what is tested.
   Eigen::VectorXd errors(m.y.size());

@@ -106,7 +106,7 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
   constexpr double of_round_off = 1e-4;       // of the tolerance
   const double size = step.cwiseProduct(weight).lpNorm<Eigen::Infinity>();
   const auto give_up = [&] {
-    step.cwiseProduct(weight).cwiseAbs().maxCoeff(&stubborn);
+    step.cwiseProduct(weight).cwiseAbs().maxCoeff(&limiting_unknown);
     return SUN_NLS_CONV_RECVR;
   };
   if (!std::isfinite(size)) return SUN_NLS_CONV_RECVR;

@@ -31,8 +31,8 @@ struct Newton {
   std::optional<QuasiNewton> corrected;  // where a step may have renewals
   CorrectionGuess guess{};
   double coefficient = 0.0;  // leading one, of the matrix
-  bool worn = false;         // the matrix of an earlier step took as many iterations as a new one costs
-  bool outdated = false;     // and at the last step it did not do at all
+  bool jacobian_aged = false;         // the matrix of an earlier step took as many iterations as a new one costs
+  bool jacobian_failed = false;     // and at the last step it did not do at all
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;
@@ -53,7 +53,7 @@ SUNNonlinearSolver_Type snare_newton_type(SUNNonlinearSolver) {
 // A start of IDA.
 int snare_newton_initialize(SUNNonlinearSolver solver) {
   content(solver).guess.restart();
-  content(solver).worn = content(solver).outdated = false;
+  content(solver).jacobian_aged = content(solver).jacobian_failed = false;
   return SUN_NLS_SUCCESS;
 }
 
@@ -96,8 +96,8 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
   double coefficient = 0.0;  // of the step
   static_cast<void>(IDAGetCurrentCj(memory, &coefficient));
   guess_correction(self.guess, memory, correction);
-  if (self.worn || (self.outdated && coefficient != self.coefficient)) call_setup = SUNTRUE;
-  self.worn = self.outdated = false;
+  if (self.jacobian_aged || (self.jacobian_failed && coefficient != self.coefficient)) call_setup = SUNTRUE;
+  self.jacobian_aged = self.jacobian_failed = false;
   bool touches = false;
   int code = evaluate_guess(self, memory, correction, touches);
   if (touches) call_setup = SUNTRUE;
@@ -129,7 +129,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
       map(correction) += step;
       code = callbacks.converged(k, limits, step, map(weight));
       if (code == SUN_NLS_SUCCESS) {
-        self.worn = current == SUNFALSE && k + 1 >= most_with_old;
+        self.jacobian_aged = current == SUNFALSE && k + 1 >= most_with_old;
         if (touches)
           self.guess.restart();  // the next step corrects something else
         else
@@ -154,7 +154,7 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
     if (code <= 0 || current != SUNFALSE) return code;
     // With a matrix of this step once more, from where the old one was on its way to.
     call_setup = SUNTRUE;
-    self.outdated = true;
+    self.jacobian_failed = true;
     bad = true;
     if (!(code == SUN_NLS_CONV_RECVR && callbacks.rate < on_its_way && map(correction).allFinite()))
       map(correction).setZero();

@@ -121,7 +121,7 @@ json listed_contacts_json(const FinishedMotion& run) {
     list.push_back(listed_contact_json(
         run, k, {{"body", motion.bodies[at(c.body)].name}, {"wire", motion.wires[at(c.wire)].name}}));
   }
-  const std::size_t first = motion.contacts.size() + motion.springs.size();
+  const std::size_t first = motion.contacts.size() + motion.point_contacts.size();
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
     list.push_back(listed_contact_json(
@@ -148,10 +148,10 @@ std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
   }
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
-    if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.springs.size() + k);
+    if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.point_contacts.size() + k);
   }
   if (wire >= motion.wires.size())
-    consider(motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size() + wire - motion.wires.size());
+    consider(motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size() + wire - motion.wires.size());
   return first;
 }
 

@@ -88,7 +88,7 @@ BlindWire wire_of(const Push& p, const Hidden& h) {
 }
 
 /// So much of an effect.
-struct Dose {
+struct Perturbation {
   std::string effect;
   double amount = 0.0;
 };
@@ -102,7 +102,7 @@ struct Bench {
   double drift = 0.0;
 };
 
-void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench) {
+void add(const Perturbation& dose, const Hidden& h, double highest_tension, Bench& bench) {
   const std::string& effect = dose.effect;
   const double a = dose.amount;
   const double s = h.sign * a;
@@ -155,7 +155,7 @@ void add(const Dose& dose, const Hidden& h, double highest_tension, Bench& bench
 }
 
 /// What the tracing calls an effect's first number, and its value.
-std::pair<std::string, double> number_of(const Dose& dose, const Hidden& h, double highest_tension) {
+std::pair<std::string, double> number_of(const Perturbation& dose, const Hidden& h, double highest_tension) {
   const std::string& effect = dose.effect;
   const double a = dose.amount;
   const double s = h.sign * a;
@@ -179,11 +179,11 @@ std::pair<std::string, double> number_of(const Dose& dose, const Hidden& h, doub
 }
 
 // Readings of one push with these effects, without noise.
-std::vector<double> read(const std::vector<Dose>& doses, const Push& p, double off, const Hidden& h,
+std::vector<double> read(const std::vector<Perturbation>& doses, const Push& p, double off, const Hidden& h,
                          double highest_tension, int readings_a_leg) {
   Bench bench{.wire = wire_of(p, h), .travel = travel_of(p, readings_a_leg)};
   bench.wire.position += off;
-  for (const Dose& dose : doses) add(dose, h, highest_tension, bench);
+  for (const Perturbation& dose : doses) add(dose, h, highest_tension, bench);
   const std::vector<double> time = time_of(p, readings_a_leg);
   std::vector<double> force;
   for (const BlindReading& r : blind_push(bench.wire, bench.travel, time))
@@ -194,7 +194,7 @@ std::vector<double> read(const std::vector<Dose>& doses, const Push& p, double o
 }
 
 // One push below the other.
-Eigen::VectorXd read_all(const std::vector<Dose>& doses, const Hidden& h, double highest_tension,
+Eigen::VectorXd read_all(const std::vector<Perturbation>& doses, const Hidden& h, double highest_tension,
                          const BlindDesign& design) {
   std::vector<double> all;
   const std::vector<Push> made = pushes_of(design);
@@ -357,7 +357,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   set.effect = effect;
   set.bending_stiffness = h.bending;
   set.axial_stiffness = h.axial;
-  std::vector<Dose> doses;
+  std::vector<Perturbation> doses;
   for (const std::string& one : inside) {
     constexpr double ratio = 1e-3;   // of a stiffness
     constexpr double longer = 1e-5;  // [m]
@@ -395,7 +395,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     double high = 1.0;
     double a = one == "plasticity" ? 0.5 : 0.05;
     double reached = 0.0;
-    Dose dose{one, a};
+    Perturbation dose{one, a};
     for (int k = 0; k < 20; ++k) {
       dose.amount = a;
       force = read_all({dose}, h, highest_tension, sized);

@@ -32,7 +32,7 @@ Strike strike(const coupling::ContactLaw& law, double speed, double expected_dur
   motion.bodies.push_back(body);
   coupling::PointContactLaw spring;
   spring.law = law;
-  motion.springs.push_back(spring);
+  motion.point_contacts.push_back(spring);
   coupling::MotionOptions options;
   options.duration = 3.0 * expected_duration;
   options.max_step = expected_duration / 500.0;  // a peak between two steps is (pi/500)^2/8 higher

@@ -203,7 +203,7 @@ std::vector<Row> stick_slip_rows() {
   spring.origin = motion.bodies[0].start.position;
   spring.origin_speed = -belt;
   spring.law = coupling::spring_dashpot(stiffness, 0.0);
-  motion.springs.push_back(spring);
+  motion.point_contacts.push_back(spring);
   const double w = std::sqrt(stiffness);
   const double jump = (fixed - sliding) * g / stiffness;
   const double period = 2.0 * jump / belt + 2.0 / w * (pi - std::atan(jump * w / belt));

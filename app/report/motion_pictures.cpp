@@ -240,7 +240,7 @@ std::vector<ParaviewLine> MotionPictures::wire_lines(const MotionSample& s) cons
 }
 
 void MotionPictures::add_contact_forces(const MotionSample& s, std::vector<ParaviewLine>& lines) const {
-  const std::size_t contacts = motion_.contacts.size(), springs = motion_.springs.size();
+  const std::size_t contacts = motion_.contacts.size(), springs = motion_.point_contacts.size();
   const std::size_t pairs = motion_.wire_pairs.size(), rods = s.wires.size() - s.law_tensions.size();
   const auto add = [&lines](std::size_t wire, const coupling::ContactSample& c, double sign) {
     if (wire >= lines.size()) return;

@@ -158,7 +158,7 @@ std::string too_small(const Model& model, const Data& data, const Current& now, 
 }
 
 /// What a refit says of an effect: BIC, plausibility, size, and whether held-out series gain by it.
-void judge(const Model& model, const Data& data, const HeldOut& heldout, const Current& now, const Demands& demands,
+void judge(const Model& model, const Data& data, const HeldOut& heldout, const Current& now, const AcceptanceCriteria& demands,
            std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) {
   const Fit& current = now.fit;
   candidate.refitted = refitted.report.usable();
@@ -279,7 +279,7 @@ bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vecto
 
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                            const Demands& demands, std::vector<Candidate>& candidates, const std::string& round,
+                            const AcceptanceCriteria& demands, std::vector<Candidate>& candidates, const std::string& round,
                             Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.fit.settings);
@@ -311,7 +311,7 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
 
 /// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it from it.
 void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                  const Demands& demands, std::vector<Candidate>& candidates, std::vector<Fit>& fits,
+                  const AcceptanceCriteria& demands, std::vector<Candidate>& candidates, std::vector<Fit>& fits,
                   const std::string& round, Progress& progress) {
   const Candidate& leader = candidates.front();
   if (!leader.refitted || leader.score.direction.size() == 0) return;
@@ -413,8 +413,8 @@ double fewest_dof(std::size_t numbers) {
 }
 
 RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                          std::size_t number, const Demands& asked, Progress& progress) {
-  Demands demands = asked;
+                          std::size_t number, const AcceptanceCriteria& asked, Progress& progress) {
+  AcceptanceCriteria demands = asked;
   const double significance = demands.significance;
   const std::string name = fmt::format("round {}", number);
   RoundFits result;

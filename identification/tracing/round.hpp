@@ -64,7 +64,7 @@ struct Current {
 };
 
 /// What an effect must bring to be named.
-struct Demands {
+struct AcceptanceCriteria {
   double significance = 0.0;  ///< of its score after Holm
   double tolerance = 0.0;     ///< by which the root mean square error must fall [N]; 0: by what is significant
   double refits = 1.0;        ///< effects and starts among which refits are chosen
@@ -76,7 +76,7 @@ struct Demands {
 /// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
-                                        const Current& current, std::size_t number, const Demands& demands,
+                                        const Current& current, std::size_t number, const AcceptanceCriteria& demands,
                                         Progress& progress);
 
 }  // namespace snare::identification

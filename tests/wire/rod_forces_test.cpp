@@ -203,13 +203,13 @@ TEST_P(RodForcesOf, AreTheSameBitsFourAndTwoAtATime) {
   const auto of = [&](bool four, const std::optional<RodPlane>& plane) {
     Outcome o;
     RodForces forces(model, four);
-    forces.stay_in(plane);
+    forces.restrict_to_plane(plane);
     forces.take_frames(accepted);
     RodInstant trial = accepted;
     for (int band = 0; band < model.bands(); ++band) trial.state.q[band] = m.y[model.unknown_of(band)];
     forces.evaluate(model, at, trial, {o.assembly, o.by_curvature, o.losses});
     RodStiffness stiffness(model, four);
-    stiffness.stay_in(plane);
+    stiffness.restrict_to_plane(plane);
     stiffness.attach(model, slots);
     o.values.assign(pattern.value.size(), 0.0);
     stiffness.add(model, {forces.rows(), trial, at, 7.0}, o.values);

@@ -91,7 +91,7 @@ TEST_P(RodInPlane, FeelsNothingAcrossIt) {
   const std::optional<RodPlane> plane = part.plane_across(l.normal);
   ASSERT_TRUE(plane);
   EXPECT_EQ(plane->bending, l.stands_across ? 1 : 0);
-  const std::vector<int> across = part.stay_in(*plane);
+  const std::vector<int> across = part.restrict_to_plane(*plane);
   part.leave_plane();
   const int each = 3 + (l.formulation == Formulation::higher_order) + (l.strands > 0.0);
   EXPECT_EQ(static_cast<int>(across.size()), each * part.vertices());
@@ -123,7 +123,7 @@ TEST_P(RodInPlane, FeelsNothingAcrossIt) {
   // Held, they are 1 of their own rows, and what is left is as it was: by the formulas of space, and by those of the plane.
   system.hold(across);
   for (const bool in_plane : {false, true}) {
-    if (in_plane) EXPECT_EQ(part.stay_in(*plane), across);
+    if (in_plane) EXPECT_EQ(part.restrict_to_plane(*plane), across);
     const Eigen::MatrixXd held = numerics::dense(system.jacobian(at, 20.0));
     VectorXd held_rows(y.size());
     system.residual(at, held_rows);

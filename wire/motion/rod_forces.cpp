@@ -53,7 +53,7 @@ RodForces::RodForces(const RodModel& model, bool four) : four_(four), rows_(RodR
   }
 }
 
-void RodForces::stay_in(const std::optional<RodPlane>& plane) {
+void RodForces::restrict_to_plane(const std::optional<RodPlane>& plane) {
   plane_ = plane;
   // Nothing is worked out across the plane.
   rows_.clear(Row::force, 3);
@@ -235,7 +235,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
 }
 
 // No product is joined with its sum in one rounding, so that all processors give the same bits.
-[[gnu::target("avx2")]] void RodForces::work_by_four(const RodModel& model, const DaePoint& at, RodInstant& trial,
+[[gnu::target("avx2")]] void RodForces::evaluate_avx2(const RodModel& model, const DaePoint& at, RodInstant& trial,
                                                      const RodSums& out) {
   work(model, at, trial, out);
 }
@@ -326,7 +326,7 @@ void RodForces::evaluate(const RodModel& model, const DaePoint& at, RodInstant& 
     work_out_forces(model, *plane_, at, four_, rows_, out);
     turn_frames(trial);
   } else {
-    four_ ? work_by_four(model, at, trial, out) : work_by_two(model, at, trial, out);
+    four_ ? evaluate_avx2(model, at, trial, out) : work_by_two(model, at, trial, out);
   }
   gather(model, out);
   for (const End end : ends) add_end(model, at, trial, end, out);

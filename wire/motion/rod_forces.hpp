@@ -24,7 +24,7 @@ class RodForces {
   explicit RodForces(const RodModel& model, bool four = numerics::has_four_lanes());
 
   /// In which plane the rod is: then what is across it is left out. None: in space.
-  void stay_in(const std::optional<RodPlane>& plane);
+  void restrict_to_plane(const std::optional<RodPlane>& plane);
   /// Told the state from whose frames the next ones go.
   void take_frames(const RodInstant& accepted);
   /// At a point: frames, directors and twists of `trial`, whose mounts and unknowns are set, and what the rod does.
@@ -37,7 +37,7 @@ class RodForces {
   using Row = RodRow;
   void take_unknowns(const RodModel& model, const numerics::DaePoint& at);
   void work(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
-  void work_by_four(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
+  void evaluate_avx2(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
   void work_by_two(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
   void work_on_edges(const RodModel& model, RodInstant& trial, const RodSums& out);
   void work_on_vertices(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);

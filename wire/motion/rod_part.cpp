@@ -105,14 +105,14 @@ std::optional<RodPlane> RodPart::plane_across(int normal) const {
 }
 
 void RodPart::work_in(const std::optional<RodPlane>& plane) {
-  forces_.stay_in(plane);
-  stiffness_.stay_in(plane);
+  forces_.restrict_to_plane(plane);
+  stiffness_.restrict_to_plane(plane);
   if (slots_.is_attached()) stiffness_.attach(model_, slots_);
   y_.resize(0);
 }
 
 // The angles theta are odd, and of curvatures and strands those towards the director that stands across the plane.
-std::vector<int> RodPart::stay_in(const RodPlane& plane) {
+std::vector<int> RodPart::restrict_to_plane(const RodPlane& plane) {
   work_in(plane);
   std::vector<int> unknowns;
   for (int i = 0; i < vertices(); ++i) {

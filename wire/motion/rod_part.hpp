@@ -60,7 +60,7 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] std::optional<RodPlane> plane_across(int normal) const;
   /// Works out from here on only what happens in a plane, in which it has to be. Returns the unknowns that leave the plane, or turn out of it, which
   /// have to be held.
-  [[nodiscard]] std::vector<int> stay_in(const RodPlane& plane);
+  [[nodiscard]] std::vector<int> restrict_to_plane(const RodPlane& plane);
   /// What happens in space is worked out again.
   void leave_plane();
 

@@ -47,7 +47,7 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
   for (const int normal : {2, 1, 0}) {
     const std::optional<RodPlane> plane = part.plane_across(normal);
     if (!plane) continue;
-    system.hold(part.stay_in(*plane));
+    system.hold(part.restrict_to_plane(*plane));
     break;
   }
   const SpatialRodProperties& p = rod.properties;

@@ -268,7 +268,7 @@ void RodStiffness::add_end(const RodModel& model, const Point& point, End end) {
 }
 
 // No product is joined with its sum in one rounding, so that all processors give the same bits.
-[[gnu::target("avx2")]] void RodStiffness::work_by_four(const RodModel& model, const Point& point) {
+[[gnu::target("avx2")]] void RodStiffness::evaluate_avx2(const RodModel& model, const Point& point) {
   work(model, point);
 }
 
@@ -460,7 +460,7 @@ void RodStiffness::add(const RodModel& model, const Point& point, std::vector<do
   if (plane_)
     work_out_stiffness(model, *plane_, point.rows, four_, blocks_);
   else
-    four_ ? work_by_four(model, point) : work_by_two(model, point);
+    four_ ? evaluate_avx2(model, point) : work_by_two(model, point);
   for (const End end : ends) add_end(model, point, end);
   four_ ? put_by_four(model, values) : put_by_two(model, values);
 }

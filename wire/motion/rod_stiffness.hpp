@@ -23,7 +23,7 @@ class RodStiffness {
   explicit RodStiffness(const RodModel& model, bool four = numerics::has_four_lanes());
 
   /// In which plane the rod is: then what is across it is left out. None: in space. Before `attach`.
-  void stay_in(const std::optional<RodPlane>& plane) { plane_ = plane; }
+  void restrict_to_plane(const std::optional<RodPlane>& plane) { plane_ = plane; }
   /// Where the values are, in a pattern to which the slots are attached.
   void attach(const RodModel& model, const RodSlots& slots);
 
@@ -38,7 +38,7 @@ class RodStiffness {
 
  private:
   void work(const RodModel& model, const Point& point);
-  void work_by_four(const RodModel& model, const Point& point);
+  void evaluate_avx2(const RodModel& model, const Point& point);
   void work_by_two(const RodModel& model, const Point& point);
   void work_on_edges(const RodModel& model, const Point& point);
   void work_on_vertices(const RodModel& model, const Point& point);

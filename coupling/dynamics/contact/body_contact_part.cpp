@@ -119,7 +119,7 @@ struct BodyContactPart::Acting {
 };
 
 BodyContactPart::BodyContactPart(const BodyContact& contact, MovingFrame shape, MovingFrame points)
-    : PressPart({std::move(shape), std::move(points)}),
+    : UnilateralForcePart({std::move(shape), std::move(points)}),
       contact_(contact),
       tree_(contact.points),
       coupled_(contact.points.size(), false) {}
@@ -310,7 +310,7 @@ double BodyContactPart::touches(const VectorView& y) const {
   return deepest;
 }
 
-PressPart::Pressing BodyContactPart::pressing(const VectorView& y) const {
+UnilateralForcePart::Pressing BodyContactPart::pressing(const VectorView& y) const {
   const auto now = motions<2>(frames(), y);
   const std::vector<Acting> list = acting(now, y);
   Pressing p;

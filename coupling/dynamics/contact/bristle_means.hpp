@@ -11,7 +11,7 @@ namespace snare::coupling {
 /// The bristles of an element's two vertices, seen from a place between them: deflections z [m] and hats there [-].
 struct BristlesBeside {
   std::array<Eigen::Vector2d, 2> bristles{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  std::array<double, 2> hats{};
+  std::array<double, 2> shape_functions{};
 };
 
 /// dz/dt of the bristles at a wire's vertices, a mean over what presses on each:                    theory.md (M.9)

@@ -12,21 +12,21 @@ struct GapPlace {
   double u = 0.0;
   double gap = 0.0;
   double slope = 0.0;
-  double hollow = 0.0;
+  double curvature_bound = 0.0;
 };
 
 /// A maximum of the gap within what is closed.
-struct GapCrest {
+struct GapMaximum {
   double u = 0.0;       ///< from 0 to 1 [-]
   double gap = 0.0;     ///< [m], < 0
   double before = 0.0;  ///< the least gap between it and the crest or the end before it [m]
 };
 
 /// A stretch of an element on which the gap is negative, and its deepest place.
-struct ClosedStretch {
+struct ContactInterval {
   double from = 0.0, to = 0.0;  ///< u, from 0 to 1 [-]
   GapPlace deepest;
-  std::vector<GapCrest> crests;  ///< in their order
+  std::vector<GapMaximum> crests;  ///< in their order
   double behind = 0.0;           ///< the least gap behind the last of them [m]
 };
 
@@ -34,16 +34,16 @@ struct ClosedStretch {
 ///
 /// Between two places the gap cannot fall by more than the way there and back, so that far parts are left out; what is left is
 /// halved until its second derivative bounds it to one sign. gap: u -> GapPlace, once differentiable.
-class ClosedStretches {
+class ContactIntervals {
  public:
   /// length: of the element [m]; way: a bound of the length of its curve [m]; bend: of |X''| [1/m]; resolution: on a shorter way
   /// zeros and minima are looked for [m].
-  ClosedStretches(double length, double way, double bend, double resolution)
+  ContactIntervals(double length, double way, double bend, double resolution)
       : length_(length), way_(way), bend_(bend), resolution_(resolution) {}
 
   /// Appends the stretches in their order, and the local minima with negative gap.
   template <class Gap>
-  void find(const Gap& gap, const GapPlace& begin, const GapPlace& end, std::vector<ClosedStretch>& stretches,
+  void find(const Gap& gap, const GapPlace& begin, const GapPlace& end, std::vector<ContactInterval>& stretches,
             std::vector<GapPlace>& minima) const {
     if (std::isfinite(way_)) divide(gap, begin, end, {stretches, minima});
   }
@@ -52,13 +52,13 @@ class ClosedStretches {
   // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved, nor looked into for crests.
   static constexpr double least_dip = 1e-10, least_way = 1e-6, least_wave = 1.0 / 16.0;
 
-  struct Found {
-    std::vector<ClosedStretch>& stretches;
+  struct ContactCache {
+    std::vector<ContactInterval>& stretches;
     std::vector<GapPlace>& minima;
   };
 
   template <class Gap>
-  void divide(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
+  void divide(const Gap& gap, const GapPlace& a, const GapPlace& b, const ContactCache& found) const {
     const double way = way_ * (b.u - a.u);
     if (!(a.gap + b.gap < way)) return;  // nor is there anything to find where one of them is no number
     if (way <= resolution_) {
@@ -89,7 +89,7 @@ class ClosedStretches {
 
   /// g'' >= -this on a piece [1/m].
   [[nodiscard]] double fall(const GapPlace& a, const GapPlace& b) const {
-    return bend_ + 2.0 * std::max(a.hollow, b.hollow);
+    return bend_ + 2.0 * std::max(a.curvature_bound, b.curvature_bound);
   }
 
   /// No gap between two places is below this [m]: of g_a + g_a' s - B s^2/2 and the same from b the larger one holds, and its least
@@ -121,7 +121,7 @@ class ClosedStretches {
 
   /// A closed piece, which goes on with the stretch before it or begins another.
   template <class Gap>
-  void add(const Gap& gap, const GapPlace& a, const GapPlace& b, const Found& found) const {
+  void add(const Gap& gap, const GapPlace& a, const GapPlace& b, const ContactCache& found) const {
     if (waves(a, b)) {
       const GapPlace middle = gap(0.5 * (a.u + b.u));
       add(gap, a, middle, found);
@@ -135,7 +135,7 @@ class ClosedStretches {
     }
     if (found.stretches.empty() || found.stretches.back().to != a.u)
       found.stretches.push_back({a.u, a.u, a, {}, a.gap});
-    ClosedStretch& s = found.stretches.back();
+    ContactInterval& s = found.stretches.back();
     s.to = b.u;
     if (deepest.gap < s.deepest.gap) s.deepest = deepest;
     if (a.slope > 0.0 && b.slope <= 0.0) {

@@ -21,7 +21,7 @@ inline constexpr std::array<double, 3> gauss_weights{5.0 / 18.0, 8.0 / 18.0, 5.0
 /// between, with x = 1 - (gap of the crest)/(that of the shallower lobe), the two have the share x^2 (3 - 2 x): so no load jumps where a stretch
 /// parts or closes.                                                                     theory.md (M.8)
 template <class Use>
-void for_each_place(const ClosedStretch& stretch, const Use& use) {
+void for_each_place(const ContactInterval& stretch, const Use& use) {
   const auto lobe = [&](std::size_t k) {  // before crest k
     return k < stretch.crests.size() ? stretch.crests[k].before : stretch.behind;
   };

@@ -70,7 +70,7 @@ void ContactPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   accepted_ = AcceptedPress(found_.inputs);
 }
 
-std::vector<int> ContactPart::stay_across(int normal) {
+std::vector<int> ContactPart::restrict_to_plane(int normal) {
   normal_ = normal;
   std::vector<int> unknowns;
   for (int i = 0; has_bristle() && i < rod_.vertices(); ++i) unknowns.push_back(bristle_of(i) + 1);
@@ -78,13 +78,13 @@ std::vector<int> ContactPart::stay_across(int normal) {
 }
 
 bool ContactPart::outgrows_pattern(const DaePoint& at) {
-  const Found& found = found_at(at.y);
-  const auto known = [this](const Node& n) { return coupled_[base::at(n.element)]; };
+  const ContactCache& found = found_at(at.y);
+  const auto known = [this](const QuadraturePoint& n) { return coupled_[base::at(n.element)]; };
   if (std::ranges::all_of(found.nodes, known)) return false;
   std::vector<bool> wanted(coupled_.size(), false);
   for (const int e : search_.candidates()) wanted[base::at(e)] = coupled_[base::at(e)];
   const int last = search_.curve().elements() - 1;
-  for (const Node& n : found.nodes) {
+  for (const QuadraturePoint& n : found.nodes) {
     for (int k = std::max(0, n.element - coupled_beside); k <= std::min(last, n.element + coupled_beside); ++k)
       wanted[base::at(k)] = true;
   }
@@ -94,7 +94,7 @@ bool ContactPart::outgrows_pattern(const DaePoint& at) {
 
 void ContactPart::restore_state(const VectorView& y, std::span<const double>& /*memory*/) {
   std::fill(coupled_.begin(), coupled_.end(), false);
-  look_around(y);
+  update_candidates(y);
 }
 
 void ContactPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
@@ -127,9 +127,9 @@ void ContactPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   }
 }
 
-ContactPart::Node ContactPart::node(int element, double u, double weight) const {
+ContactPart::QuadraturePoint ContactPart::node(int element, double u, double weight) const {
   const BezierWire& curve = search_.curve();
-  Node n;
+  QuadraturePoint n;
   n.element = element;
   n.u = u;
   n.weight = weight;
@@ -137,7 +137,7 @@ ContactPart::Node ContactPart::node(int element, double u, double weight) const 
   n.value = curve.value(element, u);
   n.slope = curve.slope(element, u);
   n.bend.setZero();
-  n.hats = {1.0 - u, u};
+  n.shape_functions = {1.0 - u, u};
   return n;
 }
 
@@ -162,10 +162,10 @@ double ContactPart::foundation_share(double coordinate) const {
   return share;
 }
 
-void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, std::vector<Node>& nodes) const {
+void ContactPart::add_stretch(int e, const ContactInterval& s, std::size_t index, std::vector<QuadraturePoint>& nodes) const {
   const BezierWire& curve = search_.curve();
   const double length = curve.length(e);
-  const auto add = [&](const Node& n) {
+  const auto add = [&](const QuadraturePoint& n) {
     nodes.push_back(n);
     nodes.back().stretch = index;
   };
@@ -173,16 +173,16 @@ void ContactPart::add_stretch(int e, const ClosedStretch& s, std::size_t index, 
     add(node(e, u, weight * length * foundation_share(curve.begin(e) + u * length)));
   });
   const auto mount = [&](double u) {
-    Node n = node(e, u, mount_weight_);
+    QuadraturePoint n = node(e, u, mount_weight_);
     n.place = ContactPlace::mount;
-    n.hats = {};
+    n.shape_functions = {};
     add(n);
   };
   if (e == 0 && s.from == 0.0 && stops(wire::End::left)) mount(0.0);
   if (e + 1 == curve.elements() && s.to == 1.0 && stops(wire::End::right)) mount(1.0);
 }
 
-void ContactPart::find(const VectorView& y, Found& found) const {
+void ContactPart::find(const VectorView& y, ContactCache& found) const {
   const Pose where = search_.X_WS(y);
   const BezierWire& curve = search_.curve();
   for (const int e : search_.candidates()) {
@@ -199,14 +199,14 @@ void ContactPart::find(const VectorView& y, Found& found) const {
     found.minima.clear();
     const std::size_t before = found.stretches.size();
     const GapPlace begin = gap(0.0), end = gap(1.0);
-    ClosedStretches(length, way, largest_bend(c) / (length * length), search_.resolution())
+    ContactIntervals(length, way, largest_bend(c) / (length * length), search_.resolution())
         .find(gap, begin, end, found.stretches, found.minima);
     found.elements.resize(found.stretches.size(), e);
     if (has_law()) {
       if (e == 0 && begin.gap < 0.0 && begin.slope >= 0.0) found.minima.push_back(begin);
       if (e + 1 == curve.elements() && end.gap < 0.0 && end.slope < 0.0) found.minima.push_back(end);
       for (const GapPlace& m : found.minima) {
-        Node n = node(e, m.u, 1.0);
+        QuadraturePoint n = node(e, m.u, 1.0);
         n.bend = curve_weights(rod_, curve.begin(e) + m.u * length).bend;
         n.follows = m.u > 0.0 && m.u < 1.0;
         found.nodes.push_back(n);
@@ -217,7 +217,7 @@ void ContactPart::find(const VectorView& y, Found& found) const {
   }
 }
 
-ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const {
+ContactGeometry ContactPart::geometry(const QuadraturePoint& n, const VectorView& y) const {
   CurvePoint curve;
   for (int k = 0; k < 4; ++k) {
     const Vector3d x = y.segment<3>(rod_.position_of(n.first + k));
@@ -229,26 +229,26 @@ ContactGeometry ContactPart::geometry(const Node& n, const VectorView& y) const 
     curve.slope_v += n.slope[k] * v;
   }
   BristlesBeside beside;
-  beside.hats = n.hats;
+  beside.shape_functions = n.shape_functions;
   for (int h = 0; has_bristle() && h < 2; ++h) beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n.element + h));
   const MotionContact& contact = n.place == ContactPlace::mount ? at_mount_ : contact_;
   return contact_geometry(contact, search_.shape(), curve, body_, y, beside, n.place);
 }
 
-BristleState ContactPart::bristle_state(const Node& n, std::size_t h, const ContactGeometry& g,
+BristleState ContactPart::bristle_state(const QuadraturePoint& n, std::size_t h, const ContactGeometry& g,
                                         const VectorView& y) const {
   BristleState at = g.state;
   at.bristle = y.segment<2>(bristle_of(n.element + static_cast<int>(h)));
   return at;
 }
 
-BristleFlow ContactPart::bristle_flow_at(const Node& n, std::size_t h, const ContactGeometry& g,
+BristleFlow ContactPart::bristle_flow_at(const QuadraturePoint& n, std::size_t h, const ContactGeometry& g,
                                          const VectorView& y) const {
   return bristle_flow(contact_.friction, bristle_state(n, h, g, y), g.of_bristles[h], g.elastic_rate());
 }
 
 // Residual and Jacobian, sums and samples are of the same places again and again.
-const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
+const ContactPart::ContactCache& ContactPart::found_at(const VectorView& y) const {
   if (found_.inputs.holds(y)) return found_;
   found_.inputs.take(y);
   found_.nodes.clear();
@@ -256,30 +256,30 @@ const ContactPart::Found& ContactPart::found_at(const VectorView& y) const {
   found_.elements.clear();
   found_.geometries.clear();
   if (!search_.candidates().empty()) find(y, found_);
-  for (const Node& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
+  for (const QuadraturePoint& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
   if (has_bristle()) add_up_bristles(y, found_);
   return found_;
 }
 
 void ContactPart::accept(const DaePoint& at) {
   search_.update(at.y);
-  accepted_.take(at.y, [this](const VectorView& y) -> const Found& { return found_at(y); });
+  accepted_.take(at.y, [this](const VectorView& y) -> const ContactCache& { return found_at(y); });
 }
 
 numerics::IterationStart ContactPart::iteration_start(const VectorView& from, const VectorView& to) {
   if (has_law()) return {};
   return accepted_.start(
-      from, to, rod_.tolerances().position, [this](const VectorView& y) -> const Found& { return found_at(y); },
+      from, to, rod_.tolerances().position, [this](const VectorView& y) -> const ContactCache& { return found_at(y); },
       [this](const VectorView& y) { return search_.nearest(y).gap; });
 }
 
-void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
+void ContactPart::add_up_bristles(const VectorView& y, ContactCache& found) const {
   found.bristles.begin(y.segment(bristle_, 2 * rod_.vertices()));
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
     for (std::size_t h = 0; h < 2 && n.place == ContactPlace::wire; ++h) {
-      const double share = n.weight * n.hats[h];
+      const double share = n.weight * n.shape_functions[h];
       found.bristles.add(n.element + static_cast<int>(h), share * g.state.elastic,
                          share * bristle_flow_at(n, h, g, y).flow);
     }
@@ -288,9 +288,9 @@ void ContactPart::add_up_bristles(const VectorView& y, Found& found) const {
 }
 
 void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  const Found& found = found_at(at.y);
+  const ContactCache& found = found_at(at.y);
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
     const Vector3d force = n.weight * g.force;
     // The wire: m v_k' + ... - N_k f = 0, but for components that a mount holds.
@@ -312,7 +312,7 @@ void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows)
 
 void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(slots_, values);
-  const Found& found = found_at(at.y);
+  const ContactCache& found = found_at(at.y);
   if (has_bristle()) {
     for (int i = 0; i < rod_.vertices(); ++i) {
       for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + found.bristles.forgetting(i));
@@ -335,7 +335,7 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
 }
 
 // One direction after another: what changes along it in all rows, and from there to the unknowns that it belongs to.
-void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, const BristleMeans& means,
+void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGeometry& g, const BristleMeans& means,
                                        const VectorView& y) {
   const MotionFriction& friction = n.place == ContactPlace::mount ? at_mount_.friction : contact_.friction;
   // A law's minimum follows the tangency n.X' = 0.
@@ -356,7 +356,7 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
     rows.segment<3>(body_rows + 3) = -n.weight * by.torque;
     rows.tail<4>().setZero();
     for (std::size_t h = 0; has_flows && h < 2; ++h) {
-      const double share = n.weight * n.hats[h];
+      const double share = n.weight * n.shape_functions[h];
       const BristleChange of{d.bristles[h], by.sliding, by.load, by.elastic, by.elastic_rate};
       const Vector2d flow = flow_change(friction, bristle_state(n, h, g, y), g.of_bristles[h], flows[h], of);
       rows.segment<2>(bristle_rows + 2 * static_cast<Eigen::Index>(h)) =
@@ -399,7 +399,7 @@ void ContactPart::add_node_derivatives(const Node& n, const ContactGeometry& g, 
 
 // The ends of a stretch follow the zeros of the gap: d int G z/2 dS = (int of the derivative) - (G z/2) dg/|dg/dS| at each end.
 void ContactPart::add_end_derivatives(int element, double u, const BristleMeans& means, const VectorView& y) {
-  const Node n =
+  const QuadraturePoint n =
       node(element, u, foundation_share(search_.curve().begin(element) + u * search_.curve().length(element)));
   const ContactGeometry g = geometry(n, y);
   const double growth = std::max(-contact_.foundation.modulus * g.gap_rate, 0.0),
@@ -407,7 +407,7 @@ void ContactPart::add_end_derivatives(int element, double u, const BristleMeans&
   if (growth == 0.0 || steep < 1e-12) return;
   Eigen::Vector4d by_bristles;  // rows of the bristles by the gap
   for (int h = 0; h < 2; ++h) {
-    const Vector2d flow = 0.5 * growth / steep * n.weight * n.hats[base::at(h)] * y.segment<2>(bristle_of(element + h));
+    const Vector2d flow = 0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(element + h));
     by_bristles.segment<2>(2 * h) = means.change(element + h, 0.0, flow);
   }
   // dg = n.(dX - dp - phi x r), phi = 4 R Q^T dq.
@@ -452,9 +452,9 @@ void ContactPart::put_derivatives(int element, const numerics::PatternValues& in
 
 ContactPart::Sums ContactPart::sums(const VectorView& y) const {
   Sums s;
-  const Found& found = found_at(y);
+  const ContactCache& found = found_at(y);
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
     const Vector3d force = n.weight * g.force;
     s.force += force;
@@ -465,7 +465,7 @@ ContactPart::Sums ContactPart::sums(const VectorView& y) const {
     double rubbed = g.friction.force.dot(g.state.sliding);
     if (has_bristle() && n.place == ContactPlace::wire) {
       rubbed = 0.0;
-      for (std::size_t h = 0; h < 2; ++h) rubbed += n.hats[h] * bristle_flow_at(n, h, g, y).heat;
+      for (std::size_t h = 0; h < 2; ++h) rubbed += n.shape_functions[h] * bristle_flow_at(n, h, g, y).heat;
     }
     s.lost_power += n.weight * (damped + rubbed);
     s.energy += n.weight * (has_law() ? contact_.law.energy(-g.gap) : contact_.foundation.energy(g.gap));
@@ -500,14 +500,14 @@ void ContactPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& r
 
 std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
   std::vector<ContactSample> list;
-  const Found& found = found_at(y);
+  const ContactCache& found = found_at(y);
   const BezierWire& curve = search_.curve();
   // One after another along the wire; a stretch that goes on in the next element is one with it.
   double reached = -1.0;
   std::vector<std::size_t> of_stretch;
   for (std::size_t k = 0; k < found.stretches.size(); ++k) {
     const int e = found.elements[k];
-    const ClosedStretch& s = found.stretches[k];
+    const ContactInterval& s = found.stretches[k];
     const double from = curve.begin(e) + s.from * curve.length(e);
     if (list.empty() || from > reached + 1e-9 * curve.longest()) {
       list.emplace_back();
@@ -518,7 +518,7 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
     list.back().gap = std::min(list.back().gap, s.deepest.gap);
   }
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
     const auto owner = has_law()
                            ? std::find(found.elements.begin(), found.elements.end(), n.element) - found.elements.begin()
@@ -533,7 +533,7 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
     s.slip_speed += normal * g.state.sliding.norm();
     if (!has_bristle() || n.place == ContactPlace::mount) continue;
     // The slider of what sticks stands still.
-    if (g.of_bristles[n.hats[1] > n.hats[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
+    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
   }
   std::erase_if(list, [](const ContactSample& s) { return s.normal_force <= 0.0; });
   for (ContactSample& s : list) {

@@ -43,7 +43,7 @@ class ContactPart final : public numerics::DaePart {
                                                          const numerics::VectorView& to) override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
-  void look_around(const numerics::VectorView& y) {
+  void update_candidates(const numerics::VectorView& y) {
     search_.update(y);
     found_.inputs.forget();
   }
@@ -59,7 +59,7 @@ class ContactPart final : public numerics::DaePart {
 
   /// Works out derivatives from here on only within a plane across axis `normal` of the world (0 to 2), in which wire and body stay. Returns the
   /// unknowns that leave it, the bristles' deflections across the wire: see RodPart.
-  [[nodiscard]] std::vector<int> stay_across(int normal);
+  [[nodiscard]] std::vector<int> restrict_to_plane(int normal);
   /// What happens in space is worked out again.
   void leave_plane() { normal_.reset(); }
 
@@ -85,39 +85,39 @@ class ContactPart final : public numerics::DaePart {
 
  private:
   /// A place where the force is taken, with its weight in the integral.
-  struct Node {
+  struct QuadraturePoint {
     int element = 0;
     double u = 0.0;
     double weight = 0.0;  // [m]; with a law 1, of a force
     int first = 0;        // of the four vertices
     Eigen::Vector4d value, slope, bend;
-    std::array<double, 2> hats{};  // of the element's vertices
+    std::array<double, 2> shape_functions{};  // of the element's vertices
     bool follows = false;          // the minimum as it moves along the wire: a law's
     ContactPlace place = ContactPlace::wire;
     std::size_t stretch = 0;
   };
-  struct Found {
+  struct ContactCache {
     InputMemo inputs;
-    std::vector<Node> nodes;
-    std::vector<ClosedStretch> stretches;  // of single elements
+    std::vector<QuadraturePoint> nodes;
+    std::vector<ContactInterval> stretches;  // of single elements
     std::vector<int> elements;             // of each stretch
     std::vector<GapPlace> minima;
     std::vector<ContactGeometry> geometries;  // of the nodes
     BristleMeans bristles;
   };
-  const Found& found_at(const numerics::VectorView& y) const;
-  void find(const numerics::VectorView& y, Found& found) const;
-  void add_up_bristles(const numerics::VectorView& y, Found& found) const;
+  const ContactCache& found_at(const numerics::VectorView& y) const;
+  void find(const numerics::VectorView& y, ContactCache& found) const;
+  void add_up_bristles(const numerics::VectorView& y, ContactCache& found) const;
   /// State of the bristle of one of the element's two vertices at a node, and its flow there.
-  [[nodiscard]] BristleState bristle_state(const Node& node, std::size_t h, const ContactGeometry& g,
+  [[nodiscard]] BristleState bristle_state(const QuadraturePoint& node, std::size_t h, const ContactGeometry& g,
                                            const numerics::VectorView& y) const;
-  [[nodiscard]] BristleFlow bristle_flow_at(const Node& node, std::size_t h, const ContactGeometry& g,
+  [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h, const ContactGeometry& g,
                                             const numerics::VectorView& y) const;
-  void add_stretch(int element, const ClosedStretch& stretch, std::size_t index, std::vector<Node>& nodes) const;
+  void add_stretch(int element, const ContactInterval& stretch, std::size_t index, std::vector<QuadraturePoint>& nodes) const;
   [[nodiscard]] bool stops(wire::End end) const;
   [[nodiscard]] double foundation_share(double coordinate) const;
-  [[nodiscard]] Node node(int element, double u, double weight) const;
-  [[nodiscard]] ContactGeometry geometry(const Node& node, const numerics::VectorView& y) const;
+  [[nodiscard]] QuadraturePoint node(int element, double u, double weight) const;
+  [[nodiscard]] ContactGeometry geometry(const QuadraturePoint& node, const numerics::VectorView& y) const;
   /// Whether anything moves along an axis of the world, or turns about it.
   [[nodiscard]] bool moves_along(int axis) const { return normal_ != axis; }
   [[nodiscard]] bool turns_about(int axis) const { return normal_.value_or(axis) == axis; }
@@ -128,7 +128,7 @@ class ContactPart final : public numerics::DaePart {
                        body_rate_columns = body_columns + BodyPart::coordinates,
                        bristle_columns = body_rate_columns + BodyPart::velocities;
   using DerivativeRows = Eigen::Matrix<double, bristle_rows + 4, 1>;
-  void add_node_derivatives(const Node& node, const ContactGeometry& geometry, const BristleMeans& means,
+  void add_node_derivatives(const QuadraturePoint& node, const ContactGeometry& geometry, const BristleMeans& means,
                             const numerics::VectorView& y);
   /// What the bristles feel of the ends of a closed stretch, where p_e vanishes but not its rate.
   void add_end_derivatives(int element, double u, const BristleMeans& means, const numerics::VectorView& y);
@@ -146,7 +146,7 @@ class ContactPart final : public numerics::DaePart {
   int bristle_ = 0;
   numerics::PatternSlots slots_;
   AcceptedPress accepted_;
-  mutable Found found_;                                                       // of the last place that was asked for
+  mutable ContactCache found_;                                                       // of the last place that was asked for
   Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };
 

@@ -9,7 +9,7 @@
 namespace snare::coupling {
 
 /// Forces between frames that press: an event where they begin and end.
-class PressPart : public FrameForces {
+class UnilateralForcePart : public FrameForces {
  public:
   using FrameForces::FrameForces;
 

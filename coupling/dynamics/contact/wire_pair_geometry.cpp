@@ -59,12 +59,12 @@ PairGeometry pair_geometry(const WirePair& pair, const std::array<double, 2>& ra
   g.across = g.normal.cross(g.along);
   g.state.sliding = {g.along.dot(g.sliding), g.across.dot(g.sliding)};
   if (pair.friction.has_bristle()) {
-    g.hats = beside.hats;
+    g.shape_functions = beside.shape_functions;
     for (std::size_t h = 0; h < 2; ++h) {
       BristleState at = g.state;
       at.bristle = beside.bristles[h];
       g.of_bristles[h] = tangent_force(pair.friction, at);
-      g.friction.add(g.hats[h], g.of_bristles[h]);
+      g.friction.add(g.shape_functions[h], g.of_bristles[h]);
     }
   } else {
     g.friction = tangent_force(pair.friction, g.state);
@@ -120,7 +120,7 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
   c.sliding = {dalong.dot(g.sliding) + g.along.dot(dsliding), dacross.dot(g.sliding) + g.across.dot(dsliding)};
   Vector2d dfriction =
       g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
-  for (std::size_t h = 0; h < 2; ++h) dfriction += g.hats[h] * g.of_bristles[h].by_bristle * d.bristles[h];
+  for (std::size_t h = 0; h < 2; ++h) dfriction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
   const Vector3d don_other = g.in_world(dfriction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   c.force -= don_other;
   c.moment = dapart.cross(g.in_world(g.friction.force)) + g.apart.cross(don_other);

@@ -72,17 +72,17 @@ void WirePairPart::attach_pattern(const numerics::SparseMatrix& pattern) {
 }
 
 bool WirePairPart::outgrows_pattern(const DaePoint& at) {
-  const Found& found = found_at(at.y);
-  const auto elements = [](const Node& n) {
+  const ContactCache& found = found_at(at.y);
+  const auto elements = [](const QuadraturePoint& n) {
     const int own = n.places[0].element, other = n.places[1].element;
     return n.own == 0 ? std::pair(own, other) : std::pair(other, own);
   };
-  const auto known = [&](const Node& n) { return std::ranges::binary_search(coupled_, elements(n)); };
+  const auto known = [&](const QuadraturePoint& n) { return std::ranges::binary_search(coupled_, elements(n)); };
   if (std::ranges::all_of(found.nodes, known)) return false;
   std::vector<std::pair<int, int>> wanted;
   std::ranges::set_intersection(coupled_, search_.candidates(), std::back_inserter(wanted));
   const std::array<int, 2> last{search_.curve(0).elements() - 1, search_.curve(1).elements() - 1};
-  for (const Node& n : found.nodes) {
+  for (const QuadraturePoint& n : found.nodes) {
     const auto [a, b] = elements(n);
     for (int i = std::max(0, a - neighbours_coupled); i <= std::min(last[0], a + neighbours_coupled); ++i) {
       for (int j = std::max(0, b - neighbours_coupled); j <= std::min(last[1], b + neighbours_coupled); ++j)
@@ -98,7 +98,7 @@ bool WirePairPart::outgrows_pattern(const DaePoint& at) {
 void WirePairPart::restore_state(const VectorView& y, std::span<const double>& memory) {
   touches_.restore_state(memory);
   coupled_.clear();
-  look_around(y);
+  update_candidates(y);
 }
 
 // By pairs of vertices, of either wire, that an element of one and an element of the other couple.
@@ -139,9 +139,9 @@ void WirePairPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   }
 }
 
-WirePairPart::Node::Place WirePairPart::place(std::size_t wire, int element, double u) const {
+WirePairPart::QuadraturePoint::Place WirePairPart::place(std::size_t wire, int element, double u) const {
   const BezierWire& curve = search_.curve(wire);
-  Node::Place p;
+  QuadraturePoint::Place p;
   p.element = element;
   p.u = u;
   p.first = curve.first_vertex(element);
@@ -166,7 +166,7 @@ WirePairPart::Node::Place WirePairPart::place(std::size_t wire, int element, dou
   return p;
 }
 
-void WirePairPart::find(const VectorView& y, Found& found) const {
+void WirePairPart::find(const VectorView& y, ContactCache& found) const {
   for (std::size_t w = 0; w < 2; ++w) {
     for (const NearElements& n : search_.near(w))
       found.pieces[w].set(n.element, search_.curve(w).control(n.element, y));
@@ -176,7 +176,7 @@ void WirePairPart::find(const VectorView& y, Found& found) const {
   }
 }
 
-void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& found) const {
+void WirePairPart::find_along(std::size_t own, const NearElements& near, ContactCache& found) const {
   const std::size_t other = 1 - own;
   const BezierWire& curve = search_.curve(own);
   const CubicPieces &along = found.pieces[own], &across = found.pieces[other];
@@ -197,21 +197,21 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
   };
   found.closed.clear();
   found.minima.clear();
-  ClosedStretches(length, along.way(near.element), along.largest_bend(near.element) / (length * length),
+  ContactIntervals(length, along.way(near.element), along.largest_bend(near.element) / (length * length),
                   search_.resolution(own))
       .find(gap, gap(0.0), gap(1.0), found.closed, found.minima);
-  for (const ClosedStretch& s : found.closed) {
+  for (const ContactInterval& s : found.closed) {
     const double begin = curve.begin(near.element);
     found.stretches.push_back({own, begin + s.from * length, begin + s.to * length, s.deepest.gap});
     const auto make = [&](double u, double weight) {
       const FootPoint foot = foot_point(across, near.first, near.last, along.value(near.element, u));
-      Node n;
+      QuadraturePoint n;
       n.own = own;
       n.weight = 0.5 * weight * length;
       n.stands = foot.stands;
       n.stretch = found.stretches.size() - 1;
       n.places = {place(own, near.element, u), place(other, foot.element, foot.u)};
-      n.hats = {1.0 - u, u};
+      n.shape_functions = {1.0 - u, u};
       return n;
     };
     for_each_place(s, [&](double u, double weight) { found.nodes.push_back(make(u, weight)); });
@@ -221,7 +221,7 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Found& 
   }
 }
 
-PairSide WirePairPart::side(std::size_t wire, const Node::Place& p, const VectorView& y) const {
+PairSide WirePairPart::side(std::size_t wire, const QuadraturePoint::Place& p, const VectorView& y) const {
   const wire::RodPart& rod = *rods_[wire];
   const Eigen::Map<const BezierWire::Control> x(y.data() + rod.position_of(p.first));
   const Eigen::Map<const BezierWire::Control> v(y.data() + rod.velocity_of(p.first));
@@ -239,29 +239,29 @@ PairSide WirePairPart::side(std::size_t wire, const Node::Place& p, const Vector
   return s;
 }
 
-PairGeometry WirePairPart::geometry(const Node& n, const VectorView& y) const {
+PairGeometry WirePairPart::geometry(const QuadraturePoint& n, const VectorView& y) const {
   BristlesBeside beside;
-  beside.hats = n.hats;
+  beside.shape_functions = n.shape_functions;
   for (int h = 0; has_bristle() && h < 2; ++h) beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n, h));
   const std::size_t other = 1 - n.own;
   return pair_geometry(pair_, {pair_.radii[n.own], pair_.radii[other]},
                        {side(n.own, n.places[0], y), side(other, n.places[1], y)}, n.stands, beside);
 }
 
-BristleState WirePairPart::bristle_state(const Node& n, std::size_t h, const PairGeometry& g,
+BristleState WirePairPart::bristle_state(const QuadraturePoint& n, std::size_t h, const PairGeometry& g,
                                          const VectorView& y) const {
   BristleState at = g.state;
   at.bristle = y.segment<2>(bristle_of(n, static_cast<int>(h)));
   return at;
 }
 
-BristleFlow WirePairPart::bristle_flow_at(const Node& n, std::size_t h, const PairGeometry& g,
+BristleFlow WirePairPart::bristle_flow_at(const QuadraturePoint& n, std::size_t h, const PairGeometry& g,
                                           const VectorView& y) const {
   return bristle_flow(pair_.friction, bristle_state(n, h, g, y), g.of_bristles[h], g.elastic_rate());
 }
 
-WirePairPart::NodalLoad WirePairPart::nodal_load(const Node& n, const PairGeometry& g, std::size_t s) const {
-  const Node::Place& p = n.places[s];
+WirePairPart::NodalLoad WirePairPart::nodal_load(const QuadraturePoint& n, const PairGeometry& g, std::size_t s) const {
+  const QuadraturePoint::Place& p = n.places[s];
   const Vector3d force = (s == 0 ? n.weight : -n.weight) * g.force;
   NodalLoad load;
   for (int k = 0; k < 4; ++k) load.force[base::at(k)] = p.value[k] * force;
@@ -277,7 +277,7 @@ WirePairPart::NodalLoad WirePairPart::nodal_load(const Node& n, const PairGeomet
   return load;
 }
 
-const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
+const WirePairPart::ContactCache& WirePairPart::found_at(const VectorView& y) const {
   if (found_.inputs.holds(y)) return found_;
   found_.inputs.take(y);
   found_.nodes.clear();
@@ -285,30 +285,30 @@ const WirePairPart::Found& WirePairPart::found_at(const VectorView& y) const {
   found_.stretches.clear();
   found_.geometries.clear();
   if (!search_.candidates().empty()) find(y, found_);
-  for (const Node& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
+  for (const QuadraturePoint& n : found_.nodes) found_.geometries.push_back(geometry(n, y));
   if (has_bristle()) add_up_bristles(y, found_);
   return found_;
 }
 
 void WirePairPart::accept(const DaePoint& at) {
   search_.update(at.y);
-  accepted_.take(at.y, [this](const VectorView& y) -> const Found& { return found_at(y); });
+  accepted_.take(at.y, [this](const VectorView& y) -> const ContactCache& { return found_at(y); });
 }
 
 numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, const VectorView& to) {
   const double tolerance = std::min(rods_[0]->tolerances().position, rods_[1]->tolerances().position);
   return accepted_.start(
-      from, to, tolerance, [this](const VectorView& y) -> const Found& { return found_at(y); },
+      from, to, tolerance, [this](const VectorView& y) -> const ContactCache& { return found_at(y); },
       [this](const VectorView& y) { return search_.nearest(y).gap; });
 }
 
-void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
+void WirePairPart::add_up_bristles(const VectorView& y, ContactCache& found) const {
   for (std::size_t w = 0; w < 2; ++w) found.bristles[w].begin(y.segment(bristles_[w], 2 * rods_[w]->vertices()));
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
     for (std::size_t h = 0; h < 2; ++h) {
-      const double share = n.weight * n.hats[h];
+      const double share = n.weight * n.shape_functions[h];
       found.bristles[n.own].add(n.places[0].element + static_cast<int>(h), share * g.state.elastic,
                                 share * bristle_flow_at(n, h, g, y).flow);
     }
@@ -317,9 +317,9 @@ void WirePairPart::add_up_bristles(const VectorView& y, Found& found) const {
 }
 
 void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
-  const Found& found = found_at(at.y);
+  const ContactCache& found = found_at(at.y);
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     // m v_k' + ... less the forces, but for components that a mount holds.
     for (std::size_t s = 0; s < 2; ++s) {
       const wire::RodPart& rod = *rods_[wire_of(n, s)];
@@ -341,7 +341,7 @@ void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows
 
 void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(slots_, values);
-  const Found& found = found_at(at.y);
+  const ContactCache& found = found_at(at.y);
   for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
     for (int i = 0; i < rods_[w]->vertices(); ++i) {
       for (int a = 0; a < 2; ++a)
@@ -350,9 +350,9 @@ void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& v
   }
   LocalBlock block = LocalBlock::Zero();
   for (std::size_t k = 0; k < found.nodes.size(); ++k) {
-    const Node& n = found.nodes[k];
+    const QuadraturePoint& n = found.nodes[k];
     add_node_jacobian(n, found.geometries[k], at.y, block);
-    const auto same = [&n](const Node& next) {
+    const auto same = [&n](const QuadraturePoint& next) {
       return next.own == n.own && next.places[0].element == n.places[0].element &&
              next.places[1].element == n.places[1].element;
     };
@@ -360,18 +360,18 @@ void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& v
     add_block(n, block, into);
     block.setZero();
   }
-  for (const Node& end : found.ends) {
+  for (const QuadraturePoint& end : found.ends) {
     add_end_jacobian(end, at.y, block);
     add_block(end, block, into);
     block.setZero();
   }
 }
 
-void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDirection& d, const VectorView& y,
+void WirePairPart::add_column(const QuadraturePoint& n, const PairGeometry& g, const PairDirection& d, const VectorView& y,
                               Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const {
   const PairChange c = pair_change(pair_.friction, g, d);
   for (std::size_t s = 0; s < 2; ++s) {
-    const Node::Place& p = n.places[s];
+    const QuadraturePoint::Place& p = n.places[s];
     const double sign = s == 0 ? -n.weight : n.weight;
     const double zeta = s == 0 ? 0.0 : c.zeta;
     const Eigen::Index row = rows_of_place * static_cast<Eigen::Index>(s);
@@ -390,7 +390,7 @@ void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDi
   for (std::size_t h = 0; has_bristle() && h < 2; ++h) {
     const BristleFlow flow = bristle_flow_at(n, h, g, y);
     const BristleChange by{d.bristles[h], c.sliding, c.load, c.elastic, c.elastic_rate};
-    const double share = n.weight * n.hats[h];
+    const double share = n.weight * n.shape_functions[h];
     column.segment<2>(row_of_bristle + 2 * static_cast<Eigen::Index>(h)) += found_.bristles[n.own].change(
         n.places[0].element + static_cast<int>(h), share * c.elastic,
         share * flow_change(pair_.friction, bristle_state(n, h, g, y), g.of_bristles[h], flow, by));
@@ -398,10 +398,10 @@ void WirePairPart::add_column(const Node& n, const PairGeometry& g, const PairDi
 }
 
 // One unknown after another: the direction along which it moves what the node depends on, and what changes in all rows.
-void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const VectorView& y,
+void WirePairPart::add_node_jacobian(const QuadraturePoint& n, const PairGeometry& g, const VectorView& y,
                                      LocalBlock& block) const {
   for (std::size_t s = 0; s < 2; ++s) {
-    const Node::Place& p = n.places[s];
+    const QuadraturePoint::Place& p = n.places[s];
     const Eigen::Index first = columns_of_place * static_cast<Eigen::Index>(s);
     for (int k = 0; k < 4; ++k) {
       for (int a = 0; a < 3; ++a) {
@@ -432,13 +432,13 @@ void WirePairPart::add_node_jacobian(const Node& n, const PairGeometry& g, const
   }
 }
 
-void WirePairPart::add_end_jacobian(const Node& n, const VectorView& y, LocalBlock& block) const {
+void WirePairPart::add_end_jacobian(const QuadraturePoint& n, const VectorView& y, LocalBlock& block) const {
   const PairGeometry g = geometry(n, y);
   const double growth = std::max(-pair_.foundation.modulus * g.gap_rate, 0.0);
   const double steep = std::abs(g.normal.dot(g.sides[0].slope));
   if (growth == 0.0 || steep < 1e-12) return;
   for (int h = 0; h < 2; ++h) {
-    const Vector2d flow = 0.5 * growth / steep * n.weight * n.hats[base::at(h)] * y.segment<2>(bristle_of(n, h));
+    const Vector2d flow = 0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(n, h));
     const Vector2d by_gap = found_.bristles[n.own].change(n.places[0].element + h, 0.0, flow);
     for (std::size_t s = 0; s < 2; ++s) {  // dg = n.(dX_A - dX_B)
       const Vector3d normal = s == 0 ? g.normal : Vector3d(-g.normal);
@@ -450,7 +450,7 @@ void WirePairPart::add_end_jacobian(const Node& n, const VectorView& y, LocalBlo
   }
 }
 
-void WirePairPart::add_block(const Node& n, const LocalBlock& block, const numerics::PatternValues& into) const {
+void WirePairPart::add_block(const QuadraturePoint& n, const LocalBlock& block, const numerics::PatternValues& into) const {
   constexpr int none = -1;
   std::array<int, 28> rows;
   std::array<int, 52> columns;

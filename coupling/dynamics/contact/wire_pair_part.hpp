@@ -41,7 +41,7 @@ class WirePairPart final : public numerics::DaePart {
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
-  void look_around(const numerics::VectorView& y) {
+  void update_candidates(const numerics::VectorView& y) {
     search_.update(y);
     found_.inputs.forget();
   }
@@ -82,7 +82,7 @@ class WirePairPart final : public numerics::DaePart {
 
  private:
   /// A place on the wire along which the load is integrated, with the nearest point of the other.
-  struct Node {
+  struct QuadraturePoint {
     std::size_t own = 0;  // wire along which it is integrated
     double weight = 0.0;  // [m]
     bool stands = false;  // the nearest point
@@ -95,22 +95,22 @@ class WirePairPart final : public numerics::DaePart {
       std::array<double, 3> share{}, share_slope{};  // of the edges between the four vertices in the section's turn
     };
     std::array<Place, 2> places;   // on its own wire, on the other
-    std::array<double, 2> hats{};  // of the vertices of its own element
+    std::array<double, 2> shape_functions{};  // of the vertices of its own element
   };
   struct Stretch {
     std::size_t own = 0;
     double from = 0.0, to = 0.0;  // material [m]
     double gap = 0.0;             // deepest [m]
   };
-  struct Found {
+  struct ContactCache {
     InputMemo inputs;
-    std::vector<Node> nodes;
-    std::vector<Node> ends;  // of the stretches, with bristles: see add_end_jacobian
+    std::vector<QuadraturePoint> nodes;
+    std::vector<QuadraturePoint> ends;  // of the stretches, with bristles: see add_end_jacobian
     std::vector<Stretch> stretches;
     std::array<CubicPieces, 2> pieces;
     std::vector<PairGeometry> geometries;  // of the nodes
     std::array<BristleMeans, 2> bristles;  // of both wires
-    std::vector<ClosedStretch> closed;     // workspace
+    std::vector<ContactInterval> closed;     // workspace
     std::vector<GapPlace> minima;          // workspace
   };
   /// Forces on the four vertices on which a place depends [N], and the moment that is taken as held [N m].
@@ -121,31 +121,31 @@ class WirePairPart final : public numerics::DaePart {
   /// Rows: of either place 12 of forces, 4 of bristles. Columns: of either place 12 of places and 12 of velocities, 4 of bristles.
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
-  const Found& found_at(const numerics::VectorView& y) const;
-  void find(const numerics::VectorView& y, Found& found) const;
-  void add_up_bristles(const numerics::VectorView& y, Found& found) const;
-  void find_along(std::size_t own, const NearElements& near, Found& found) const;
-  [[nodiscard]] Node::Place place(std::size_t wire, int element, double u) const;
-  [[nodiscard]] PairSide side(std::size_t wire, const Node::Place& place, const numerics::VectorView& y) const;
-  [[nodiscard]] PairGeometry geometry(const Node& node, const numerics::VectorView& y) const;
+  const ContactCache& found_at(const numerics::VectorView& y) const;
+  void find(const numerics::VectorView& y, ContactCache& found) const;
+  void add_up_bristles(const numerics::VectorView& y, ContactCache& found) const;
+  void find_along(std::size_t own, const NearElements& near, ContactCache& found) const;
+  [[nodiscard]] QuadraturePoint::Place place(std::size_t wire, int element, double u) const;
+  [[nodiscard]] PairSide side(std::size_t wire, const QuadraturePoint::Place& place, const numerics::VectorView& y) const;
+  [[nodiscard]] PairGeometry geometry(const QuadraturePoint& node, const numerics::VectorView& y) const;
   /// State of the bristle of one of the element's two vertices at a node, and its flow there.
-  [[nodiscard]] BristleState bristle_state(const Node& node, std::size_t h, const PairGeometry& g,
+  [[nodiscard]] BristleState bristle_state(const QuadraturePoint& node, std::size_t h, const PairGeometry& g,
                                            const numerics::VectorView& y) const;
-  [[nodiscard]] BristleFlow bristle_flow_at(const Node& node, std::size_t h, const PairGeometry& g,
+  [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h, const PairGeometry& g,
                                             const numerics::VectorView& y) const;
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
-  [[nodiscard]] std::size_t wire_of(const Node& n, std::size_t s) const { return s == 0 ? n.own : 1 - n.own; }
+  [[nodiscard]] std::size_t wire_of(const QuadraturePoint& n, std::size_t s) const { return s == 0 ? n.own : 1 - n.own; }
   /// First of the two of the vertex h of the node's element.
-  [[nodiscard]] int bristle_of(const Node& n, int h) const { return bristles_[n.own] + 2 * (n.places[0].element + h); }
+  [[nodiscard]] int bristle_of(const QuadraturePoint& n, int h) const { return bristles_[n.own] + 2 * (n.places[0].element + h); }
   /// What the node does to the wire of one of its places.
-  [[nodiscard]] NodalLoad nodal_load(const Node& node, const PairGeometry& g, std::size_t s) const;
-  void add_column(const Node& node, const PairGeometry& g, const PairDirection& d, const numerics::VectorView& y,
+  [[nodiscard]] NodalLoad nodal_load(const QuadraturePoint& node, const PairGeometry& g, std::size_t s) const;
+  void add_column(const QuadraturePoint& node, const PairGeometry& g, const PairDirection& d, const numerics::VectorView& y,
                   Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const;
-  void add_node_jacobian(const Node& node, const PairGeometry& g, const numerics::VectorView& y,
+  void add_node_jacobian(const QuadraturePoint& node, const PairGeometry& g, const numerics::VectorView& y,
                          LocalBlock& block) const;
   /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see ContactPart.
-  void add_end_jacobian(const Node& end, const numerics::VectorView& y, LocalBlock& block) const;
-  void add_block(const Node& node, const LocalBlock& block, const numerics::PatternValues& into) const;
+  void add_end_jacobian(const QuadraturePoint& end, const numerics::VectorView& y, LocalBlock& block) const;
+  void add_block(const QuadraturePoint& node, const LocalBlock& block, const numerics::PatternValues& into) const;
 
   WirePair pair_;
   std::array<const wire::RodPart*, 2> rods_;
@@ -155,7 +155,7 @@ class WirePairPart final : public numerics::DaePart {
   std::array<int, 2> bristles_{0, 0};         // first of each wire
   numerics::PatternSlots slots_;
   AcceptedPress accepted_;
-  mutable Found found_;  // of the last place that was asked for
+  mutable ContactCache found_;  // of the last place that was asked for
 };
 
 }  // namespace snare::coupling

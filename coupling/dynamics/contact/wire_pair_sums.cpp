@@ -16,9 +16,9 @@ using numerics::VectorView;
 WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
   Sums sum;
   for (auto& wire : sum.on_mounts) wire.fill(Vector3d::Zero());
-  const Found& found = found_at(y);
+  const ContactCache& found = found_at(y);
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
     sum.force += (n.own == 0 ? n.weight : -n.weight) * g.force;
     sum.normal += n.weight * g.state.normal;
@@ -28,7 +28,7 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
     double rubbed = g.friction.force.dot(g.state.sliding);
     if (has_bristle()) {
       rubbed = 0.0;
-      for (std::size_t h = 0; h < 2; ++h) rubbed += n.hats[h] * bristle_flow_at(n, h, g, y).heat;
+      for (std::size_t h = 0; h < 2; ++h) rubbed += n.shape_functions[h] * bristle_flow_at(n, h, g, y).heat;
     }
     sum.lost_power += n.weight * (damped + rubbed);
     for (std::size_t s = 0; s < 2; ++s) {
@@ -55,7 +55,7 @@ WirePairPart::Sums WirePairPart::sums(const VectorView& y) const {
 
 void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
   if (!has_bristle()) return;
-  const Found& found = found_at(y);
+  const ContactCache& found = found_at(y);
   for (std::size_t w = 0; w < 2; ++w)
     rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found.bristles[w].rates.reshaped();
 }
@@ -64,7 +64,7 @@ void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& 
 // which it acts.
 ContactSample WirePairPart::closed_sample(const VectorView& y) const {
   ContactSample sum;
-  const Found& found = found_at(y);
+  const ContactCache& found = found_at(y);
   struct Point {
     double from = 0.0, to = 0.0;  // along the first wire [m]
     ContactSample sample;
@@ -89,10 +89,10 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     return best != nullptr ? best->sample : points.emplace_back(Point{arc, arc, {}}).sample;
   };
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
-    const Node& n = found.nodes[q];
+    const QuadraturePoint& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
     const std::size_t first = n.own == 0 ? 0 : 1;  // place that is on the first wire
-    const Node::Place& p = n.places[first];
+    const QuadraturePoint::Place& p = n.places[first];
     const double arc = search_.curve(0).begin(p.element) + p.u * search_.curve(0).length(p.element);
     const double normal = n.weight * g.state.normal;
     ContactSample& s = nearest(arc);
@@ -105,7 +105,7 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     s.slip_speed += normal * g.state.sliding.norm();
     if (!has_bristle()) continue;
     // The slider of what sticks stands still.
-    if (g.of_bristles[n.hats[1] > n.hats[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
+    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
   }
   for (Point& p : points) {
     ContactSample& s = p.sample;
@@ -138,7 +138,7 @@ std::pair<double, double> WirePairPart::gap_at(const VectorView& y, double coord
   const double u = std::clamp((coordinate - curve.begin(element)) / curve.length(element), 0.0, 1.0);
   const Vector3d x = curve.control(element, y) * bernstein(u);
   const FootPoint foot = foot_point(pieces, 0, other.elements() - 1, x);
-  Node n;
+  QuadraturePoint n;
   n.places = {place(0, element, u), place(1, foot.element, foot.u)};
   WirePair without = pair_;
   without.friction = {};

@@ -188,7 +188,7 @@ void ConstraintSet::place(VectorXd& y) {
   for (const CarriedWire& w : carried_wires(y)) {
     for (int i = 0; i < w.rod->vertices(); ++i) y.segment<3>(w.rod->velocity_of(i)) = w.velocity(i, y);
   }
-  enter(0.0);
+  begin_interval(0.0);
 }
 
 void ConstraintSet::place_twist_rates(const VectorXd& y, VectorXd& rate) const {
@@ -213,7 +213,7 @@ std::vector<CarriedWire> ConstraintSet::carried_wires(const VectorXd& y) const {
   return wires;
 }
 
-void ConstraintSet::loosen(VectorXd& y) const {
+void ConstraintSet::zero_multipliers(VectorXd& y) const {
   // Multipliers and the stabilisers behind them.
   for (const Constraint* c : constraints_) y.segment(c->multipliers(), 2 * c->constraints()).setZero();
 }
@@ -247,13 +247,13 @@ void ConstraintSet::set_multipliers(const VectorXd& multipliers, VectorXd& y) co
   }
 }
 
-void ConstraintSet::enter(double time) {
+void ConstraintSet::begin_interval(double time) {
   limit_ = end_;
   for (Arm& a : arms_) limit_ = a.stepper->next_break(time, limit_);
   for (Arm& a : arms_) a.part->enter_interval(time, limit_);
 }
 
-bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, VectorXd& y) {
+bool ConstraintSet::process_events(const DaePoint& at, std::span<const int> found, VectorXd& y) {
   if (arms_.empty()) return false;
   const double time = at.time;  // `at` may view y, which changes
   bool anew = false, drives_anew = false;
@@ -272,7 +272,7 @@ bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, Vecto
     drives_anew = arm.stepper->change_drives(time, y) || drives_anew;
   }
   if (drives_anew || (time >= limit_ && time < end_)) {
-    enter(time);
+    begin_interval(time);
     for (Arm& a : arms_) a.part->settle(time, y);
     anew = true;
   }
@@ -282,7 +282,7 @@ bool ConstraintSet::follow(const DaePoint& at, std::span<const int> found, Vecto
 void ConstraintSet::change_drive(int arm, int joint, const multibody::Drive& drive, double time, VectorXd& y) {
   restore_drive(arm, joint, drive);
   arms_[at_index(arm)].part->stop_ruled_motors(y);
-  enter(time);
+  begin_interval(time);
   for (Arm& a : arms_) a.part->settle(time, y);
 }
 
@@ -299,7 +299,7 @@ void ConstraintSet::save_state(std::vector<double>& memory) const {
 
 void ConstraintSet::restore_state(double time, std::span<const double>& memory) {
   for (Arm& a : arms_) a.stepper->restore_state(memory);
-  enter(time);
+  begin_interval(time);
 }
 
 double ConstraintSet::lost(const VectorView& y) const {
@@ -335,7 +335,7 @@ void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, Motio
 }
 
 // Whether the momentum of what carries the frame is counted.
-bool ConstraintSet::counted(const MovingFrame& frame) const {
+bool ConstraintSet::in_momentum_balance(const MovingFrame& frame) const {
   if (frame.body() != nullptr) return frame.moves_freely();
   for (const Arm& a : arms_) {
     if (&*a.part == frame.arm()) return a.floats;
@@ -349,7 +349,7 @@ void ConstraintSet::add_forces(const FrameForces& forces, const std::vector<mult
   for (std::size_t k = 0; k < wrenches.size(); ++k) {
     const MovingFrame& frame = forces.frames()[k];
     const MovingFrame::State carrier = frame.state(at.y);
-    if (counted(frame)) {
+    if (in_momentum_balance(frame)) {
       sum.force += wrenches[k].force;
       sum.moment += wrenches[k].moment + carrier.X_WF.p.cross(wrenches[k].force);
     }
@@ -364,7 +364,7 @@ void ConstraintSet::add_load(const LoadPart& load, const DaePoint& at, Outer& su
   const MovingFrame::State s = load.frame().state(at.y);
   if (!load.frame().moves_freely()) return;
   sum.power += w.force.dot(s.linear) + w.moment.dot(s.angular);
-  if (!counted(load.frame())) return;
+  if (!in_momentum_balance(load.frame())) return;
   sum.force += w.force;
   sum.moment += w.moment + s.X_WF.p.cross(w.force);
 }
@@ -375,7 +375,7 @@ ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   Outer sum;
   const auto add = [&](const Constraint& constraint, const Vector3d& moment) {
     const MovingFrame& carrier = constraint.carrier();
-    if (counted(carrier)) return;
+    if (in_momentum_balance(carrier)) return;
     const multibody::Wrench w = constraint.wrench(at.y);
     const MovingFrame::State s = carrier.state(at.y);
     sum.force += w.force;

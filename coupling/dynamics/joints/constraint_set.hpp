@@ -42,7 +42,7 @@ class ConstraintSet {
   /// Writes the rates [rad/s] of the edges' angles of the wires that start with their carriers.
   void place_twist_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
   /// Multipliers zero.
-  void loosen(Eigen::VectorXd& y) const;
+  void zero_multipliers(Eigen::VectorXd& y) const;
   /// Rates of the arms that annul their rows of a residual with vanishing rates of theirs.
   void solve_rates(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rows, Eigen::VectorXd& rate);
   /// Adds to changes of the velocities what the constraints make of them.                       theory.md (M.16)
@@ -56,7 +56,7 @@ class ConstraintSet {
   [[nodiscard]] double limit() const { return limit_; }
   /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms,
   /// empty when it found none. True: the integration must start anew.
-  [[nodiscard]] bool follow(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
+  [[nodiscard]] bool process_events(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
   /// A new drive of a joint from a time on. The integration must start anew.
   void change_drive(int arm, int joint, const multibody::Drive& drive, double time, Eigen::VectorXd& y);
   /// The same where the unknowns have taken it in already: behind it `restore_state` must follow.
@@ -104,9 +104,9 @@ class ConstraintSet {
     std::optional<multibody::ArmStepper> stepper;
     bool floats = false;  // nothing holds its base: its momentum is counted
   };
-  [[nodiscard]] bool counted(const MovingFrame& frame) const;
+  [[nodiscard]] bool in_momentum_balance(const MovingFrame& frame) const;
   [[nodiscard]] std::vector<CarriedWire> carried_wires(const Eigen::VectorXd& y) const;
-  void enter(double time);
+  void begin_interval(double time);
 
   const Motion& motion_;
   double end_;

@@ -31,7 +31,7 @@ Wrench LoadPart::wrench(const DaePoint& at) const {
   return {R * w.moment, R * w.force};
 }
 
-bool LoadPart::enter(double time) {
+bool LoadPart::begin_interval(double time) {
   const bool passes = next_break(entered_) <= time;
   entered_ = time;
   return passes;

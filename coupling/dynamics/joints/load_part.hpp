@@ -26,7 +26,7 @@ class LoadPart final : public numerics::DaePart {
   /// The first of its times behind a time, at which the integration must stop [s]; infinite: none.
   [[nodiscard]] double next_break(double time) const;
   /// The integration has come to a time [s]; true: it must begin anew there, behind one of the load's times.
-  [[nodiscard]] bool enter(double time);
+  [[nodiscard]] bool begin_interval(double time);
 
  private:
   FrameLoad load_;

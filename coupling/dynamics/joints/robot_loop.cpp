@@ -26,7 +26,7 @@ MotionBody RobotLoop::moved() const {
 
 // A force that jumps does so where a step ends: at both of its ends the force is that from within it, so that two records of one time have the
 // force before and behind.
-void RobotLoop::measure(double from, double to, const Force& force) {
+void RobotLoop::sense_forces(double from, double to, const Force& force) {
   constexpr int pieces = 4;
   constexpr double within = 1e-6;  // of a piece
   Vector3d impulse = records_.empty() ? Vector3d::Zero() : records_.back().impulse;
@@ -48,7 +48,7 @@ void RobotLoop::measure(double from, double to, const Force& force) {
   while (records_.size() > 2 && records_[1].time < oldest) records_.pop_front();
 }
 
-bool RobotLoop::enter(double time, bool anew) {
+bool RobotLoop::begin_interval(double time, bool anew) {
   bool reached = false;
   while (!breaks_.empty() && breaks_.front() <= time + same_time) {
     breaks_.pop_front();

@@ -30,10 +30,10 @@ class RobotLoop {
   using Force = std::function<Eigen::Vector3d(double time)>;
   /// A step from a time to another [s], or none where they are one: what presses on the body. The integrator does not watch the error of an
   /// integral of the force, so it is taken by Simpson's rule on quarters of the step.
-  void measure(double from, double to, const Force& force);
+  void sense_forces(double from, double to, const Force& force);
   [[nodiscard]] const MotionRobot& robot() const { return *body_.robot; }
   /// The integration has come to a time [s]; anew: it begins anew there. Whether it must, as it did a delay earlier.
-  [[nodiscard]] bool enter(double time, bool anew);
+  [[nodiscard]] bool begin_interval(double time, bool anew);
   /// The first time behind a time at which it must [s]; infinite: none.
   [[nodiscard]] double next_break(double time) const;
   [[nodiscard]] double longest_step() const { return body_.robot->delay; }

@@ -111,7 +111,7 @@ struct LawWirePart::Action {
 };
 
 LawWirePart::LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft)
-    : PressPart({std::move(from), std::move(to), std::move(shaft)}),
+    : UnilateralForcePart({std::move(from), std::move(to), std::move(shaft)}),
       wire_(wire),
       binormal_(wire.bulge.cross(wire.p_to - wire.p_from).normalized()),
       stop_stiffness_(wire.axial_stiffness / (wire.shaft.radius + wire.radius)),
@@ -371,7 +371,7 @@ double LawWirePart::depth(const VectorView& y) const {
   return now(y).depth;
 }
 
-PressPart::Pressing LawWirePart::pressing(const VectorView& y) const {
+UnilateralForcePart::Pressing LawWirePart::pressing(const VectorView& y) const {
   const std::array<FrameMotion<double>, 3> frames = motions<3>(this->frames(), y);
   const Action<double> a = act(frames);
   Pressing p;
@@ -420,7 +420,7 @@ bool LawWirePart::reaches(const std::array<FrameMotion<double>, 3>& frames) cons
   return near.exists && std::abs(near.along_axis) <= wire_.shaft.half_length;
 }
 
-void LawWirePart::look_around(const VectorView& y) {
+void LawWirePart::update_candidates(const VectorView& y) {
   const std::array<FrameMotion<double>, 3> now = motions<3>(frames(), y);
   const bool was_within = std::exchange(within_, reaches(now));
   if (!within_) {

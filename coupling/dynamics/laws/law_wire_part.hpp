@@ -15,7 +15,7 @@ template <class S>
 struct FrameMotion;
 
 /// A wire for which a law stands, in a DAE.                                                             theory.md (M.27)
-class LawWirePart final : public PressPart {
+class LawWirePart final : public UnilateralForcePart {
  public:
   /// Frames on the carriers of its ends, there, and of the shaft.
   LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft);
@@ -38,8 +38,8 @@ class LawWirePart final : public PressPart {
   [[nodiscard]] Shape shape(const numerics::VectorView& y) const;
 
   /// Looks whether the shaft is within reach, and before the wire; to be told the start, y in SI units.
-  void look_around(const numerics::VectorView& y);
-  void accept(const numerics::DaePoint& at) override { look_around(at.y); }
+  void update_candidates(const numerics::VectorView& y);
+  void accept(const numerics::DaePoint& at) override { update_candidates(at.y); }
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 

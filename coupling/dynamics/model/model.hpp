@@ -102,7 +102,7 @@ struct Motion {
   std::vector<MotionWire> wires;
   std::vector<MotionBody> bodies;
   std::vector<MotionContact> contacts;
-  std::vector<PointContactLaw> springs;
+  std::vector<PointContactLaw> point_contacts;
   std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
   std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
@@ -128,7 +128,7 @@ struct Motion {
   [[nodiscard]] std::vector<std::string> contact_names() const {
     std::vector<std::string> names;
     for (const MotionContact& c : contacts) names.push_back(c.name);
-    for (const PointContactLaw& s : springs) names.push_back(s.name);
+    for (const PointContactLaw& s : point_contacts) names.push_back(s.name);
     for (const WirePair& p : wire_pairs) names.push_back(p.name);
     for (const LawWire& w : law_wires) names.push_back(w.shaft.name + " on " + w.name);
     for (const BodyContact& b : body_contacts) names.push_back(b.name);

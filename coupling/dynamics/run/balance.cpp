@@ -49,7 +49,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->mount_forces.push_back(w.mount_forces[1]);
   }
   for (const ContactGroup& c : contacts_) e.strain += c.sums(at.y).energy;
-  for (const LawPart& s : springs_) e.strain += s.power(at).energy;
+  for (const LawPart& s : point_contacts_) e.strain += s.power(at).energy;
   for (WirePairPart& p : pairs_) e.strain += p.sums(at.y).energy;
   for (const BodyPart& b : bodies_) {
     if (!b.moves_freely()) continue;
@@ -60,7 +60,7 @@ EnergyBalance MotionRun::stored(const DaePoint& at, MotionSample* into) {
     into->momentum += b.body().properties.mass * s.velocity;
     into->angular_momentum += multibody::angular_momentum(b.body().properties, s);
   }
-  for (const PressPart* p : presses_) e.strain += p->work(at.y).power.energy;
+  for (const UnilateralForcePart* p : unilateral_forces_) e.strain += p->work(at.y).power.energy;
   constraints_->add_energy(at.y, e, into);
   if (into != nullptr) constraints_->fill(at.time, at.y, *into);
   return e;
@@ -81,7 +81,7 @@ void MotionRun::add_reactions(std::size_t contact, const ContactPart::Sums& sums
 // twist them.
 void MotionRun::add_pair(std::size_t pair, const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   const WirePairPart::Sums s = pairs_[pair].sums(at.y);
-  const auto index = static_cast<Eigen::Index>(contacts_.size() + springs_.size() + pair);
+  const auto index = static_cast<Eigen::Index>(contacts_.size() + point_contacts_.size() + pair);
   rates.segment<3>(integral::contacts + 3 * index) = s.force;
   rates[integral::contacts + 3 * static_cast<Eigen::Index>(touching()) + index] = s.normal;
   rates[integral::dissipated] += s.lost_power;
@@ -119,24 +119,24 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
     rates[integral::dissipated] += s.lost_power;
     add_reactions(k, s, at, rates);
   }
-  for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const ContactSample s = springs_[k].sample(at);
+  for (std::size_t k = 0; k < point_contacts_.size(); ++k) {
+    const ContactSample s = point_contacts_[k].sample(at);
     rates.segment<3>(integral::contacts + 3 * static_cast<Eigen::Index>(contacts_.size() + k)) = s.force;
     rates[integral::contacts + 3 * count + static_cast<Eigen::Index>(contacts_.size() + k)] = s.normal_force;
-    rates[integral::laws] += springs_[k].power(at).lost;
-    rates[integral::work] -= s.normal_force * motion_.springs[k].origin_speed;
+    rates[integral::laws] += point_contacts_[k].power(at).lost;
+    rates[integral::work] -= s.normal_force * motion_.point_contacts[k].origin_speed;
     rates.segment<3>(integral::outer) -= s.force;
     rates.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
   }
   for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k, at, rates);
   ConstraintSet::Outer held = constraints_->outer(at);
-  for (std::size_t k = 0; k < presses_.size(); ++k) {
-    const auto [s, work, tension] = presses_[k]->pressing(at.y);
-    const auto index = static_cast<Eigen::Index>(first_press() + k);
+  for (std::size_t k = 0; k < unilateral_forces_.size(); ++k) {
+    const auto [s, work, tension] = unilateral_forces_[k]->pressing(at.y);
+    const auto index = static_cast<Eigen::Index>(first_unilateral_force() + k);
     rates.segment<3>(integral::contacts + 3 * index) = s.force;
     rates[integral::contacts + 3 * count + index] = s.normal_force;
     rates[integral::laws] += work.power.lost;
-    constraints_->add_forces(*presses_[k], work.wrenches, at, held);
+    constraints_->add_forces(*unilateral_forces_[k], work.wrenches, at, held);
   }
   for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
   rates.segment<3>(integral::outer) += held.force;
@@ -160,15 +160,15 @@ void MotionRun::watch_law_wire(std::size_t k, double tension) {
 
 double MotionRun::law_loss(const DaePoint& at) const {
   double sum = 0.0;
-  for (const LawPart& s : springs_) sum += s.power(at).lost;
-  for (const PressPart* p : presses_) sum += p->work(at.y).power.lost;
+  for (const LawPart& s : point_contacts_) sum += s.power(at).lost;
+  for (const UnilateralForcePart* p : unilateral_forces_) sum += p->work(at.y).power.lost;
   return sum;
 }
 
 // The integrator has no event where bodies touch from the start on.
 void MotionRun::watch_body_contacts(double time_before, std::span<const int> found) {
   for (std::size_t k = 0; k < body_contacts_.size(); ++k) {
-    const auto contact = static_cast<int>(first_press() + law_wires_.size() + k);
+    const auto contact = static_cast<int>(first_unilateral_force() + law_wires_.size() + k);
     const auto [sample, work, tension] = body_contacts_[k].pressing(y_);
     const bool closed = !work.wrenches.empty();
     const Seen before = std::exchange(seen_[k], {closed, sample.sticking});
@@ -190,14 +190,14 @@ double MotionRun::longest_step() const {
   return step;
 }
 
-void MotionRun::measure(double from) {
+void MotionRun::sense_forces(double from) {
   for (RobotLoop& l : loops_) {
-    l.measure(from, time_, [&](double time) {
+    l.sense_forces(from, time_, [&](double time) {
       const VectorXd y = time == time_ ? y_ : ida_->interpolate(time);
       Vector3d force = Vector3d::Zero();
       for (const MotionRobot::Measured& m : l.robot().measured) {
         const std::size_t k = base::at(m.contact);
-        force += m.sign * (k >= first_press() ? presses_[k - first_press()]->pressing(y).sample.force
+        force += m.sign * (k >= first_unilateral_force() ? unilateral_forces_[k - first_unilateral_force()]->pressing(y).sample.force
                                               : contacts_[k].sums(y).force);
       }
       return force;
@@ -206,7 +206,7 @@ void MotionRun::measure(double from) {
 }
 
 // Extremes over the accepted steps, and what happened since the last one.
-void MotionRun::watch(double time_before, const VectorXd& before) {
+void MotionRun::record_extremes(double time_before, const VectorXd& before) {
   const auto count = static_cast<Eigen::Index>(touching());
   VectorXd forces(count);
   const auto note = [&](std::size_t contact, const ContactSample& sum, std::vector<MotionEvent> events, bool by_law) {
@@ -223,25 +223,25 @@ void MotionRun::watch(double time_before, const VectorXd& before) {
     note(k, sum, contacts_[k].observe(time_, sum, y_, time_before, before), static_cast<bool>(motion_.contacts[k].law));
   }
   const DaePoint at{time_, y_, rate_};
-  for (std::size_t k = 0; k < springs_.size(); ++k)
-    forces[static_cast<Eigen::Index>(contacts_.size() + k)] = springs_[k].sample(at).normal_force;
+  for (std::size_t k = 0; k < point_contacts_.size(); ++k)
+    forces[static_cast<Eigen::Index>(contacts_.size() + k)] = point_contacts_[k].sample(at).normal_force;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const ContactSample sum = pairs_[k].closed_sample(y_);
-    note(contacts_.size() + springs_.size() + k, sum, pairs_[k].observe(sum, {time_, y_}, {time_before, before}),
+    note(contacts_.size() + point_contacts_.size() + k, sum, pairs_[k].observe(sum, {time_, y_}, {time_before, before}),
          false);
   }
   sums_.strength.resize(rods_.size() + law_wires_.size());
   sums_.wires.resize(rods_.size() + law_wires_.size());
-  for (std::size_t k = 0; k < presses_.size(); ++k) {
-    const PressPart::Pressing now = presses_[k]->pressing(y_);
-    forces[static_cast<Eigen::Index>(first_press() + k)] = now.sample.normal_force;
+  for (std::size_t k = 0; k < unilateral_forces_.size(); ++k) {
+    const UnilateralForcePart::Pressing now = unilateral_forces_[k]->pressing(y_);
+    forces[static_cast<Eigen::Index>(first_unilateral_force() + k)] = now.sample.normal_force;
     if (k < law_wires_.size()) watch_law_wire(k, now.tension);
   }
   peak_.add(time_before, time_, forces, integrals_.tail(count), sums_.peak_force);
   // Laws take no mass of the wire along at once.
   for (std::size_t k = 0; k < touching(); ++k) {
     if (k < contacts_.size() && !motion_.contacts[k].law) continue;
-    if (k >= contacts_.size() + springs_.size() && k < first_press()) continue;
+    if (k >= contacts_.size() + point_contacts_.size() && k < first_unilateral_force()) continue;
     sums_.peak_force[k] = std::max(sums_.peak_force[k], forces[static_cast<Eigen::Index>(k)]);
   }
   sums_.largest_drift = std::max(sums_.largest_drift, constraints_->largest_gap(y_));
@@ -311,9 +311,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
     s.mount_forces[2 * w] -= sums.on_mounts[0];
     s.mount_forces[2 * w + 1] -= sums.on_mounts[1];
   }
-  for (const LawPart& spring : springs_) s.contacts.push_back(spring.sample(at));
+  for (const LawPart& spring : point_contacts_) s.contacts.push_back(spring.sample(at));
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const std::size_t index = contacts_.size() + springs_.size() + k;
+    const std::size_t index = contacts_.size() + point_contacts_.size() + k;
     s.contacts.push_back(recorded(pairs_[k].sample(at.y), at.time, index, pairs_[k].touches()));
     const WirePairPart::Sums sums = pairs_[k].sums(at.y);
     for (std::size_t w = 0; w < 2; ++w) {
@@ -321,7 +321,7 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
         s.mount_forces[2 * base::at(motion_.wire_pairs[k].wires[w]) + end] -= sums.on_mounts[w][end];
     }
   }
-  for (const PressPart* p : presses_) s.contacts.push_back(p->sample(at.y));
+  for (const UnilateralForcePart* p : unilateral_forces_) s.contacts.push_back(p->sample(at.y));
   if (options_.wire_loads) {
     for (wire::RodPart& r : rods_) s.wire_loads.push_back(loads_of(r, at));
   }

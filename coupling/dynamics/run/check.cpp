@@ -144,7 +144,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
         c.require(
             m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
                 (base::at(m.contact) < motion.contacts.size() ||
-                 base::at(m.contact) >= motion.contacts.size() + motion.springs.size() + motion.wire_pairs.size()),
+                 base::at(m.contact) >= motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size()),
             b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
     }
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
@@ -175,7 +175,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     validate_foundation(c, p.name + ".foundation.", p.foundation);
     validate_friction(c, p.name + ".friction.", p.friction);
   }
-  for (const PointContactLaw& s : motion.springs) {
+  for (const PointContactLaw& s : motion.point_contacts) {
     c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
               "must be the index of a body");
     c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),

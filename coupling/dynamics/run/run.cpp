@@ -50,7 +50,7 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const MotionContact& c : motion.contacts) {
     contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
   }
-  for (const PointContactLaw& s : motion.springs) springs_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
+  for (const PointContactLaw& s : motion.point_contacts) point_contacts_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
   for (const WirePair& p : motion.wire_pairs)
     pairs_.emplace_back(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]);
   constraints_.emplace(motion, rods_, bodies_, options);
@@ -59,10 +59,10 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   };
   const auto place = [](const Eigen::Vector3d& p) { return multibody::Pose{Eigen::Matrix3d::Identity(), p}; };
   for (const LawWire& w : motion.law_wires)
-    presses_.push_back(&law_wires_.emplace_back(w, frame(w.from, place(w.p_from)), frame(w.to, place(w.p_to)),
+    unilateral_forces_.push_back(&law_wires_.emplace_back(w, frame(w.from, place(w.p_from)), frame(w.to, place(w.p_to)),
                                                 frame(w.shaft.carrier, w.shaft.X_WS)));
   for (const BodyContact& b : motion.body_contacts)
-    presses_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
+    unilateral_forces_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
   seen_.resize(body_contacts_.size());
   for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
@@ -103,9 +103,9 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
   for (auto& c : contacts_) {
     for (ContactPart& p : c.pieces()) list.push_back(&p);
   }
-  for (auto& s : springs_) list.push_back(&s);
+  for (auto& s : point_contacts_) list.push_back(&s);
   for (auto& p : pairs_) list.push_back(&p);
-  for (PressPart* p : presses_) list.push_back(p);
+  for (UnilateralForcePart* p : unilateral_forces_) list.push_back(p);
   for (auto& l : loads_) list.push_back(&l);
   constraints_->append(list);
   return list;
@@ -114,7 +114,7 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
 int MotionRun::default_order() const {
   constexpr int a_stable = 2, of_laws = 3, of_bodies = 5;
   if (!rods_.empty() || std::ranges::any_of(body_contacts_, &BodyContactPart::has_bristle)) return a_stable;
-  return springs_.empty() && presses_.empty() ? of_bodies : of_laws;
+  return point_contacts_.empty() && unilateral_forces_.empty() ? of_bodies : of_laws;
 }
 
 // A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but what is pressed into it is thrown out.
@@ -163,10 +163,10 @@ void MotionRun::stay_in_plane() {
   }
   std::vector<int> held;
   const auto hold = [&held](const std::vector<int>& across) { held.insert(held.end(), across.begin(), across.end()); };
-  for (std::size_t i = 0; i < rods_.size(); ++i) hold(rods_[i].stay_in(planes[i]));
+  for (std::size_t i = 0; i < rods_.size(); ++i) hold(rods_[i].restrict_to_plane(planes[i]));
   for (const BodyPart& b : bodies_) hold(b.unknowns_across(*normal));
   for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) hold(p.stay_across(*normal));
+    for (ContactPart& p : c.pieces()) hold(p.restrict_to_plane(*normal));
   }
   system_->hold(std::move(held));
 }
@@ -218,7 +218,7 @@ bool all_finite(const MotionSample& s) {
 
 }  // namespace
 
-bool MotionRun::give(const MotionSample& sample) {
+bool MotionRun::emit(const MotionSample& sample) {
   if (all_finite(sample)) return observer_(sample);
   if (sample.time == 0.0) {
     throw base::InputError(
@@ -236,14 +236,14 @@ bool MotionRun::write_until(double time) {
     const double t = static_cast<double>(sums_.samples) * options_.output_interval;
     ++sums_.samples;
     if (t == time_) {
-      if (give(sample({t, y_, rate_}, integrals_))) return true;
+      if (emit(sample({t, y_, rate_}, integrals_))) return true;
       continue;
     }
     const VectorXd y = ida_->interpolate(t);
     const VectorXd rate = ida_->interpolate(t, 1);
     const MotionSample between = sample({t, y, rate}, ida_->interpolate_integrals(t));
     lost_before_ = between.energy.dissipated;
-    if (give(between)) return true;
+    if (emit(between)) return true;
   }
   return false;
 }
@@ -259,17 +259,17 @@ void MotionRun::count_losses() {
 
 void MotionRun::begin() {
   for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) p.look_around(y_);
+    for (ContactPart& p : c.pieces()) p.update_candidates(y_);
   }
-  for (WirePairPart& p : pairs_) p.look_around(y_);
-  for (LawWirePart& w : law_wires_) w.look_around(y_);
+  for (WirePairPart& p : pairs_) p.update_candidates(y_);
+  for (LawWirePart& w : law_wires_) w.update_candidates(y_);
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
   sums_.start_momentum = start.momentum;
   sums_.start_angular_momentum = start.angular_momentum;
   constraints_->place_twist_rates(y_, rate_);
-  settle();
+  restart();
   sense();
   phases_.start(0.0, signals(), kept());
 }
@@ -299,7 +299,7 @@ void MotionRun::resume(const MotionState& from) {
   restore_phases(memory);
   for (RobotLoop& l : loops_) l.restore_state(memory);
   constraints_->restore_state(time_, memory);
-  for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
+  for (LoadPart& l : loads_) static_cast<void>(l.begin_interval(time_));
   system_->restore_state(y_, memory);
   law_losses_ = LossSum(integrals_[integral::laws]);
   law_losses_.begin(time_, law_loss({time_, y_, rate_}));
@@ -309,24 +309,24 @@ void MotionRun::resume(const MotionState& from) {
 
 // Two times at which something changes that differ by round-off: 0.1 + 0.2 beside 0.3. The integrator cannot step from one to the
 // other.
-void MotionRun::pass(double time) {
+void MotionRun::cross_break(double time) {
   time_ = time;
-  static_cast<void>(constraints_->follow({time_, y_, rate_}, {}, y_));
-  for (LoadPart& l : loads_) static_cast<void>(l.enter(time_));
+  static_cast<void>(constraints_->process_events({time_, y_, rate_}, {}, y_));
+  for (LoadPart& l : loads_) static_cast<void>(l.begin_interval(time_));
   if (look_for_phase())
     over_ = begin_phases();
   else
-    settle();
+    restart();
 }
 
-MotionResult MotionRun::go(double limit) {
+MotionResult MotionRun::run_until(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
   VectorXd rates = VectorXd::Zero(integrals_.size());
   integrands({time_, y_, rate_}, rates);
   const auto of_contacts = integrals_.size() - integral::contacts;
   forces_.add(time_, rates.tail(of_contacts));
-  measure(time_);
+  sense_forces(time_);
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
     double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
@@ -334,7 +334,7 @@ MotionResult MotionRun::go(double limit) {
     for (const RobotLoop& l : loops_) stop = std::min(stop, l.next_break(time_));
     if (phases_.asks_for_readings()) stop = std::min(stop, sensed_.limit(time_));
     if (reached(time_, stop)) {
-      pass(stop);
+      cross_break(stop);
       continue;
     }
     const long evaluated = ida_->statistics().residuals;
@@ -356,8 +356,8 @@ MotionResult MotionRun::go(double limit) {
     integrals_[integral::laws] = law_losses_.sum();
     lost_before_ = lost_;
     count_losses();
-    measure(before);
-    watch(before, before_);
+    sense_forces(before);
+    record_extremes(before, before_);
     stopped = write_until(time_) || (options_.stop && options_.stop());
     const long evaluations = ida_->statistics().residuals - evaluated;
     if (const auto stalled = progress_.add(*ida_, evaluations, options_.duration, sums_.effort)) {
@@ -371,7 +371,7 @@ MotionResult MotionRun::go(double limit) {
     bool changed = false;
     if (!behind) {
       const auto arms = static_cast<std::size_t>(constraints_->event_count());  // the last of the events
-      changed = constraints_->follow({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
+      changed = constraints_->process_events({time_, ida_->y(), rate_}, std::span(found).last(arms), y_);
     }
     if (constraints_->stuck()) {
       report.termination = numerics::Termination::step_too_small;
@@ -380,28 +380,28 @@ MotionResult MotionRun::go(double limit) {
     }
     std::size_t event = 0;
     bool touch_or_lift = false;
-    for (std::size_t k = 0; k < springs_.size(); ++k, ++event) {
+    for (std::size_t k = 0; k < point_contacts_.size(); ++k, ++event) {
       if (behind || found[event] == 0) continue;
       changed = true;
       const bool touch = found[event] > 0;
       sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
                               touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
-    for (std::size_t k = 0; k < presses_.size(); ++k, ++event) {
+    for (std::size_t k = 0; k < unilateral_forces_.size(); ++k, ++event) {
       if (behind || found[event] == 0) continue;
-      changed = changed || presses_[k]->jumps();
+      changed = changed || unilateral_forces_[k]->jumps();
       touch_or_lift = true;
-      sums_.events.push_back({time_, static_cast<int>(first_press() + k), 0, presses_[k]->sample(y_).arc,
+      sums_.events.push_back({time_, static_cast<int>(first_unilateral_force() + k), 0, unilateral_forces_[k]->sample(y_).arc,
                               found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
     }
     if (!behind)
       watch_body_contacts(before, std::span(found).subspan(event - body_contacts_.size(), body_contacts_.size()));
-    for (LoadPart& l : loads_) changed = l.enter(time_) || changed;
-    for (RobotLoop& l : loops_) changed = l.enter(time_, changed || phase || touch_or_lift) || changed;
+    for (LoadPart& l : loads_) changed = l.begin_interval(time_) || changed;
+    for (RobotLoop& l : loops_) changed = l.begin_interval(time_, changed || phase || touch_or_lift) || changed;
     if (phase) {
       over_ = begin_phases();
     } else if (changed) {
-      settle();
+      restart();
     }
   }
   if (broken_) {

@@ -65,7 +65,7 @@ class MotionRun {
   /// Goes on from a state that a leg of the same motion has left. Throws base::InputError when the sizes are not of this motion.
   void resume(const MotionState& from);
   /// Goes on to `limit` [s].
-  MotionResult go(double limit);
+  MotionResult run_until(double limit);
   /// See small_motions_at, about the present state (run_modes.cpp). Frequencies in Hz.
   [[nodiscard]] SmallMotions small_motions();
 
@@ -78,13 +78,13 @@ class MotionRun {
   [[nodiscard]] bool write_until(double time);
   /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends the run; the first one
   /// throws base::InputError.
-  [[nodiscard]] bool give(const MotionSample& sample);
-  void pass(double time);
+  [[nodiscard]] bool emit(const MotionSample& sample);
+  void cross_break(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
   // Starts (start_rates.cpp).
   void make_rates();
-  void settle();
+  void restart();
 
   // Phases (run_phases.cpp).
   [[nodiscard]] double signal(const MotionSignal& signal);
@@ -110,7 +110,7 @@ class MotionRun {
                      Eigen::Ref<Eigen::VectorXd> rates) const;
   void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
-  void watch(double time_before, const Eigen::VectorXd& before);
+  void record_extremes(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
   /// Updates the total dissipation, and removes and counts its decreases.
   void count_losses();
@@ -121,13 +121,13 @@ class MotionRun {
   void watch_body_contacts(double time_before, std::span<const int> found);
   [[nodiscard]] double longest_step() const;
   /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
-  void measure(double from);
+  void sense_forces(double from);
   /// Number of all that presses.
   [[nodiscard]] std::size_t touching() const {
-    return contacts_.size() + springs_.size() + pairs_.size() + presses_.size();
+    return contacts_.size() + point_contacts_.size() + pairs_.size() + unilateral_forces_.size();
   }
   /// Index of the first press among all that does.
-  [[nodiscard]] std::size_t first_press() const { return touching() - presses_.size(); }
+  [[nodiscard]] std::size_t first_unilateral_force() const { return touching() - unilateral_forces_.size(); }
   /// At the last state, or within the step before it.
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
   /// The sample of a contact, by its index among all, with the forces that are recorded.
@@ -141,12 +141,12 @@ class MotionRun {
   std::deque<RobotLoop> loops_;  // of bodies that robots move: before these
   std::deque<BodyPart> bodies_;
   std::deque<ContactGroup> contacts_;
-  std::deque<LawPart> springs_;
+  std::deque<LawPart> point_contacts_;
   std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
   std::deque<LawWirePart> law_wires_;
   std::deque<BodyContactPart> body_contacts_;
-  std::vector<PressPart*> presses_;  // both of them
+  std::vector<UnilateralForcePart*> unilateral_forces_;  // both of them
   /// How a contact of bodies was at the last accepted step.
   struct Seen {
     bool closed = false, sticking = false;

@@ -33,10 +33,10 @@ double MotionRun::signal(const MotionSignal& s) {
     case MotionSignal::Kind::contact_force: {
       const std::size_t k = at(s.index);
       if (k < contacts_.size()) return contacts_[k].sums(y_).normal;
-      if (k < contacts_.size() + springs_.size())
-        return springs_[k - contacts_.size()].sample({time_, y_, rate_}).normal_force;
-      if (k >= first_press()) return presses_[k - first_press()]->pressing(y_).sample.normal_force;
-      return pairs_[k - contacts_.size() - springs_.size()].sums(y_).normal;
+      if (k < contacts_.size() + point_contacts_.size())
+        return point_contacts_[k - contacts_.size()].sample({time_, y_, rate_}).normal_force;
+      if (k >= first_unilateral_force()) return unilateral_forces_[k - first_unilateral_force()]->pressing(y_).sample.normal_force;
+      return pairs_[k - contacts_.size() - point_contacts_.size()].sums(y_).normal;
     }
     case MotionSignal::Kind::wire_tension:
       return tension(s.index);
@@ -65,7 +65,7 @@ PhaseWatch::Kept MotionRun::kept() const {
 }
 
 void MotionRun::sense() {
-  if (phases_.asks_for_readings()) sensed_.pass(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
+  if (phases_.asks_for_readings()) sensed_.cross_break(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
 }
 
 // The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has not gone on behind a reading.
@@ -95,7 +95,7 @@ bool MotionRun::begin_phases() {
     phases_.begin(time_, signals(), kept());
     another = phases_.look(time_, signals(), kept()).has_value();
   }
-  settle();
+  restart();
   return false;
 }
 

@@ -47,7 +47,7 @@ double SensedReadings::limit(double time) const {
   return first;
 }
 
-void SensedReadings::pass(double time, const Sampler& sample) {
+void SensedReadings::cross_break(double time, const Sampler& sample) {
   const double until = time + same_output * output_interval_;
   std::optional<MotionSample> now;
   for (Signal& s : signals_) {

@@ -27,7 +27,7 @@ class SensedReadings {
   /// The first time behind a time at which something is seen or read, at which the integration must stop [s]; infinite: none.
   [[nodiscard]] double limit(double time) const;
   /// The integration stands at a time [s]: what is seen or read there.
-  void pass(double time, const Sampler& sample);
+  void cross_break(double time, const Sampler& sample);
   /// The last reading of a signal, in the unit of its kind; there is one from the start on.
   [[nodiscard]] const Eigen::Vector3d& last(int signal) const;
 

@@ -40,7 +40,7 @@ MotionResult simulate(const Motion& motion, const MotionOptions& options, const 
       run.begin();
     }
     const double stop = next_stop(options, state ? state->time : 0.0);
-    MotionResult result = run.go(stop);
+    MotionResult result = run.run_until(stop);
     const bool over = !result.phases.empty() && motion.phases[base::at(result.phases.back().phase)].ends_run;
     if (over || !result.report.usable() || !reached(result.report.time, stop) || stop >= options.duration)
       return result;

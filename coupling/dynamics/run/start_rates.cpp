@@ -22,7 +22,7 @@ void MotionRun::make_rates() {
     rate_.segment<4>(b.quaternion()) =
         multibody::quaternion_rates(y_.segment<4>(b.quaternion())) * y_.segment<3>(b.spin());
   }
-  constraints_->loosen(y_);
+  constraints_->zero_multipliers(y_);
   VectorXd rows(system_->size());
   system_->residual({time_, y_, rate_}, rows);
   for (const wire::RodPart& r : rods_) {
@@ -50,7 +50,7 @@ void MotionRun::make_rates() {
   for (const BodyContactPart& b : body_contacts_) b.set_bristle_rates(y_, rate_);
 }
 
-void MotionRun::settle() {
+void MotionRun::restart() {
   make_rates();
   count_losses();
   law_losses_.begin(time_, law_loss({time_, y_, rate_}));

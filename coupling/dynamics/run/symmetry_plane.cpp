@@ -66,7 +66,7 @@ bool is_mirrored(const SymmetryPlane& plane, const Motion& motion) {
 }  // namespace
 
 std::optional<int> symmetry_normal(const Motion& motion) {
-  const bool has_more = !motion.springs.empty() || !motion.wire_pairs.empty() || !motion.arms.empty() ||
+  const bool has_more = !motion.point_contacts.empty() || !motion.wire_pairs.empty() || !motion.arms.empty() ||
                         !motion.welds.empty() || !motion.mounts.empty() || !motion.bushings.empty() ||
                         !motion.law_wires.empty() || !motion.body_contacts.empty() || !motion.loads.empty();
   if (motion.wires.empty() || has_more) return std::nullopt;

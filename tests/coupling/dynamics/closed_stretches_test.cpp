@@ -13,8 +13,8 @@
 #include <vector>
 
 using namespace snare;
-using coupling::ClosedStretch;
-using coupling::ClosedStretches;
+using coupling::ContactInterval;
+using coupling::ContactIntervals;
 using coupling::GapPlace;
 
 namespace {
@@ -40,11 +40,11 @@ struct Quartic {
     }
     return 1.01 * depth * largest / (length * length);
   }
-  [[nodiscard]] std::vector<ClosedStretch> stretches() const {
+  [[nodiscard]] std::vector<ContactInterval> stretches() const {
     const auto gap = [this](double u) { return GapPlace{u, value(u), slope(u), 0.0}; };
-    std::vector<ClosedStretch> found;
+    std::vector<ContactInterval> found;
     std::vector<GapPlace> minima;
-    ClosedStretches(length, 2.0 * length, largest_bend(), resolution).find(gap, gap(0.0), gap(1.0), found, minima);
+    ContactIntervals(length, 2.0 * length, largest_bend(), resolution).find(gap, gap(0.0), gap(1.0), found, minima);
     return found;
   }
 };
@@ -52,7 +52,7 @@ struct Quartic {
 }  // namespace
 
 // What is closed is what a look at very many places shows: every stretch, however it lies to the ends of the pieces.
-TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
+TEST(ContactIntervals, NothingIsHiddenAndNothingOpenIsTaken) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> even(-1.0, 1.0);
   constexpr int places = 20000;
@@ -69,7 +69,7 @@ TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
       for (std::size_t i = 4; i > 0; --i) g.q[i] = g.q[i - 1] - z * g.q[i];
       g.q[0] *= -z;
     }
-    const std::vector<ClosedStretch> found = g.stretches();
+    const std::vector<ContactInterval> found = g.stretches();
     closed += found.empty() ? 0 : 1;
     several += found.size() > 1 ? 1 : 0;
     for (std::size_t j = 1; j < found.size(); ++j) EXPECT_LE(found[j - 1].to, found[j].from);
@@ -77,7 +77,7 @@ TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
       const double u = static_cast<double>(i) / places, gap = g.value(u);
       if (std::abs(gap) < 1e-12) continue;
       const bool inside =
-          std::any_of(found.begin(), found.end(), [u](const ClosedStretch& s) { return u >= s.from && u <= s.to; });
+          std::any_of(found.begin(), found.end(), [u](const ContactInterval& s) { return u >= s.from && u <= s.to; });
       ASSERT_EQ(inside, gap < 0.0) << "case " << k << ", u " << u << ", gap " << gap;
     }
   }
@@ -86,15 +86,15 @@ TEST(ClosedStretches, NothingIsHiddenAndNothingOpenIsTaken) {
 }
 
 // A step that has run away: no minimum is found, and the search ends.
-TEST(ClosedStretches, WhatIsNoNumberEndsTheSearch) {
+TEST(ContactIntervals, WhatIsNoNumberEndsTheSearch) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
   for (const double value : {none, endless, -endless}) {
     for (const double way : {length, none, endless}) {
       if (std::isfinite(value + way)) continue;
       const auto gap = [value](double u) { return GapPlace{u, value, value, value}; };
-      std::vector<ClosedStretch> found;
+      std::vector<ContactInterval> found;
       std::vector<GapPlace> minima;
-      ClosedStretches(length, way, value, resolution).find(gap, gap(0.0), gap(1.0), found, minima);
+      ContactIntervals(length, way, value, resolution).find(gap, gap(0.0), gap(1.0), found, minima);
       EXPECT_TRUE(minima.empty());
     }
   }
@@ -102,7 +102,7 @@ TEST(ClosedStretches, WhatIsNoNumberEndsTheSearch) {
 
 // Dips side by side with a maximum between them, here above zero, that passes the beginning of the element: what is closed there
 // goes on from state to state though the slope at the beginning changes its sign.
-TEST(ClosedStretches, NoStepWhereAMaximumPassesAVertex) {
+TEST(ContactIntervals, NoStepWhereAMaximumPassesAVertex) {
   constexpr double wave = 0.06, height = 2e-7, rise = 1e-4;
   constexpr double rate = 2.0 * std::numbers::pi / wave;
   double before = 0.0;
@@ -113,10 +113,10 @@ TEST(ClosedStretches, NoStepWhereAMaximumPassesAVertex) {
       return GapPlace{u, height * std::cos(rate * x) + rise * x * x,
                       (-height * rate * std::sin(rate * x) + 2.0 * rise * x) / length, 0.0};
     };
-    std::vector<ClosedStretch> found;
+    std::vector<ContactInterval> found;
     std::vector<GapPlace> minima;
     const double bend = (height * rate * rate + 2.0 * rise) / (length * length);
-    ClosedStretches(length, length, bend, resolution).find(gap, gap(0.0), gap(1.0), found, minima);
+    ContactIntervals(length, length, bend, resolution).find(gap, gap(0.0), gap(1.0), found, minima);
     ASSERT_EQ(found.size(), 1U) << "maximum at " << top;
     EXPECT_LT(found[0].deepest.gap, -1e-8);
     const double now = found[0].to - found[0].from;
@@ -141,13 +141,13 @@ struct TwoLobes {
   }
   /// Loads of a foundation, in all and about the middle: by the parts, and by very many places.
   [[nodiscard]] std::array<double, 2> by_parts() const {
-    std::vector<ClosedStretch> found;
+    std::vector<ContactInterval> found;
     std::vector<GapPlace> minima;
     const double bend = height * std::pow(std::numbers::pi * 2.0 * ends / length, 2) / 2.0;
-    ClosedStretches(length, 2.0 * length, bend, resolution)
+    ContactIntervals(length, 2.0 * length, bend, resolution)
         .find([this](double u) { return at(u); }, at(0.0), at(1.0), found, minima);
     std::array<double, 2> loads{};
-    for (const ClosedStretch& s : found) {
+    for (const ContactInterval& s : found) {
       coupling::for_each_place(s, [&](double u, double weight) {
         const double load = -at(u).gap / height * weight;
         loads[0] += load;
@@ -171,7 +171,7 @@ struct TwoLobes {
 }  // namespace
 
 // A stretch parts where its crest comes out, and a crest rises from what was one lobe: no load jumps, and loads stay right.
-TEST(ClosedStretches, LoadsDoNotJumpWhereAStretchPartsOrACrestRises) {
+TEST(ContactIntervals, LoadsDoNotJumpWhereAStretchPartsOrACrestRises) {
   constexpr double step = 1e-4;
   const auto follow = [&](TwoLobes lobes, double TwoLobes::*what, double to) {
     const int steps = static_cast<int>(std::lround(std::abs(to - lobes.*what) / step));

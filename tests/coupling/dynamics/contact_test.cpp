@@ -57,7 +57,7 @@ TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   VectorXd y = VectorXd::Zero(system.size());
   rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, 13), y);
   body.place(y);
-  part.look_around(y);
+  part.update_candidates(y);
   const auto gap = [&](double s, Vector3d& normal) {
     const CurveWeights w = curve_weights(rod, s);
     Vector3d x = Vector3d::Zero();
@@ -102,7 +102,7 @@ TEST(ContactPart, AStraightWireAcrossAPinMeetsTheForceOfItsDepth) {
       VectorXd y = VectorXd::Zero(system.size());
       rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, 21), y);
       body.place(y);
-      part.look_around(y);
+      part.update_candidates(y);
       const double expected =
           4.0 / 3.0 * contact.foundation.modulus * std::sqrt(2.0 * (radius + wire_radius)) * depth * std::sqrt(depth);
       EXPECT_NEAR(part.sums(y).force.y(), expected, 2e-4 * expected) << depth << ' ' << place;

@@ -138,9 +138,9 @@ TEST(Dissipation, OfAWireOnABody) {
     rod.place(positions, Matrix3Xd::Zero(3, 9), y);
     move(rod, speed, random, y);
     move(body, speed, random, y);
-    part.look_around(y);
+    part.update_candidates(y);
     y[body.position() + 1] += part.search().nearest(y).gap + random.between(1e-7, 3e-5);
-    part.look_around(y);
+    part.update_candidates(y);
     for (int i = 0; part.has_bristle() && i < rod.vertices(); ++i)
       y.segment<2>(part.bristle_of(i)) = 1e-5 * random.vector_2();
     Scene scene{{&rod},
@@ -175,12 +175,12 @@ TEST(Dissipation, OfTwoWires) {
     }
     first.place(motion.wires[0].positions, Matrix3Xd::Zero(3, 9), y);
     second.place(motion.wires[1].positions, Matrix3Xd::Zero(3, 9), y);
-    part.look_around(y);
+    part.update_candidates(y);
     const double up = part.search().nearest(y).gap + random.between(1e-7, 3e-5);
     for (int i = 0; i <= 8; ++i) y[second.position_of(i) + 1] += up;
     move(first, speed, random, y);
     move(second, speed, random, y);
-    part.look_around(y);
+    part.update_candidates(y);
     for (std::size_t w = 0; part.has_bristle() && w < 2; ++w) {
       for (int i = 0; i <= 8; ++i) y.segment<2>(part.bristle_of(w, i)) = 1e-5 * random.vector_2();
     }

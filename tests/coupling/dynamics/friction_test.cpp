@@ -221,7 +221,7 @@ struct Touching {
     y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
     // 2 um deep: a fifth of a newton.
     y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
-    contact.look_around(y);
+    contact.update_candidates(y);
   }
 };
 

@@ -351,9 +351,9 @@ TEST(LawWire, ShaftBehindTheWireIsMissed) {
   WireAboutShaft wire(ring_wire(0.1, 2.0, 0.2));
   const VectorXd far = wire.at({0.0, 0.0, 0.5}), before = wire.at(Vector3d::Zero()),
                  behind = wire.at({0.12 * std::cos(1.0), 0.12 * std::sin(1.0), 0.0});
-  for (const VectorXd& y : {far, behind}) wire.part.look_around(y);
+  for (const VectorXd& y : {far, behind}) wire.part.update_candidates(y);
   EXPECT_TRUE(wire.part.wrenches(behind).empty());
-  for (const VectorXd& y : {far, before, behind}) wire.part.look_around(y);
+  for (const VectorXd& y : {far, before, behind}) wire.part.update_candidates(y);
   EXPECT_FALSE(wire.part.wrenches(behind).empty());
 }
 

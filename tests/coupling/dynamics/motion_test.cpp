@@ -99,7 +99,7 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   y.segment<4>(body.quaternion()) = Eigen::Vector4d(0.98, 0.1, -0.12, 0.11).normalized();
   y.segment<3>(body.spin()) << 0.3, -0.2, 0.5;
   y[body.position() + 1] += contact.search().nearest(y).gap + 2e-6;
-  contact.look_around(y);
+  contact.update_candidates(y);
   ASSERT_GT(contact.sums(y).force.norm(), 0.05);
   VectorXd rate(y.size());
   for (double& r : rate) r = 0.1 * unit(random);

@@ -51,7 +51,7 @@ struct AtTheMount {
         y(VectorXd::Zero(system.size())) {
     rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, rod.vertices()), y);
     body.place(y);
-    contact.look_around(y);
+    contact.update_candidates(y);
   }
 };
 

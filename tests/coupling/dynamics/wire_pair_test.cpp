@@ -41,7 +41,7 @@ struct Pair {
     second.place(motion.wires[1].positions, still(motion.wires[1]), y);
     look();
   }
-  void look() { contact.look_around(y); }
+  void look() { contact.update_candidates(y); }
   [[nodiscard]] WirePairPart::Sums sums() { return contact.sums(y); }
   /// What the contact alone adds to the rows.
   [[nodiscard]] VectorXd rows() {
@@ -181,7 +181,7 @@ TEST(WirePair, ForcesAreSmoothAsTheCrossingGoesOverVertices) {
     double bend = 0.0, way = 0.0;
     for (int k = 0; k < 1500; ++k) {
       for (int i = 0; i <= 8; ++i) p.y.segment<3>(p.second.position_of(i)) += step * along;
-      p.contact.look_around(p.y);
+      p.contact.update_candidates(p.y);
       const VectorXd next = p.rows();
       if (k > 0) bend = std::max(bend, (next - 2.0 * here + before).lpNorm<Eigen::Infinity>());
       way = std::max(way, (next - here).lpNorm<Eigen::Infinity>());
